@@ -1,0 +1,7 @@
+// Chapter 1: uniform sampling of inclination and azimuth. The path tracer itself is path_trace.glsl.
+#include "app/chapter.h"
+
+int main(int argument_count, char** arguments) {
+    return lab::run_chapter({.name = "01_uniform_sampling", .title = "Uniform sampling: the path tracer of the slides"},
+                            argument_count, arguments);
+}

@@ -1,0 +1,181 @@
+#include "app/chapter.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <sstream>
+
+#include "app/headless.h"
+#include "error.h"
+
+namespace lab {
+namespace {
+
+void print_devices() {
+    const auto devices = list_devices();
+    for (size_t i = 0; i < devices.size(); ++i) {
+        const auto& device = devices[i];
+        std::printf("%zu  %s (%s, Vulkan %s, %s)\n", i, device.name.c_str(), device.kind.c_str(),
+                    device.api_version.c_str(), device.driver.c_str());
+        std::string missing;
+        for (const auto& name : device.missing) missing += (missing.empty() ? "" : ", ") + name;
+        std::printf("   compute: %s\n", missing.empty() ? "works" : ("lacks " + missing).c_str());
+    }
+}
+
+vec3 to_vector(const std::array<float, 3>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+// Flags win over what the scene file says.
+void override_scene(Scene& scene, const Options& options) {
+    if (options.camera_position) scene.camera.position = to_vector(*options.camera_position);
+    if (options.camera_target) scene.camera.target = to_vector(*options.camera_target);
+    if (options.camera_up) scene.camera.up = to_vector(*options.camera_up);
+    if (options.vertical_fov) scene.camera.vertical_fov = *options.vertical_fov;
+    if (options.background) scene.background = to_vector(*options.background);
+}
+
+RenderParameters make_parameters(const Scene& scene, const Options& options) {
+    const uint32_t width = options.width.value_or(scene.defaults.width);
+    const uint32_t height = options.height.value_or(scene.defaults.height);
+    return {.camera = make_camera(scene.camera, width, height),
+            .image_size = {width, height},
+            .seed_key = seed_key(options.seed),
+            .first_sample = options.first_sample,
+            .max_path_length = options.max_path_length.value_or(scene.defaults.max_path_length),
+            .only_path_length = options.only_path_length ? static_cast<int>(*options.only_path_length) : -1,
+            .background = scene.background,
+            .probe_rotation = scene.probe_rotation};
+}
+
+// The options that decide the expected image, in a fixed order: renders with equal settings can be joined.
+std::string settings_text(const RenderParameters& parameters, const Scene& scene, const Options& options) {
+    std::ostringstream text;
+    const auto vector = [](const vec3& v) {
+        std::ostringstream numbers;
+        numbers.precision(9);
+        numbers << v.x << ',' << v.y << ',' << v.z;
+        return numbers.str();
+    };
+    text.precision(9);
+    text << "--max-path-length " << parameters.max_path_length;
+    if (parameters.only_path_length >= 0) text << " --only-path-length " << parameters.only_path_length;
+    if (options.view) text << " --view " << options.view->name;
+    if (options.specular) text << " --specular";
+    text << " --camera-position " << vector(scene.camera.position) << " --camera-target "
+         << vector(scene.camera.target) << " --camera-up " << vector(scene.camera.up) << " --vertical-fov "
+         << scene.camera.vertical_fov << " --background " << vector(scene.background);
+    return text.str();
+}
+
+Estimator make_estimator(const Chapter& chapter, const Options& options) {
+    if (!options.view) return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
+    Estimator estimator{project_folder() / "shaders" / "view.glsl", {options.view->define}};
+    if (options.view->name == "bvh-steps") estimator.defines.emplace_back("COUNT_TRAVERSAL_STEPS");
+    return estimator;
+}
+
+std::string hexadecimal(uint64_t number) {
+    std::ostringstream text;
+    text << std::hex << number;
+    return text.str();
+}
+
+// Fails before anything is rendered if a result could not be kept later.
+void check_outputs(const Options& options) {
+    for (const auto& file : options.outputs) check_writable(file);
+    if (!options.report.empty()) check_writable(options.report, {".json", ".csv"});
+}
+
+// The capabilities that the contract promises for a scene's materials.
+void check_scene(const Chapter& chapter, const Scene& scene) {
+    if (features_of(scene).dielectrics && !chapter.dielectrics)
+        throw UserError(scene.file.string() + ": has a dielectric (d < 1), which " + chapter.name +
+                        " cannot render: use chapter 6, ./lab run 6");
+}
+
+// Throws DeviceError if the device has validation complaints about the run.
+void check_validation(const Device& device, const Options& options) {
+    if (!options.validation) return;
+    for (const auto& message : device.driver_messages()) std::cerr << "driver: " << message << "\n";
+    for (const auto& message : device.validation_messages()) std::cerr << "validation: " << message << "\n";
+    if (!device.validation_messages().empty())
+        throw UserError("the validation layers complained " + std::to_string(device.validation_messages().size()) +
+                        " times");
+    if (!options.quiet) std::cout << "validation     no complaints\n";
+}
+
+void run(const Chapter& chapter, const Options& options) {
+    check_outputs(options);
+    Scene scene = load_scene(options.scene, options.specular);
+    check_scene(chapter, scene);
+    override_scene(scene, options);
+    for (const auto& warning : scene.warnings)
+        if (!options.quiet) std::cerr << "note: " << warning << "\n";
+
+    RenderJob job{.chapter = &chapter,
+                  .options = &options,
+                  .scene = &scene,
+                  .parameters = make_parameters(scene, options),
+                  .samples = options.samples.value_or(scene.defaults.samples),
+                  .record = {},
+                  .resumed = std::nullopt};
+    job.record = {.chapter = chapter.name,
+                  .scene = scene.file.filename().string(),
+                  .scene_hash = hexadecimal(scene.hash),
+                  .settings = settings_text(job.parameters, scene, options),
+                  .backend = to_string(Backend::compute),
+                  .device = "",
+                  .seed = options.seed,
+                  .first_sample = options.first_sample};
+    if (!options.resume.empty()) {
+        job.resumed = read_film(options.resume);
+        job.record.first_sample = job.resumed->record.first_sample;
+        job.parameters.first_sample = job.record.first_sample;
+        job.record.seconds = job.resumed->record.seconds;
+        job.record.rays = job.resumed->record.rays;
+        const FilmFile wanted{{job.parameters.image_size.x, job.parameters.image_size.y, {}}, job.record};
+        require_same_render(*job.resumed, wanted, options.resume.string(), "this command");
+    }
+    if (uint64_t{job.record.first_sample} + job.samples > uint64_t{1} << 32)
+        throw UserError("--first-sample + --samples is above 2^32: there are no more random numbers than that");
+
+    const Device device({options.device, options.validation});
+    job.record.device = device.description().name;
+    if (!options.quiet)
+        std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
+                  << job.parameters.image_size.y << ", " << job.samples << " samples, " << job.record.device << ", "
+                  << job.record.backend << std::endl;
+    const GpuScene gpu_scene(device, scene);
+    const auto acceleration_structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
+    render_headless(device, *acceleration_structure, make_estimator(chapter, options), job);
+    check_validation(device, options);
+}
+
+}  // namespace
+
+int run_chapter(const Chapter& chapter, int argument_count, char** arguments) {
+    try {
+        const auto options = parse_options(chapter, argument_count, arguments);
+        if (!options) return 0;
+        if (options->list_devices) print_devices();
+        else run(chapter, *options);
+        return 0;
+    } catch (const UserError& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 1;
+    } catch (const DeviceError& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 2;
+    } catch (const DeviceFailure& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 3;
+    } catch (const vk::SystemError& error) {
+        std::cerr << "error: the device failed: " << error.what() << "\n";
+        return 3;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "error: out of memory: use a smaller scene or image\n";
+        return 3;
+    }
+}
+
+}  // namespace lab

@@ -1,0 +1,199 @@
+#include "app/headless.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+
+#include "app/progress.h"
+#include "app/report.h"
+#include "error.h"
+
+namespace lab {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+// The first Ctrl-C asks for an orderly end, the second one ends the program.
+void install_interrupt_handler() {
+    const auto handler = [](int signal) {
+        interrupted = 1;
+        std::signal(signal, SIG_DFL);
+    };
+    std::signal(SIGINT, handler);
+    std::signal(SIGTERM, handler);
+}
+
+class HeadlessRender {
+  public:
+    HeadlessRender(const RenderJob& job, Renderer& renderer)
+        : job_(job), options_(*job.options), renderer_(renderer), last_save_(start_) {
+        if (!options_.reference.empty()) {
+            reference_ = read_reference(options_.reference);
+            const Image& image = reference_->mean;
+            if (image.width != renderer.film().width() || image.height != renderer.film().height())
+                throw UserError(options_.reference.string() + ": has " + std::to_string(image.width) + "x" +
+                                std::to_string(image.height) + " pixels, the image has " +
+                                std::to_string(renderer.film().width()) + "x" +
+                                std::to_string(renderer.film().height()) + ": they must agree");
+        }
+        if (job.resumed) renderer.resume(job.resumed->image);
+        snapshot_ = renderer.film().read();
+        last_row_film_ = snapshot_;
+    }
+
+    void run() {
+        install_interrupt_handler();
+        try {
+            sample();
+            snapshot_ = renderer_.film().read();
+        } catch (const vk::SystemError& error) {
+            // What was last read from the device is all there is.
+            write_outputs();
+            throw DeviceFailure(std::string("the device failed (") + error.what() + "): the outputs hold " +
+                                std::to_string(snapshot_.min_samples()) + " samples a pixel; --resume continues");
+        }
+        write_outputs();
+        if (!options_.quiet) print_summary();
+    }
+
+  private:
+    // Stops at 1, 2, 4, … samples for a row of the report: errors are compared at powers of two, and a test for the
+    // target error at every dispatch would prefer images that look converged by chance.
+    void sample() {
+        Progress progress(job_.samples, renderer_.samples(), options_.quiet);
+        uint32_t done = snapshot_.min_samples();
+        while (done < job_.samples && !interrupted) {
+            uint32_t next = 1;
+            while (next <= done) next = next > job_.samples / 2 ? job_.samples : 2 * next;
+            next = std::min(next, job_.samples);
+            bool more = true;
+            while (more && !interrupted && !is_time_over()) {
+                more = renderer_.advance(next);
+                progress.update(renderer_.samples(), renderer_.rays());
+                save_if_due();
+            }
+            if (more) return;
+            done = next;
+            add_row(done);
+            if (is_accurate()) return;
+        }
+    }
+
+    double seconds() const {
+        return job_.record.seconds +
+               std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+    bool is_time_over() const {
+        return options_.time_limit && seconds() - job_.record.seconds >= *options_.time_limit;
+    }
+
+    bool is_accurate() const {
+        return options_.target_error && !rows_.empty() && rows_.back().error &&
+               std::sqrt(rows_.back().error->rel_mse) <= *options_.target_error;
+    }
+
+    void save_if_due() {
+        // A snapshot is also what remains if the device is lost.
+        constexpr double seconds_between_snapshots = 10;
+        const double interval = options_.save_every.value_or(seconds_between_snapshots);
+        const auto now = std::chrono::steady_clock::now();
+        if (std::chrono::duration<double>(now - last_save_).count() < interval) return;
+        last_save_ = now;
+        snapshot_ = renderer_.film().read();
+        if (options_.save_every) write_outputs();
+    }
+
+    void add_row(uint32_t samples) {
+        if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
+        ReportRow row{.samples = samples,
+                      .seconds = seconds(),
+                      .device_seconds = renderer_.device_seconds(),
+                      .rays = job_.record.rays + renderer_.rays(),
+                      .error = std::nullopt};
+        const FilmImage film = renderer_.film().read();
+        row.mean = film.mean_radiance();
+        if (reference_) {
+            row.error = compare(film.mean(), *reference_);
+        } else if (const uint32_t before = last_row_film_.min_samples(); before > 0 && samples == 2 * before) {
+            row.error = estimate_error(last_row_film_.mean(), second_half(last_row_film_, film).mean());
+        }
+        rows_.push_back(row);
+        last_row_film_ = film;
+        snapshot_ = film;
+    }
+
+    // The samples that came after `first` did.
+    static FilmImage second_half(const FilmImage& first, const FilmImage& whole) {
+        FilmImage rest = whole;
+        for (size_t i = 0; i < rest.pixels.size(); ++i) {
+            FilmPixel& pixel = rest.pixels[i];
+            const FilmPixel& before = first.pixels[i];
+            for (int channel = 0; channel < 3; ++channel) {
+                pixel.sum[channel] -= before.sum[channel];
+                pixel.compensation[channel] -= before.compensation[channel];
+            }
+            pixel.sample_count -= before.sample_count;
+        }
+        return rest;
+    }
+
+    void write_outputs() {
+        FilmRecord record = job_.record;
+        record.seconds = seconds();
+        record.rays += renderer_.rays();
+        const DisplayTransform transform = options_.view ? options_.view->display : DisplayTransform::exposure;
+        for (const auto& file : options_.outputs) {
+            const std::string ending = file.extension().string();
+            if (ending == ".exr") write_film(file, snapshot_, record);
+            else if (ending == ".hdr") write_hdr(file, snapshot_.mean());
+            else if (ending == ".png") write_png(file, to_display(snapshot_, transform, options_.exposure));
+            else write_jpg(file, to_display(snapshot_, transform, options_.exposure));
+        }
+        const ErrorSource source = reference_ ? ErrorSource::reference : ErrorSource::halves;
+        if (!options_.report.empty()) write_report(options_.report, snapshot_, record, source, rows_);
+    }
+
+    void print_summary() const {
+        const auto mean = snapshot_.mean_radiance();
+        const double new_seconds = seconds() - job_.record.seconds;
+        double paths = 0;
+        for (const auto& pixel : snapshot_.pixels) paths += pixel.sample_count;
+        std::printf("mean radiance  %.5g %.5g %.5g (red, green, blue)\n", mean[0], mean[1], mean[2]);
+        std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(), short_number(paths).c_str(),
+                    snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
+        std::printf("time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
+                    short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
+        if (!rows_.empty() && rows_.back().error)
+            std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n",
+                        100 * std::sqrt(rows_.back().error->rel_mse),
+                        reference_ ? "against the reference" : "estimated");
+        if (const uint64_t invalid = snapshot_.invalid_samples(); invalid > 0)
+            std::printf("invalid        %llu samples were infinite or not a number (magenta pixels)\n",
+                        static_cast<unsigned long long>(invalid));
+        for (const auto& file : options_.outputs) std::printf("picture        %s\n", file.string().c_str());
+        if (!options_.report.empty()) std::printf("report         %s\n", options_.report.string().c_str());
+    }
+
+    RenderJob job_;
+    const Options& options_;
+    Renderer& renderer_;
+    std::optional<Reference> reference_;
+    FilmImage snapshot_;       // last read from the device
+    FilmImage last_row_film_;  // at the last row of the report
+    std::vector<ReportRow> rows_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point last_save_;
+};
+
+}  // namespace
+
+void render_headless(const Device& device, const AccelerationStructure& acceleration_structure,
+                     const Estimator& estimator, const RenderJob& job) {
+    Renderer renderer(device, acceleration_structure, estimator, job.parameters);
+    HeadlessRender(job, renderer).run();
+}
+
+}  // namespace lab

@@ -1,0 +1,151 @@
+#include "app/options.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <iostream>
+
+#include "error.h"
+#include "gpu/shader_compiler.h"
+
+namespace lab {
+namespace {
+
+// Accepts finite numbers in [low, high]: `nan` and `inf` parse as numbers too.
+CLI::Validator within(double low, double high, const std::string& meaning) {
+    return {[=](std::string& text) -> std::string {
+                char* end = nullptr;
+                const double value = std::strtod(text.c_str(), &end);
+                if (end != text.c_str() && *end == '\0' && value >= low && value <= high) return {};
+                return "'" + text + "' is not " + meaning;
+            },
+            meaning};
+}
+
+CLI::Validator whole_number(uint32_t low, uint32_t high) {
+    const std::string meaning =
+        "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    return {[=](std::string& text) -> std::string {
+                const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+                if (digits && text.size() <= 10 && std::stoull(text) >= low && std::stoull(text) <= high) return {};
+                return "'" + text + "' is not " + meaning;
+            },
+            meaning};
+}
+
+void add_image_options(CLI::App& app, Options& options) {
+    constexpr uint32_t max_count = 4294967295u;
+    app.add_option("--width", options.width, "Pixels in a row")->check(whole_number(1, max_image_extent));
+    app.add_option("--height", options.height, "Pixels in a column")->check(whole_number(1, max_image_extent));
+    app.add_option("--samples", options.samples, "Samples a pixel")->check(whole_number(1, max_count));
+    app.add_option("--seed", options.seed, "Chooses the random numbers")->check(whole_number(0, max_count));
+    app.add_option("--first-sample", options.first_sample, "Index of the first sample: splits a render into ranges")
+        ->check(whole_number(0, max_count));
+    app.add_option("--max-path-length", options.max_path_length, "Bounces after which a path ends; 0: emission only")
+        ->check(whole_number(0, 1000000));
+    app.add_option("--only-path-length", options.only_path_length, "Show only light after exactly this many bounces")
+        ->check(whole_number(0, 1000000));
+    app.add_option("--target-error", options.target_error, "Stop when the relative error is below this: 0.01 is 1 %")
+        ->check(within(1e-12, 1e12, "a positive number"));
+    app.add_option("--time-limit", options.time_limit, "Stop after this many seconds")
+        ->check(within(1e-3, 1e9, "a positive number of seconds"));
+}
+
+void add_scene_options(CLI::App& app, Options& options) {
+    const auto finite = within(-1e30, 1e30, "a finite number");
+    const auto vector = [&](const char* name, std::optional<std::array<float, 3>>& value, const char* help) {
+        app.add_option(name, value, help)->delimiter(',')->check(finite)->type_name("X,Y,Z");
+    };
+    vector("--camera-position", options.camera_position, "Where the camera stands");
+    vector("--camera-target", options.camera_target, "What it looks at");
+    vector("--camera-up", options.camera_up, "What it holds upwards");
+    app.add_option("--vertical-fov", options.vertical_fov, "Angle between the picture's top and bottom in degrees")
+        ->check(within(1e-6, 179.999, "an angle between 0 and 180 degrees"));
+    app.add_option("--background", options.background, "Radiance of the sky; with a light probe its factor")
+        ->delimiter(',')
+        ->check(within(0, 1e30, "a radiance (finite and not negative)"))
+        ->type_name("R,G,B");
+    app.add_flag("--specular", options.specular, "Use the Phong lobe Ks, Ns of the materials");
+}
+
+void add_output_options(CLI::App& app, Options& options, std::string& view) {
+    std::vector<std::string> names;
+    for (const auto& known : views()) names.push_back(known.name);
+    app.add_option("--view", view, "Show something else than radiance")->check(CLI::IsMember(names));
+    app.add_option("--output", options.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
+        ->allow_extra_args(false);
+    app.add_option("--exposure", options.exposure, "Brightness of PNG and JPG in stops")
+        ->check(within(-100, 100, "a number from -100 to 100"));
+    app.add_option("--reference", options.reference, "EXR to compare with");
+    app.add_option("--report", options.report, "Error against samples and seconds (.json or .csv)");
+    app.add_option("--resume", options.resume, "EXR of an earlier run to continue");
+    app.add_option("--save-every", options.save_every, "Write the outputs every so many seconds")
+        ->check(within(1e-3, 1e9, "a positive number of seconds"));
+}
+
+void add_device_options(CLI::App& app, Options& options) {
+    app.add_option("--backend", options.backend, "How rays are traced")
+        ->check(CLI::IsMember({"auto", "pipeline", "query", "compute"}));
+    app.add_option("--device", options.device, "Number or part of the name of the device");
+    app.add_flag("--list-devices", options.list_devices, "Show the devices and what they lack");
+    app.add_flag("--headless")->description("Render without a window, which is also what happens without this flag");
+    app.add_flag("--validation", options.validation, "Check the use of Vulkan; any complaint is an error");
+    app.add_flag("--quiet", options.quiet, "Print errors only");
+}
+
+// A scene is a file or the name of one in assets/scenes.
+std::filesystem::path find_scene(const std::string& name) {
+    if (std::filesystem::exists(name)) return name;
+    const auto shipped = project_folder() / "assets" / "scenes" / (name + ".json");
+    return std::filesystem::exists(shipped) ? shipped : std::filesystem::path(name);
+}
+
+}  // namespace
+
+const std::vector<View>& views() {
+    static const std::vector<View> all{{"normals", "VIEW_NORMALS", DisplayTransform::as_is},
+                                       {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
+                                       {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
+                                       {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
+                                       {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
+                                       {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
+                                       {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
+                                       {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum}};
+    return all;
+}
+
+std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments) {
+    Options options;
+    std::string scene = chapter.default_scene, view;
+    CLI::App app(chapter.title, chapter.name);
+    app.set_version_flag("--version", chapter.name + " " LAB_VERSION);
+    app.add_option("scene", scene, "Scene file (.json or .obj) or the name of one in assets/scenes")
+        ->capture_default_str();
+    add_image_options(app, options);
+    add_scene_options(app, options);
+    add_output_options(app, options, view);
+    add_device_options(app, options);
+    try {
+        app.parse(argument_count, arguments);
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return std::nullopt;
+    } catch (const CLI::CallForVersion&) {
+        std::cout << app.version() << "\n";
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        std::string message = error.what();
+        std::replace(message.begin(), message.end(), '\n', ' ');
+        throw UserError(message + " (--help shows all options)");
+    }
+    options.scene = find_scene(scene);
+    for (const auto& known : views())
+        if (known.name == view) options.view = &known;
+    if (options.outputs.empty()) {
+        const std::string stem = chapter.name + (options.view ? "_" + options.view->name : "");
+        options.outputs = {std::filesystem::path("output") / (stem + ".png"),
+                           std::filesystem::path("output") / (stem + ".exr")};
+    }
+    return options;
+}
+
+}  // namespace lab

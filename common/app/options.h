@@ -1,0 +1,51 @@
+// The command line, the same for every chapter.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "app/chapter.h"
+#include "film/display.h"
+#include "scene/scene.h"
+
+namespace lab {
+
+// A picture of something else than radiance: what shaders/view.glsl shows when `define` is defined.
+struct View {
+    std::string name;
+    std::string define;
+    DisplayTransform display;
+};
+const std::vector<View>& views();
+
+struct Options {
+    std::filesystem::path scene;
+    std::optional<uint32_t> width, height, samples, max_path_length;
+    std::optional<uint32_t> only_path_length;
+    uint32_t seed = 1;
+    uint32_t first_sample = 0;
+    std::string backend = "auto";
+    std::string device;
+    bool list_devices = false;
+    std::vector<std::filesystem::path> outputs;
+    std::filesystem::path reference;
+    std::filesystem::path report;
+    std::optional<double> target_error;  // square root of rel_mse
+    std::optional<double> time_limit;    // seconds
+    const View* view = nullptr;
+    std::optional<std::array<float, 3>> camera_position, camera_target, camera_up, background;
+    std::optional<float> vertical_fov;  // degrees
+    bool specular = false;
+    float exposure = 0;  // stops
+    std::filesystem::path resume;
+    std::optional<double> save_every;  // seconds
+    bool validation = false;
+    bool quiet = false;
+};
+
+// Parses the command line. Returns nothing where the program is already done (--help, --version), after printing.
+// Throws UserError with one line for anything it does not understand.
+std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments);
+
+}  // namespace lab

@@ -1,0 +1,69 @@
+#include "app/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lab {
+
+Progress::Progress(uint32_t target_samples, double first_samples, bool quiet)
+    : target_samples_(target_samples), first_samples_(first_samples), quiet_(quiet), terminal_(isatty(2)) {}
+
+Progress::~Progress() {
+    if (printed_ && terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(double samples, uint64_t rays) {
+    if (quiet_) return;
+    const auto now = Clock::now();
+    // A log file gets a line now and then, a terminal one line that is rewritten.
+    const double interval = terminal_ ? 0.2 : 10.0;
+    if (std::chrono::duration<double>(now - last_).count() < interval) return;
+    last_ = now;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const double rate = (samples - first_samples_) / seconds;
+    const double fraction = std::min(samples / target_samples_, 1.0);
+    constexpr int bar_width = 24;
+    const int filled = static_cast<int>(fraction * bar_width);
+    std::string line = "[" + std::string(filled, '#') + std::string(bar_width - filled, '.') + "] ";
+    char text[160];
+    std::snprintf(text, sizeof text, "%.4g/%u samples  %s samples/s  %s rays/s  %s left", samples, target_samples_,
+                  short_number(rate).c_str(), short_number(static_cast<double>(rays) / seconds).c_str(),
+                  rate > 0 ? duration_text((target_samples_ - samples) / rate).c_str() : "?");
+    print(line + text);
+}
+
+void Progress::print(const std::string& line) {
+    if (terminal_) std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    else std::fprintf(stderr, "%s\n", line.c_str());
+    std::fflush(stderr);
+    printed_ = true;
+}
+
+std::string short_number(double number) {
+    const char* prefixes[] = {"", " k", " M", " G", " T"};
+    size_t prefix = 0;
+    while (number >= 999.5 && prefix + 1 < std::size(prefixes)) {
+        number /= 1000;
+        ++prefix;
+    }
+    char text[40];
+    std::snprintf(text, sizeof text, "%.3g%s", number, prefixes[prefix]);
+    return text;
+}
+
+std::string duration_text(double seconds) {
+    char text[64];
+    if (seconds < 60) {
+        std::snprintf(text, sizeof text, "%.3g s", seconds);
+    } else {
+        const auto whole = std::llround(std::min(seconds, 1e12));
+        if (whole < 3600) std::snprintf(text, sizeof text, "%lld min %02lld s", whole / 60, whole % 60);
+        else std::snprintf(text, sizeof text, "%lld h %02lld min", whole / 3600, whole / 60 % 60);
+    }
+    return text;
+}
+
+}  // namespace lab

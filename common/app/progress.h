@@ -1,0 +1,35 @@
+// Tells on the terminal how far a long render is.
+#pragma once
+#include <chrono>
+#include <string>
+
+namespace lab {
+
+class Progress {
+  public:
+    // `target_samples` a pixel. A quiet progress prints nothing.
+    Progress(uint32_t target_samples, double first_samples, bool quiet);
+    ~Progress();
+
+    // `samples` a pixel and `rays` of this run so far; prints a few times a second.
+    void update(double samples, uint64_t rays);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    void print(const std::string& line);
+
+    uint32_t target_samples_;
+    double first_samples_;
+    bool quiet_;
+    bool terminal_;
+    bool printed_ = false;
+    Clock::time_point start_ = Clock::now();
+    Clock::time_point last_ = start_;
+};
+
+// "1.23 M" for 1234567, "950" for 950: three digits and a prefix.
+std::string short_number(double number);
+// "12.3 s", "4 min 05 s", "1 h 02 min".
+std::string duration_text(double seconds);
+
+}  // namespace lab

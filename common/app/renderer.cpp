@@ -1,0 +1,78 @@
+#include "app/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace lab {
+
+uvec2 seed_key(uint32_t seed) {
+    // SplitMix64 spreads neighbouring seeds over all 64 bits (Steele, Lea and Flood, OOPSLA 2014).
+    uint64_t z = (uint64_t{seed} + 1) * 0x9e3779b97f4a7c15ull;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    z ^= z >> 31;
+    return {static_cast<uint32_t>(z), static_cast<uint32_t>(z >> 32)};
+}
+
+Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
+                   const Estimator& estimator, const RenderParameters& parameters)
+    : device_(&device),
+      parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
+      ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
+                    Buffer::Location::host),
+      film_(device, parameters.image_size.x, parameters.image_size.y) {
+    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
+                                        storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
+    tracer_ = acceleration_structure.make_tracer(estimator, bindings);
+}
+
+uint32_t Renderer::block_count() const {
+    return ((film_.width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH) * ((film_.height() + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
+}
+
+double Renderer::samples() const {
+    return finished_samples_ +
+           static_cast<double>(next_block_) * (pass_samples_ - finished_samples_) / block_count();
+}
+
+void Renderer::resume(const FilmImage& image) {
+    film_.write(image);
+    finished_samples_ = image.min_samples();
+    next_block_ = 0;
+}
+
+bool Renderer::advance(uint32_t target_samples) {
+    if (finished_samples_ >= target_samples) return false;
+    // A pass brings all blocks to pass_samples_: several samples at a time if all blocks fit into one dispatch.
+    const uint32_t blocks = block_count();
+    if (next_block_ == 0) {
+        const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, 1.0));
+        pass_samples_ = finished_samples_ + std::min(step, target_samples - finished_samples_);
+    }
+    const uint32_t step = pass_samples_ - finished_samples_;
+    const double fitting = std::max(blocks_per_dispatch_ / step, 1.0);
+    const uint32_t group_limit = device_->limits().maxComputeWorkGroupCount[0];
+    const uint32_t count = static_cast<uint32_t>(
+        std::min({fitting, static_cast<double>(group_limit), static_cast<double>(blocks - next_block_)}));
+
+    const auto counters = ray_counters_.mapped<uint32_t>();
+    std::fill(counters.begin(), counters.end(), 0);
+    const auto start = std::chrono::steady_clock::now();
+    device_seconds_ += device_->submit([&](const vk::raii::CommandBuffer& commands) {
+        tracer_->record(commands, {next_block_, pass_samples_}, count);
+    });
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    for (const uint32_t counter : counters) rays_ += counter;
+
+    // Blocks differ in cost, so the rate follows the last dispatch and grows by a bounded factor.
+    const double work = static_cast<double>(count) * step;
+    blocks_per_dispatch_ = std::clamp(work * dispatch_seconds_ / std::max(seconds, 1e-6), 1.0, 4 * work);
+    next_block_ += count;
+    if (next_block_ == blocks) {
+        next_block_ = 0;
+        finished_samples_ = pass_samples_;
+    }
+    return finished_samples_ < target_samples;
+}
+
+}  // namespace lab

@@ -1,0 +1,50 @@
+// Renders an estimator progressively, cut into dispatches of bounded time.
+#pragma once
+#include "film/film.h"
+#include "tracing/tracer.h"
+
+namespace lab {
+
+// Key of the random start states for a seed.
+uvec2 seed_key(uint32_t seed);
+
+class Renderer {
+  public:
+    // The device and the acceleration structure must outlive the renderer.
+    Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
+             const RenderParameters& parameters);
+
+    // One dispatch of about `dispatch_seconds` on the way to `target_samples` samples in every pixel; true while more
+    // are needed. Short dispatches keep driver watchdogs quiet and the program responsive: one sample of a large image
+    // can take a minute on a slow device.
+    bool advance(uint32_t target_samples);
+
+    Film& film() { return film_; }
+    uint64_t rays() const { return rays_; }                     // traced so far
+    double device_seconds() const { return device_seconds_; }   // spent by the device so far
+    // Samples per pixel so far, averaged over the image.
+    double samples() const;
+
+    // Goes on from an image of the same size instead of from nothing.
+    void resume(const FilmImage& image);
+    void set_dispatch_seconds(double seconds) { dispatch_seconds_ = seconds; }
+
+  private:
+    uint32_t block_count() const;
+
+    const Device* device_;
+    Buffer parameters_;
+    Buffer ray_counters_;
+    Film film_;
+    std::unique_ptr<Tracer> tracer_;
+
+    double dispatch_seconds_ = 0.1;
+    double blocks_per_dispatch_ = 64;  // times samples; adapts to the device's speed
+    uint32_t finished_samples_ = 0;    // that every pixel has
+    uint32_t pass_samples_ = 0;        // that the blocks before next_block_ have
+    uint32_t next_block_ = 0;
+    uint64_t rays_ = 0;
+    double device_seconds_ = 0;
+};
+
+}  // namespace lab

@@ -1,0 +1,74 @@
+#include "film/error_metrics.h"
+
+#include <cmath>
+#include <functional>
+
+namespace lab {
+namespace {
+
+// `squared_error(i)` and `variance(i)` of number i of the image, relative to the values of `scale`.
+ErrorMetrics metrics(const Image& scale, const std::function<double(size_t)>& squared_error,
+                     const std::function<double(size_t)>& variance) {
+    const size_t size = scale.pixels.size();
+    double mean = 0;
+    for (const float value : scale.pixels) mean += value;
+    mean /= static_cast<double>(size);
+    ErrorMetrics sums;
+    for (size_t i = 0; i < size; ++i) {
+        const double r = scale.pixels[i];
+        // A black reference has no scale: its relative error is the absolute one.
+        const double weight = mean > 0 ? 1 / (r * r + 0.01 * mean * mean) : 1;
+        sums.mse_uncorrected += squared_error(i);
+        sums.rel_mse_uncorrected += weight * squared_error(i);
+        sums.mse -= variance(i);
+        sums.rel_mse -= weight * variance(i);
+    }
+    const double count = static_cast<double>(size);
+    ErrorMetrics result;
+    result.mse_uncorrected = sums.mse_uncorrected / count;
+    result.rel_mse_uncorrected = sums.rel_mse_uncorrected / count;
+    result.mse = std::max(result.mse_uncorrected + sums.mse / count, 0.0);
+    result.rel_mse = std::max(result.rel_mse_uncorrected + sums.rel_mse / count, 0.0);
+    result.rel_rmse = std::sqrt(result.mse) / (mean > 0 ? mean : 1);
+    return result;
+}
+
+}  // namespace
+
+Reference read_reference(const std::filesystem::path& file) {
+    ExrFile exr = read_exr(file);
+    Reference reference{std::move(exr.image), std::nullopt};
+    Image variance{reference.mean.width, reference.mean.height, std::vector<float>(reference.mean.pixels.size())};
+    const std::array<std::string, 3> names{"variance.R", "variance.G", "variance.B"};
+    for (size_t channel = 0; channel < 3; ++channel) {
+        const auto found = exr.channels.find(names[channel]);
+        if (found == exr.channels.end()) return reference;
+        for (size_t i = 0; i < found->second.size(); ++i) variance.pixels[3 * i + channel] = found->second[i];
+    }
+    reference.variance = std::move(variance);
+    return reference;
+}
+
+ErrorMetrics compare(const Image& image, const Reference& reference) {
+    return metrics(
+        reference.mean,
+        [&](size_t i) {
+            const double error = double{image.pixels[i]} - double{reference.mean.pixels[i]};
+            return error * error;
+        },
+        [&](size_t i) { return reference.variance ? double{reference.variance->pixels[i]} : 0; });
+}
+
+ErrorMetrics estimate_error(const Image& first, const Image& second) {
+    Image mean = first;
+    for (size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
+    return metrics(
+        mean,
+        [&](size_t i) {
+            const double difference = double{first.pixels[i]} - double{second.pixels[i]};
+            return difference * difference / 4;
+        },
+        [](size_t) { return 0.0; });
+}
+
+}  // namespace lab

@@ -1,0 +1,34 @@
+// How far an image is from a reference, or from its own expectation.
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "image/image.h"
+
+namespace lab {
+
+// With a reference x - r is the error; the variance of the reference, where known, is subtracted.
+struct ErrorMetrics {
+    double mse = 0;                  // mean over pixels and channels of (x - r)^2
+    double rel_mse = 0;              // mean of (x - r)^2 / (r^2 + 0.01 r̄^2), r̄ the mean of the reference
+    double rel_rmse = 0;             // sqrt(mse) / r̄
+    double mse_uncorrected = 0;      // without the subtraction
+    double rel_mse_uncorrected = 0;  // without the subtraction
+};
+
+struct Reference {
+    Image mean;
+    std::optional<Image> variance;  // of the mean, from the channels variance.R, variance.G, variance.B
+};
+
+// Throws UserError if the file is damaged.
+Reference read_reference(const std::filesystem::path& file);
+
+// Both images have the same size.
+ErrorMetrics compare(const Image& image, const Reference& reference);
+
+// Expected error of the mean (first + second) / 2 of two independent renders with equally many samples, estimated from
+// their difference: its expected square is four times the variance of the mean.
+ErrorMetrics estimate_error(const Image& first, const Image& second);
+
+}  // namespace lab

@@ -1,0 +1,59 @@
+#include "film/film.h"
+
+#include <algorithm>
+
+namespace lab {
+
+uint32_t FilmImage::min_samples() const {
+    const auto fewest = std::min_element(pixels.begin(), pixels.end(), [](const FilmPixel& a, const FilmPixel& b) {
+        return a.sample_count < b.sample_count;
+    });
+    return fewest == pixels.end() ? 0 : fewest->sample_count;
+}
+
+uint64_t FilmImage::invalid_samples() const {
+    uint64_t count = 0;
+    for (const auto& pixel : pixels) count += pixel.invalid_count;
+    return count;
+}
+
+Image FilmImage::mean() const {
+    Image image{width, height, {}};
+    image.pixels.reserve(3 * pixels.size());
+    for (const auto& pixel : pixels)
+        for (int channel = 0; channel < 3; ++channel) {
+            const double sum = double{pixel.sum[channel]} + double{pixel.compensation[channel]};
+            image.pixels.push_back(static_cast<float>(sum / std::max(pixel.sample_count, 1u)));
+        }
+    return image;
+}
+
+std::array<double, 3> FilmImage::mean_radiance() const {
+    std::array<double, 3> mean{};
+    for (const auto& pixel : pixels)
+        for (int channel = 0; channel < 3; ++channel) {
+            const double sum = double{pixel.sum[channel]} + double{pixel.compensation[channel]};
+            mean[static_cast<size_t>(channel)] += sum / std::max(pixel.sample_count, 1u);
+        }
+    for (double& channel : mean) channel /= static_cast<double>(std::max<size_t>(pixels.size(), 1));
+    return mean;
+}
+
+Film::Film(const Device& device, uint32_t width, uint32_t height)
+    : width_(width),
+      height_(height),
+      buffer_(device, size_t{width} * height * sizeof(FilmPixel), vk::BufferUsageFlagBits::eStorageBuffer) {
+    write({width, height, std::vector<FilmPixel>(size_t{width} * height, FilmPixel{})});
+}
+
+FilmImage Film::read() const {
+    FilmImage image{width_, height_, std::vector<FilmPixel>(size_t{width_} * height_)};
+    buffer_.read(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
+    return image;
+}
+
+void Film::write(const FilmImage& image) {
+    buffer_.write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
+}
+
+}  // namespace lab

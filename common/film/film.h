@@ -1,0 +1,41 @@
+// The film collects the samples of all pixels on the device and keeps them exactly enough for 10^7 samples a pixel.
+#pragma once
+#include <vector>
+
+#include "gpu/compute_kernel.h"
+#include "image/image.h"
+#include "shaders/interface.h"
+
+namespace lab {
+
+// The film's contents on the host: pixels row by row from the top.
+struct FilmImage {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<FilmPixel> pixels;
+
+    uint32_t min_samples() const;       // samples that every pixel has
+    uint64_t invalid_samples() const;   // samples that were infinite or not a number
+    Image mean() const;                 // mean radiance of a pixel; 0 where there are no samples
+    std::array<double, 3> mean_radiance() const;  // of the whole image
+};
+
+class Film {
+  public:
+    // Starts without samples.
+    Film(const Device& device, uint32_t width, uint32_t height);
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    Binding binding() const { return storage_binding(BINDING_FILM, buffer_); }
+
+    FilmImage read() const;
+    void write(const FilmImage& image);  // of the same size
+
+  private:
+    uint32_t width_;
+    uint32_t height_;
+    Buffer buffer_;
+};
+
+}  // namespace lab

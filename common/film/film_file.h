@@ -1,0 +1,45 @@
+// The film as an OpenEXR file: at once picture, record of the settings and checkpoint to continue from.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+
+namespace lab {
+
+// How a film came about; written as string attributes of the EXR.
+struct FilmRecord {
+    std::string chapter;
+    std::string scene;       // file name
+    std::string scene_hash;  // of all its files
+    std::string settings;    // the options that change the expected image, in a fixed order
+    std::string backend;
+    std::string device;
+    uint32_t seed = 0;
+    uint32_t first_sample = 0;
+    uint64_t rays = 0;
+    double seconds = 0;  // of rendering
+};
+
+// Pixels may have different numbers of samples (an interrupted render): the channel `samples` then holds them.
+// Where samples were invalid, the channel `invalid_samples` holds their number.
+void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record);
+
+struct FilmFile {
+    FilmImage image;
+    FilmRecord record;
+};
+
+// Throws UserError if the file is not one that write_film() wrote.
+FilmFile read_film(const std::filesystem::path& file);
+
+// Throws UserError if the two do not show the same: size, chapter, scene, settings or seed differ. The names are for
+// the message.
+void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a, const std::string& name_b);
+
+// Joins renders of adjacent ranges of samples, in any order, into the render of the whole range.
+// Throws UserError if ranges overlap, leave a gap or are unfinished, or if the renders do not belong together.
+FilmFile merge_films(const std::vector<std::filesystem::path>& files);
+
+}  // namespace lab

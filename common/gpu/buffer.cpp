@@ -1,0 +1,133 @@
+#include "gpu/buffer.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "error.h"
+
+namespace lab {
+namespace {
+
+constexpr auto host_visible = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
+
+struct Allocation {
+    vk::raii::DeviceMemory memory;
+    vk::MemoryPropertyFlags properties;
+};
+
+std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
+
+// Memory of a type that has all `required` properties and, where there is a choice, the preferred ones.
+Allocation allocate(const Device& device, const vk::MemoryRequirements& requirements,
+                    vk::MemoryPropertyFlags required, vk::MemoryPropertyFlags preferred) {
+    const auto memory = device.physical().getMemoryProperties();
+    for (const auto wanted : {required | preferred, required})
+        for (uint32_t type = 0; type < memory.memoryTypeCount; ++type) {
+            const auto properties = memory.memoryTypes[type].propertyFlags;
+            if (!(requirements.memoryTypeBits >> type & 1) || (properties & wanted) != wanted) continue;
+            try {
+                return {{device.handle(), vk::MemoryAllocateInfo(requirements.size, type)}, properties};
+            } catch (const vk::OutOfDeviceMemoryError&) {
+            } catch (const vk::OutOfHostMemoryError&) {
+            }
+            const auto heap = memory.memoryHeaps[memory.memoryTypes[type].heapIndex].size;
+            throw DeviceFailure("out of device memory: " + mebibytes(requirements.size) +
+                                " more are needed and the device has " + mebibytes(heap) +
+                                " in all: use a smaller image or scene");
+        }
+    throw DeviceError("the device has no suitable kind of memory");
+}
+
+}  // namespace
+
+Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location)
+    : device_(&device), size_(std::max<size_t>(size, 16)) {
+    const auto limit = usage & vk::BufferUsageFlagBits::eUniformTexelBuffer
+                           ? size_t{16} * device.limits().maxTexelBufferElements
+                           : size_t{device.limits().maxStorageBufferRange};
+    if (size_ > limit)
+        throw DeviceFailure("the scene or image needs a buffer of " + mebibytes(size_) + ", the device allows " +
+                            mebibytes(limit) + ": use a smaller one");
+    usage |= vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
+    buffer_ = {device.handle(), vk::BufferCreateInfo({}, size_, usage)};
+    const auto required = location == Location::host ? host_visible : vk::MemoryPropertyFlags();
+    const auto preferred = location == Location::host ? vk::MemoryPropertyFlagBits::eHostCached
+                                                      : vk::MemoryPropertyFlagBits::eDeviceLocal;
+    auto [memory, properties] = allocate(device, buffer_.getMemoryRequirements(), required, preferred);
+    memory_ = std::move(memory);
+    buffer_.bindMemory(*memory_, 0);
+    if ((properties & host_visible) == host_visible) mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
+}
+
+void Buffer::write(const void* data, size_t size) {
+    if (mapped_) {
+        std::memcpy(mapped_, data, size);
+    } else if (size > 0) {
+        Buffer staging(*device_, size, {}, Location::host);
+        staging.write(data, size);
+        device_->submit([&](const vk::raii::CommandBuffer& commands) {
+            commands.copyBuffer(staging.handle(), handle(), vk::BufferCopy(0, 0, size));
+        });
+    }
+}
+
+void Buffer::read(void* data, size_t size) const {
+    if (mapped_) {
+        std::memcpy(data, mapped_, size);
+    } else if (size > 0) {
+        const Buffer staging(*device_, size, {}, Location::host);
+        device_->submit([&](const vk::raii::CommandBuffer& commands) {
+            commands.copyBuffer(handle(), staging.handle(), vk::BufferCopy(0, 0, size));
+        });
+        staging.read(data, size);
+    }
+}
+
+SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
+                           std::span<const std::byte> pixels, vk::SamplerAddressMode address_v) {
+    if (std::max(width, height) > device.limits().maxImageDimension2D)
+        throw DeviceFailure("an image of " + std::to_string(width) + "x" + std::to_string(height) +
+                            " is larger than the device allows (" +
+                            std::to_string(device.limits().maxImageDimension2D) + "): make it smaller");
+    const auto filtered =
+        vk::FormatFeatureFlagBits::eSampledImageFilterLinear | vk::FormatFeatureFlagBits::eSampledImage;
+    if ((device.physical().getFormatProperties(format).optimalTilingFeatures & filtered) != filtered)
+        throw DeviceError("the device cannot filter images of format " + vk::to_string(format) +
+                          ": choose another device with --device");
+    image_ = {device.handle(),
+              vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
+                                  vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                                  vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst)};
+    memory_ =
+        allocate(device, image_.getMemoryRequirements(), {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
+    image_.bindMemory(*memory_, 0);
+
+    Buffer staging(device, pixels.size(), {}, Buffer::Location::host);
+    staging.write(pixels.data(), pixels.size());
+    const vk::ImageSubresourceRange whole(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1);
+    device.submit([&](const vk::raii::CommandBuffer& commands) {
+        const auto move_to = [&](vk::ImageLayout from, vk::ImageLayout to, vk::AccessFlags before,
+                                 vk::AccessFlags after, vk::PipelineStageFlags source,
+                                 vk::PipelineStageFlags destination) {
+            commands.pipelineBarrier(source, destination, {}, {}, {},
+                                     vk::ImageMemoryBarrier(before, after, from, to, VK_QUEUE_FAMILY_IGNORED,
+                                                            VK_QUEUE_FAMILY_IGNORED, *image_, whole));
+        };
+        move_to(vk::ImageLayout::eUndefined, vk::ImageLayout::eTransferDstOptimal, {},
+                vk::AccessFlagBits::eTransferWrite, vk::PipelineStageFlagBits::eTopOfPipe,
+                vk::PipelineStageFlagBits::eTransfer);
+        commands.copyBufferToImage(staging.handle(), *image_, vk::ImageLayout::eTransferDstOptimal,
+                                   vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {},
+                                                       {width, height, 1}));
+        move_to(vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::eShaderReadOnlyOptimal,
+                vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eShaderRead,
+                vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eComputeShader);
+    });
+    view_ = {device.handle(), vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole)};
+    vk::SamplerCreateInfo sampler({}, vk::Filter::eLinear, vk::Filter::eLinear);
+    sampler.addressModeU = vk::SamplerAddressMode::eRepeat;
+    sampler.addressModeV = address_v;
+    sampler_ = {device.handle(), sampler};
+}
+
+}  // namespace lab

@@ -1,0 +1,59 @@
+#include "gpu/cache.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace lab {
+namespace {
+
+std::filesystem::path cache_folder() {
+    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
+        return std::filesystem::path(folder) / "path_tracing_lab";
+    const char* home = std::getenv("HOME");
+    return std::filesystem::path(home && *home ? home : "/tmp") / ".cache" / "path_tracing_lab";
+}
+
+// The last eight bytes of an entry are the hash of the others.
+uint64_t checksum(const uint8_t* bytes, size_t size) {
+    return hash_text({reinterpret_cast<const char*>(bytes), size});
+}
+
+}  // namespace
+
+uint64_t hash_text(std::string_view text, uint64_t hash) {
+    for (const char c : text) hash = (hash ^ static_cast<uint8_t>(c)) * 1099511628211ull;
+    return hash;
+}
+
+std::optional<std::vector<uint8_t>> read_cache(const std::string& name) {
+    std::ifstream stream(cache_folder() / name, std::ios::binary);
+    std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    uint64_t stored = 0;
+    if (bytes.size() < sizeof stored) return std::nullopt;
+    const size_t size = bytes.size() - sizeof stored;
+    std::memcpy(&stored, bytes.data() + size, sizeof stored);
+    if (stored != checksum(bytes.data(), size)) return std::nullopt;
+    bytes.resize(size);
+    return bytes;
+}
+
+void write_cache(const std::string& name, const std::vector<uint8_t>& contents) {
+    std::error_code ignored;
+    const auto folder = cache_folder();
+    std::filesystem::create_directories(folder, ignored);
+    const auto temporary = folder / (name + "." + std::to_string(getpid()));
+    const uint64_t sum = checksum(contents.data(), contents.size());
+    std::ofstream stream(temporary, std::ios::binary);
+    stream.write(reinterpret_cast<const char*>(contents.data()), static_cast<std::streamsize>(contents.size()));
+    stream.write(reinterpret_cast<const char*>(&sum), sizeof sum);
+    stream.close();
+    if (stream) std::filesystem::rename(temporary, folder / name, ignored);
+    else std::filesystem::remove(temporary, ignored);
+}
+
+}  // namespace lab

@@ -1,0 +1,51 @@
+// A compute shader with the resources it reads and writes.
+#pragma once
+#include <span>
+
+#include "gpu/buffer.h"
+#include "gpu/shader_compiler.h"
+
+namespace lab {
+
+// What one binding of descriptor set 0 refers to.
+struct Binding {
+    uint32_t index;
+    vk::DescriptorType type;
+    std::vector<vk::DescriptorBufferInfo> buffers = {};
+    std::vector<vk::DescriptorImageInfo> images = {};
+    std::vector<vk::BufferView> texel_views = {};
+};
+
+Binding storage_binding(uint32_t index, const Buffer& buffer);
+Binding uniform_binding(uint32_t index, const Buffer& buffer);
+
+class DescriptorSet {
+  public:
+    DescriptorSet(const Device& device, std::span<const Binding> bindings, vk::ShaderStageFlags stages);
+
+    vk::DescriptorSetLayout layout() const { return *layout_; }
+    vk::DescriptorSet handle() const { return *set_; }
+
+  private:
+    vk::raii::DescriptorSetLayout layout_ = nullptr;
+    vk::raii::DescriptorPool pool_ = nullptr;
+    vk::raii::DescriptorSet set_ = nullptr;
+};
+
+class ComputeKernel {
+  public:
+    // `push_constant_size` in bytes. Throws UserError if the shader does not compile.
+    ComputeKernel(const Device& device, const ShaderSource& source, std::span<const Binding> bindings,
+                  uint32_t push_constant_size);
+
+    // Starts `group_count` workgroups in a row.
+    void record(const vk::raii::CommandBuffer& commands, const void* push_constants, uint32_t group_count) const;
+
+  private:
+    DescriptorSet descriptors_;
+    uint32_t push_constant_size_;
+    vk::raii::PipelineLayout layout_ = nullptr;
+    vk::raii::Pipeline pipeline_ = nullptr;
+};
+
+}  // namespace lab

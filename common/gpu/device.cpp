@@ -1,0 +1,242 @@
+#include "gpu/device.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "error.h"
+#include "gpu/cache.h"
+
+namespace lab {
+namespace {
+
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+std::string version_text(uint32_t version) {
+    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) +
+           "." + std::to_string(VK_API_VERSION_PATCH(version));
+}
+
+std::string kind_text(vk::PhysicalDeviceType type) {
+    switch (type) {
+        case vk::PhysicalDeviceType::eDiscreteGpu: return "discrete GPU";
+        case vk::PhysicalDeviceType::eIntegratedGpu: return "integrated GPU";
+        case vk::PhysicalDeviceType::eVirtualGpu: return "virtual GPU";
+        case vk::PhysicalDeviceType::eCpu: return "CPU";
+        default: return "other";
+    }
+}
+
+// The feature structures that a device needs for every chapter, chained for queries and for device creation.
+using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>;
+
+DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
+    const auto properties =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+    const auto& general = properties.get<vk::PhysicalDeviceProperties2>().properties;
+    const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
+    DeviceDescription description{
+        .name = general.deviceName.data(),
+        .kind = kind_text(general.deviceType),
+        .driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data(),
+        .api_version = version_text(general.apiVersion),
+        .missing = {},
+    };
+    if (general.apiVersion < VK_API_VERSION_1_2) {
+        description.missing.push_back("Vulkan 1.2");
+        return description;
+    }
+    const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
+    if (!vulkan12.scalarBlockLayout) description.missing.push_back("scalarBlockLayout");
+    if (!vulkan12.shaderSampledImageArrayNonUniformIndexing)
+        description.missing.push_back("shaderSampledImageArrayNonUniformIndexing");
+    const auto families = device.getQueueFamilyProperties();
+    if (std::none_of(families.begin(), families.end(), [](const vk::QueueFamilyProperties& family) {
+            return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
+        }))
+        description.missing.push_back("a compute queue with timestamps");
+    return description;
+}
+
+vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation) {
+    const vk::ApplicationInfo application("path tracing lab", 1, nullptr, 0, VK_API_VERSION_1_2);
+    std::vector<const char*> layers, extensions;
+    if (validation) {
+        const auto available = context.enumerateInstanceLayerProperties();
+        if (std::none_of(available.begin(), available.end(), [](const vk::LayerProperties& layer) {
+                return std::strcmp(layer.layerName, validation_layer) == 0;
+            }))
+            throw DeviceError("the Vulkan validation layer is not installed: install vulkan-validationlayers");
+        layers.push_back(validation_layer);
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    }
+    return {context, vk::InstanceCreateInfo({}, &application, layers, extensions)};
+}
+
+vk::raii::Context load_vulkan() {
+    try {
+        return {};
+    } catch (const std::exception&) {
+        throw DeviceError("the Vulkan loader is missing: install libvulkan1 and a driver such as mesa-vulkan-drivers");
+    }
+}
+
+std::vector<vk::raii::PhysicalDevice> enumerate_devices(const vk::raii::Instance& instance) {
+    std::vector<vk::raii::PhysicalDevice> devices;
+    try {
+        for (auto& device : vk::raii::PhysicalDevices(instance)) devices.push_back(std::move(device));
+    } catch (const vk::SystemError&) {
+    }
+    if (devices.empty())
+        throw DeviceError(
+            "no Vulkan device: install a driver, for example mesa-vulkan-drivers (it also has a CPU device)");
+    return devices;
+}
+
+std::string lower_case(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+// Index of the chosen device: by number, by part of a name, or the fastest kind among those that can be used.
+size_t choose_device(const std::vector<DeviceDescription>& devices, const std::string& choice) {
+    if (!choice.empty() && choice.find_first_not_of("0123456789") == std::string::npos) {
+        if (choice.size() < 6 && std::stoul(choice) < devices.size()) return std::stoul(choice);
+    } else if (!choice.empty()) {
+        for (size_t i = 0; i < devices.size(); ++i)
+            if (lower_case(devices[i].name).find(lower_case(choice)) != std::string::npos) return i;
+    } else {
+        for (const char* kind : {"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"})
+            for (size_t i = 0; i < devices.size(); ++i)
+                if (devices[i].kind == kind && devices[i].missing.empty()) return i;
+        return 0;
+    }
+    throw DeviceError("no device '" + choice + "': --list-devices shows the " + std::to_string(devices.size()) +
+                      " there are");
+}
+
+}  // namespace
+
+Device::Device(const DeviceOptions& options) : context_(load_vulkan()) {
+    try {
+        instance_ = create_instance(context_, options.validation);
+    } catch (const vk::SystemError&) {
+        throw DeviceError("no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
+    }
+    if (options.validation) {
+        // The C structure: Vulkan-Hpp changed the callback's parameter types between releases.
+        VkDebugUtilsMessengerCreateInfoEXT info{};
+        info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+        info.messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+        info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+        info.pfnUserCallback = receive_message;
+        info.pUserData = &messages_;
+        messenger_ = {instance_, vk::DebugUtilsMessengerCreateInfoEXT(info)};
+    }
+    auto devices = enumerate_devices(instance_);
+    std::vector<DeviceDescription> descriptions;
+    for (const auto& device : devices) descriptions.push_back(describe(device));
+    const size_t chosen = choose_device(descriptions, options.choice);
+    description_ = descriptions[chosen];
+    if (!description_.missing.empty())
+        throw DeviceError("device '" + description_.name + "' lacks " + description_.missing.front() +
+                          ": choose another with --device (see --list-devices) or update its driver");
+    physical_ = std::move(devices[chosen]);
+    limits_ = physical_.getProperties().limits;
+    create_device();
+    load_pipeline_cache();
+}
+
+void Device::create_device() {
+    const auto families = physical_.getQueueFamilyProperties();
+    while (!(families[queue_family_].queueFlags & vk::QueueFlagBits::eCompute) ||
+           families[queue_family_].timestampValidBits == 0)
+        ++queue_family_;
+    const float priority = 1;
+    const vk::DeviceQueueCreateInfo queue({}, queue_family_, 1, &priority);
+    Features features;
+    auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
+    vulkan12.scalarBlockLayout = true;
+    vulkan12.shaderSampledImageArrayNonUniformIndexing = true;
+    vk::DeviceCreateInfo info({}, queue);
+    info.pNext = &features.get();
+    device_ = {physical_, info};
+    queue_ = device_.getQueue(queue_family_, 0);
+    command_pool_ = {device_, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_}};
+    command_buffer_ =
+        std::move(vk::raii::CommandBuffers(device_, {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
+    fence_ = {device_, vk::FenceCreateInfo()};
+    timestamps_ = {device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)};
+}
+
+double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
+    command_buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    command_buffer_.resetQueryPool(*timestamps_, 0, 2);
+    // Whatever earlier submissions wrote is visible to this one, and what it writes is visible to the host.
+    const auto all = vk::PipelineStageFlagBits::eAllCommands;
+    const auto written = vk::AccessFlagBits::eMemoryWrite;
+    command_buffer_.pipelineBarrier(
+        all, all, {},
+        vk::MemoryBarrier(written, vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite), {}, {});
+    command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eTopOfPipe, *timestamps_, 0);
+    record(command_buffer_);
+    command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, 1);
+    command_buffer_.pipelineBarrier(all, vk::PipelineStageFlagBits::eHost, {},
+                                    vk::MemoryBarrier(written, vk::AccessFlagBits::eHostRead), {}, {});
+    command_buffer_.end();
+    queue_.submit(vk::SubmitInfo({}, {}, *command_buffer_), *fence_);
+    if (device_.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
+        throw DeviceFailure("the device did not finish its work");
+    device_.resetFences(*fence_);
+    const auto [result, ticks] = timestamps_.getResults<uint64_t>(
+        0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    return static_cast<double>(ticks[1] - ticks[0]) * static_cast<double>(limits_.timestampPeriod) * 1e-9;
+}
+
+VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT type,
+                                 const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages) {
+    auto& received = *static_cast<Messages*>(messages);
+    // Loader and driver report as 'general'; the layers check our use of Vulkan as 'validation' and 'performance'.
+    auto& list = type == VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT ? received.driver : received.validation;
+    list.emplace_back(data->pMessage);
+    return VK_FALSE;
+}
+
+// The driver checks that a pipeline cache is its own; the name only keeps several devices apart.
+static std::string pipeline_cache_name(const vk::raii::PhysicalDevice& device) {
+    const auto properties = device.getProperties();
+    const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()), VK_UUID_SIZE);
+    return "pipelines-" + std::to_string(hash_text(uuid));
+}
+
+void Device::load_pipeline_cache() {
+    const auto cached = read_cache(pipeline_cache_name(physical_)).value_or(std::vector<uint8_t>());
+    pipeline_cache_ = {device_, vk::PipelineCacheCreateInfo({}, cached.size(), cached.data())};
+    pipeline_cache_size_ = cached.size();
+}
+
+Device::~Device() {
+    try {
+        const auto contents = pipeline_cache_.getData();
+        if (contents.size() != pipeline_cache_size_) write_cache(pipeline_cache_name(physical_), contents);
+    } catch (const vk::SystemError&) {
+        // A lost device has no pipelines to keep.
+    }
+}
+
+std::vector<DeviceDescription> list_devices() {
+    const vk::raii::Context context = load_vulkan();
+    std::vector<DeviceDescription> descriptions;
+    try {
+        const vk::raii::Instance instance = create_instance(context, false);
+        for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device));
+    } catch (const vk::SystemError&) {
+        throw DeviceError("no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
+    }
+    return descriptions;
+}
+
+}  // namespace lab

@@ -1,0 +1,78 @@
+// A Vulkan device with one compute queue, and what the validation layers had to say about its use.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gpu/vulkan.h"
+
+namespace lab {
+
+struct DeviceOptions {
+    std::string choice;       // index or part of the name (any case) as in --list-devices; empty: the fastest kind
+    bool validation = false;  // switches the validation layer on; an error if it is not installed
+};
+
+// A line of --list-devices. `missing` names what the device lacks to run any chapter; empty if it can.
+struct DeviceDescription {
+    std::string name;
+    std::string kind;    // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+    std::string driver;  // name and version as the driver tells them
+    std::string api_version;
+    std::vector<std::string> missing;
+};
+
+class Device {
+  public:
+    // Throws DeviceError: no driver (with what to install), no such device, or one that lacks a feature.
+    explicit Device(const DeviceOptions& options);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    const vk::raii::Device& handle() const { return device_; }
+    const vk::raii::PhysicalDevice& physical() const { return physical_; }
+    const vk::raii::PipelineCache& pipeline_cache() const { return pipeline_cache_; }
+    const DeviceDescription& description() const { return description_; }
+    const vk::PhysicalDeviceLimits& limits() const { return limits_; }
+
+    // Records commands, submits them, waits, and returns the seconds they took on the device.
+    double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
+
+    // Errors and warnings of the validation layers so far, and the driver's own messages. Empty without validation.
+    const std::vector<std::string>& validation_messages() const { return messages_.validation; }
+    const std::vector<std::string>& driver_messages() const { return messages_.driver; }
+
+  private:
+    struct Messages {
+        std::vector<std::string> validation;
+        std::vector<std::string> driver;
+    };
+    static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                    VkDebugUtilsMessageTypeFlagsEXT type,
+                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
+    void create_device();
+    void load_pipeline_cache();
+
+    Messages messages_;
+    vk::raii::Context context_;
+    vk::raii::Instance instance_ = nullptr;
+    vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
+    vk::raii::PhysicalDevice physical_ = nullptr;
+    DeviceDescription description_;
+    vk::PhysicalDeviceLimits limits_;
+    uint32_t queue_family_ = 0;
+    vk::raii::Device device_ = nullptr;
+    vk::raii::Queue queue_ = nullptr;
+    vk::raii::CommandPool command_pool_ = nullptr;
+    vk::raii::CommandBuffer command_buffer_ = nullptr;
+    vk::raii::Fence fence_ = nullptr;
+    vk::raii::QueryPool timestamps_ = nullptr;
+    vk::raii::PipelineCache pipeline_cache_ = nullptr;
+    size_t pipeline_cache_size_ = 0;
+};
+
+// All devices of this machine in the order of their indices. Throws DeviceError if there is no Vulkan driver.
+std::vector<DeviceDescription> list_devices();
+
+}  // namespace lab

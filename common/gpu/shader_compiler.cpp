@@ -1,0 +1,142 @@
+#include "gpu/shader_compiler.h"
+
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
+
+#include <cstring>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "error.h"
+#include "gpu/cache.h"
+
+namespace lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Puts the text of included files in place of their #include "…" lines, each file once. #line directives keep the
+// names and lines of messages right. One text then serves as input of the compiler and as key of the cache.
+class Includer {
+  public:
+    explicit Includer(const ShaderSource& source) : named_(source.named_includes) {}
+
+    std::string expand(const fs::path& file) {
+        std::ifstream stream(file);
+        if (!stream) throw UserError("cannot read the shader " + file.string());
+        std::string text, line;
+        for (int number = 1; std::getline(stream, line); ++number) {
+            std::smatch name;
+            if (!std::regex_match(line, name, include_line_)) {
+                text += line + "\n";
+                continue;
+            }
+            const fs::path included = find(name[1].str(), file, number);
+            if (seen_.insert(fs::weakly_canonical(included)).second)
+                text += "#line 1 \"" + included.string() + "\"\n" + expand(included);
+            text += "#line " + std::to_string(number + 1) + " \"" + file.string() + "\"\n";
+        }
+        return text;
+    }
+
+  private:
+    fs::path find(const std::string& name, const fs::path& includer, int line) const {
+        if (const auto named = named_.find(name); named != named_.end()) return named->second;
+        if (const auto beside = includer.parent_path() / name; fs::exists(beside)) return beside;
+        if (const auto shared = project_folder() / "shaders" / name; fs::exists(shared)) return shared;
+        throw UserError(includer.string() + ":" + std::to_string(line) + ": cannot find the include file \"" + name +
+                        "\"");
+    }
+
+    const std::map<std::string, fs::path>& named_;
+    std::set<fs::path> seen_;
+    const std::regex include_line_{R"re(\s*#\s*include\s*"([^"]+)".*)re"};
+};
+
+EShLanguage language(ShaderStage stage) {
+    switch (stage) {
+        case ShaderStage::compute: return EShLangCompute;
+        case ShaderStage::ray_generation: return EShLangRayGen;
+        case ShaderStage::miss: return EShLangMiss;
+        case ShaderStage::closest_hit: return EShLangClosestHit;
+    }
+    return EShLangCompute;
+}
+
+// glslang writes "ERROR: file:line: 'token' : text"; editors and people look for "file:line: text".
+std::string readable(const std::string& log) {
+    std::istringstream lines(log);
+    std::string line, text;
+    while (std::getline(lines, line)) {
+        if (line.rfind("ERROR: ", 0) != 0 || line.find("compilation errors") != std::string::npos) continue;
+        text += (text.empty() ? "" : "\n") + line.substr(std::strlen("ERROR: "));
+    }
+    return text.empty() ? log : text;
+}
+
+std::vector<uint32_t> compile(const ShaderSource& source, const std::string& text, const std::string& preamble) {
+    static const bool initialised = glslang::InitializeProcess();
+    if (!initialised) throw UserError("glslang could not be initialised");
+    const EShLanguage stage = language(source.stage);
+    glslang::TShader shader(stage);
+    const std::string name = source.file.string();
+    const char* texts[] = {text.c_str()};
+    const int lengths[] = {static_cast<int>(text.size())};
+    const char* names[] = {name.c_str()};
+    shader.setStringsWithLengthsAndNames(texts, lengths, names, 1);
+    shader.setPreamble(preamble.c_str());
+    shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 120);
+    shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
+    shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
+    const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+    if (!shader.parse(GetDefaultResources(), 460, false, messages)) throw UserError(readable(shader.getInfoLog()));
+    glslang::TProgram program;
+    program.addShader(&shader);
+    if (!program.link(messages)) throw UserError(name + ": " + readable(program.getInfoLog()));
+    std::vector<uint32_t> words;
+    glslang::GlslangToSpv(*program.getIntermediate(stage), words);
+    return words;
+}
+
+}  // namespace
+
+fs::path project_folder() {
+    static const fs::path found = [] {
+        std::error_code ignored;
+        const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+        for (fs::path folder = program.parent_path(); folder != folder.root_path(); folder = folder.parent_path())
+            if (fs::exists(folder / "shaders" / "interface.h")) return folder;
+        return fs::path();
+    }();
+    if (found.empty()) throw UserError("cannot find the folder shaders/ above the program: keep build/ in the project");
+    return found;
+}
+
+std::vector<uint32_t> compile_shader(const ShaderSource& source) {
+    const std::string text = Includer(source).expand(source.file);
+    std::string preamble = "#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+    for (const auto& define : source.defines) preamble += "#define " + define + "\n";
+
+    const auto version = glslang::GetVersion();
+    const std::string key = preamble + text + std::to_string(static_cast<int>(source.stage)) + "/" +
+                            std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
+                            std::to_string(version.patch);
+    // Two independent 64-bit hashes make a chance collision impossible in practice.
+    const std::string name =
+        "shader-" + std::to_string(hash_text(key)) + "-" + std::to_string(hash_text(key, key.size()));
+    std::vector<uint32_t> words;
+    if (const auto cached = read_cache(name)) {
+        words.resize(cached->size() / sizeof(uint32_t));
+        std::memcpy(words.data(), cached->data(), words.size() * sizeof(uint32_t));
+        return words;
+    }
+    words = compile(source, text, preamble);
+    const auto* bytes = reinterpret_cast<const uint8_t*>(words.data());
+    write_cache(name, {bytes, bytes + words.size() * sizeof(uint32_t)});
+    return words;
+}
+
+}  // namespace lab

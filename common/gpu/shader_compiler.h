@@ -1,0 +1,30 @@
+// Compiles GLSL at run time with glslang, so that a shader can be edited without rebuilding the program.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lab {
+
+enum class ShaderStage { compute, ray_generation, miss, closest_hit };
+
+struct ShaderSource {
+    std::filesystem::path file;
+    ShaderStage stage = ShaderStage::compute;
+    std::vector<std::string> defines;  // "NAME" or "NAME value"
+    // What #include "name" stands for. Other names are looked up beside the includer and in shaders/. A file's text is
+    // included once, even where an #if skips it.
+    std::map<std::string, std::filesystem::path> named_includes;
+};
+
+// Folder of the project, which holds shaders/ and assets/: found upwards from the running program.
+// Throws UserError if there is none.
+std::filesystem::path project_folder();
+
+// SPIR-V 1.5 words, from the cache where the same text was compiled before.
+// Throws UserError with lines of the form "file:line: message".
+std::vector<uint32_t> compile_shader(const ShaderSource& source);
+
+}  // namespace lab

@@ -1,0 +1,216 @@
+// OpenEXR files through tinyexr, behind checks: damaged headers make tinyexr abort or allocate without bound.
+#include <tinyexr.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+
+#include "error.h"
+#include "image/file.h"
+#include "image/image.h"
+
+namespace lab {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
+    throw UserError(file.string() + ": " + reason);
+}
+
+// Throws tinyexr's message, if it made one, as a UserError.
+[[noreturn]] void fail_with(const std::filesystem::path& file, const char* message) {
+    std::string reason = message ? message : "cannot be decoded";
+    FreeEXRErrorMessage(message);
+    fail(file, "damaged or unsupported OpenEXR file: " + reason.substr(0, reason.find('\n')));
+}
+
+struct Header : EXRHeader {
+    Header() { InitEXRHeader(this); }
+    ~Header() { FreeEXRHeader(this); }
+    Header(const Header&) = delete;
+    Header& operator=(const Header&) = delete;
+};
+
+struct DecodedImage : EXRImage {
+    DecodedImage() { InitEXRImage(this); }
+    ~DecodedImage() { FreeEXRImage(this); }
+    DecodedImage(const DecodedImage&) = delete;
+    DecodedImage& operator=(const DecodedImage&) = delete;
+};
+
+// Walks over the attributes of a file (name, type, size and value each) and refuses what tinyexr trusts: a
+// type other than a flat image of scan lines, which it asserts, and a chunk count, which it allocates.
+// Neither is needed here.
+void check_attributes(const std::filesystem::path& file, std::string_view bytes) {
+    bytes.remove_prefix(8);  // magic number and version
+    const auto take_string = [&] {
+        const size_t length = bytes.find('\0');
+        if (length == std::string_view::npos) fail(file, "the file ends too early: copy or export it again");
+        const std::string_view text = bytes.substr(0, length);
+        bytes.remove_prefix(length + 1);
+        return text;
+    };
+    for (std::string_view name = take_string(); !name.empty(); name = take_string()) {
+        take_string();  // type
+        uint32_t size = 0;
+        if (bytes.size() >= sizeof size) std::memcpy(&size, bytes.data(), sizeof size);
+        if (bytes.size() < sizeof size + size) fail(file, "the file ends too early: copy or export it again");
+        const std::string_view value = bytes.substr(sizeof size, size);
+        if (name == "type" && !value.starts_with("scanlineimage"))
+            fail(file, "only flat OpenEXR images of scan lines are read");
+        if (name == "chunkCount") fail(file, "only single-part OpenEXR files are read");
+        bytes.remove_prefix(sizeof size + size);
+    }
+}
+
+// Sizes that fit the limits and the file, and channels that fill the whole image.
+void check_header(const std::filesystem::path& file, const EXRHeader& header, uint64_t file_size) {
+    const EXRBox2i& window = header.data_window;
+    const int64_t width = int64_t{window.max_x} - window.min_x + 1;
+    const int64_t height = int64_t{window.max_y} - window.min_y + 1;
+    check_image_size(file, width, height);
+    if (std::abs(int64_t{window.min_x}) > max_image_extent ||
+        std::abs(int64_t{window.min_y}) > max_image_extent)
+        fail(file, "its data window is too far from the origin");
+    constexpr int max_channels = 64;
+    if (header.num_channels > max_channels) fail(file, "it has more than 64 channels");
+    uint64_t bytes_per_pixel = 0;
+    for (int i = 0; i < header.num_channels; ++i) {
+        const EXRChannelInfo& channel = header.channels[i];
+        if (channel.pixel_type != TINYEXR_PIXELTYPE_HALF && channel.pixel_type != TINYEXR_PIXELTYPE_FLOAT)
+            fail(file, "channel " + in_quotes(channel.name) + " must hold 16 or 32-bit floats");
+        if (channel.x_sampling != 1 || channel.y_sampling != 1)
+            fail(file, "channel " + in_quotes(channel.name) + " must have a value for every pixel");
+        bytes_per_pixel += channel.pixel_type == TINYEXR_PIXELTYPE_HALF ? 2 : 4;
+    }
+    if (static_cast<uint64_t>(width * height) * bytes_per_pixel > max_deflate_ratio * file_size)
+        fail(file, "the file ends too early: copy or export it again");
+}
+
+// Moves the decoded planes into an ExrFile.
+ExrFile collect(const std::filesystem::path& file, const EXRHeader& header, const EXRImage& decoded) {
+    ExrFile exr;
+    exr.image.width = static_cast<uint32_t>(decoded.width);
+    exr.image.height = static_cast<uint32_t>(decoded.height);
+    const size_t pixel_count = static_cast<size_t>(decoded.width) * decoded.height;
+    for (int i = 0; i < header.num_channels; ++i) {
+        const auto* plane = reinterpret_cast<const float*>(decoded.images[i]);
+        exr.channels[header.channels[i].name].assign(plane, plane + pixel_count);
+    }
+    exr.image.pixels.resize(3 * pixel_count);
+    for (size_t channel = 0; channel < 3; ++channel) {
+        const auto plane = exr.channels.extract(std::string(1, "RGB"[channel]));
+        if (!plane) fail(file, "it needs the channels R, G and B");
+        for (size_t i = 0; i < pixel_count; ++i) exr.image.pixels[3 * i + channel] = plane.mapped()[i];
+    }
+    for (int i = 0; i < header.num_custom_attributes; ++i) {
+        const EXRAttribute& attribute = header.custom_attributes[i];
+        if (std::string_view(attribute.type) != "string") continue;
+        std::string value(reinterpret_cast<const char*>(attribute.value),
+                          static_cast<size_t>(attribute.size));
+        if (value == std::string(1, '\0')) value.clear();  // how tinyexr hands over an empty string
+        exr.attributes[attribute.name] = value;
+    }
+    return exr;
+}
+
+}  // namespace
+
+void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height) {
+    if (width >= 1 && width <= max_image_extent && height >= 1 && height <= max_image_extent) return;
+    fail(file, "an image of " + std::to_string(width) + " x " + std::to_string(height) +
+                   " pixels: width and height must be from 1 to " + std::to_string(max_image_extent));
+}
+
+ExrFile read_exr(const std::filesystem::path& file) {
+    std::string bytes = read_file(file, max_image_file_bytes);
+    const size_t size = bytes.size();
+    if (size < 8 || !bytes.starts_with("\x76\x2f\x31\x01")) fail(file, "not an OpenEXR file");
+    check_attributes(file, bytes);
+    // PIZ tables, of at most 8 KiB, are read without regard to the end of the file: let them end in zeros.
+    bytes.resize(size + 16384);
+    const auto* memory = reinterpret_cast<const unsigned char*>(bytes.data());
+    try {
+        EXRVersion version;
+        if (ParseEXRVersionFromMemory(&version, memory, size) != TINYEXR_SUCCESS || version.tiled ||
+            version.multipart || version.non_image)
+            fail(file, "only single-part OpenEXR images of scan lines are read");
+        Header header;
+        const char* message = nullptr;
+        if (ParseEXRHeaderFromMemory(&header, &version, memory, size, &message) != TINYEXR_SUCCESS)
+            fail_with(file, message);
+        check_header(file, header, size);
+        std::fill_n(header.requested_pixel_types, header.num_channels, TINYEXR_PIXELTYPE_FLOAT);
+        header.line_order =
+            0;  // rows carry their number, and tinyexr would turn a decreasing order upside down
+        DecodedImage decoded;
+        decoded.num_channels = header.num_channels;  // else tinyexr does not free the planes if it fails
+        if (LoadEXRImageFromMemory(&decoded, &header, memory, size, &message) != TINYEXR_SUCCESS) {
+            InitEXRImage(&decoded);  // it has freed it
+            fail_with(file, message);
+        }
+        return collect(file, header, decoded);
+    } catch (const UserError&) {
+        throw;
+    } catch (const std::exception& error) {
+        fail(file, std::string("damaged OpenEXR file: ") + error.what());
+    }
+}
+
+void write_exr(const std::filesystem::path& file, const ExrFile& exr) {
+    const size_t pixel_count = static_cast<size_t>(exr.image.width) * exr.image.height;
+    std::array<std::vector<float>, 3> rgb;
+    std::map<std::string, const float*> planes;  // sorted by name, as OpenEXR demands
+    for (size_t channel = 0; channel < 3; ++channel) {
+        rgb[channel].resize(pixel_count);
+        for (size_t i = 0; i < pixel_count; ++i) rgb[channel][i] = exr.image.pixels[3 * i + channel];
+        planes[std::string(1, "RGB"[channel])] = rgb[channel].data();
+    }
+    for (const auto& [name, plane] : exr.channels) planes[name] = plane.data();
+
+    // tinyexr's structs only point to these arrays, so they are not freed with FreeEXRHeader and
+    // FreeEXRImage.
+    std::vector<EXRChannelInfo> channels;
+    std::vector<unsigned char*> images;
+    for (const auto& [name, plane] : planes) {
+        EXRChannelInfo& channel = channels.emplace_back();
+        name.copy(channel.name, sizeof channel.name - 1);
+        images.push_back(reinterpret_cast<unsigned char*>(const_cast<float*>(plane)));
+    }
+    std::vector<int> pixel_types(planes.size(), TINYEXR_PIXELTYPE_FLOAT);
+    std::vector<EXRAttribute> attributes;
+    for (const auto& [name, value] : exr.attributes) {
+        EXRAttribute& attribute = attributes.emplace_back();
+        name.copy(attribute.name, sizeof attribute.name - 1);
+        std::strcpy(attribute.type, "string");
+        attribute.value = reinterpret_cast<unsigned char*>(const_cast<char*>(value.data()));
+        attribute.size = static_cast<int>(value.size());
+    }
+
+    EXRHeader header;
+    InitEXRHeader(&header);
+    header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
+    header.num_channels = static_cast<int>(channels.size());
+    header.channels = channels.data();
+    header.pixel_types = pixel_types.data();
+    header.requested_pixel_types = pixel_types.data();
+    header.num_custom_attributes = static_cast<int>(attributes.size());
+    header.custom_attributes = attributes.data();
+    EXRImage image;
+    InitEXRImage(&image);
+    image.width = static_cast<int>(exr.image.width);
+    image.height = static_cast<int>(exr.image.height);
+    image.num_channels = header.num_channels;
+    image.images = images.data();
+
+    unsigned char* memory = nullptr;
+    const char* message = nullptr;
+    const size_t size = SaveEXRImageToMemory(&image, &header, &memory, &message);
+    const std::unique_ptr<unsigned char, decltype(&std::free)> owner(memory, std::free);
+    if (size == 0) fail_with(file, message);
+    write_file(file, {reinterpret_cast<const char*>(memory), size});
+}
+
+}  // namespace lab

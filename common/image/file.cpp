@@ -1,0 +1,110 @@
+#include "image/file.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include "error.h"
+#include "image/image.h"
+
+namespace lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Beside the target, because renaming is atomic only within a file system; the process id keeps two renders
+// apart.
+fs::path temporary_name(const fs::path& file) {
+    fs::path name = ".";
+    name += file.filename();
+    name += '.';
+    name += std::to_string(getpid());
+    name += ".tmp";
+    return file.parent_path() / name;
+}
+
+// Whether all bytes reached the file: a full disk may show only when buffers are flushed and the file is
+// closed.
+bool write_bytes(const fs::path& file, std::string_view bytes) {
+    std::FILE* stream = std::fopen(file.c_str(), "wb");
+    if (!stream) return false;
+    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
+    const bool flushed = std::fflush(stream) == 0;
+    const int error = errno;
+    const bool closed = std::fclose(stream) == 0;
+    if (!written || !flushed) errno = error;
+    return written && flushed && closed;
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file, uint64_t max_bytes) {
+    const std::string name = file.string();
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    if (!fs::exists(status)) throw UserError(name + ": no such file");
+    if (!fs::is_regular_file(status)) throw UserError(name + ": not a regular file");
+    const uint64_t size = fs::file_size(file, error);
+    if (error) throw UserError(name + ": " + error.message());
+    if (size == 0) throw UserError(name + ": the file is empty");
+    if (size > max_bytes)
+        throw UserError(name + ": the file has " + std::to_string(size >> 20) + " MiB, the limit is " +
+                        std::to_string(max_bytes >> 20) + " MiB");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw UserError(name + ": cannot be opened: " + std::strerror(errno));
+    std::string bytes(size, '\0');
+    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
+        throw UserError(name + ": cannot be read completely");
+    return bytes;
+}
+
+void write_file(const fs::path& file, std::string_view bytes) {
+    const fs::path temporary = temporary_name(file);
+    if (write_bytes(temporary, bytes) && std::rename(temporary.c_str(), file.c_str()) == 0) return;
+    const std::string reason = std::strerror(errno);
+    std::remove(temporary.c_str());
+    throw UserError(file.string() + ": cannot be written: " + reason);
+}
+
+void check_writable(const fs::path& file, const std::vector<std::string>& endings) {
+    const std::string name = file.string();
+    if (std::find(endings.begin(), endings.end(), lower_case_extension(file)) == endings.end()) {
+        std::string known;
+        for (const auto& ending : endings)
+            known += (known.empty() ? "" : ending == endings.back() ? " or " : ", ") + ending;
+        throw UserError(name + ": the name must end in " + known);
+    }
+    std::error_code error;
+    if (fs::is_directory(file, error)) throw UserError(name + ": cannot be written: it is a folder");
+    if (file.has_parent_path()) {
+        fs::create_directories(file.parent_path(), error);
+        if (error) throw UserError(name + ": its folder cannot be created: " + error.message());
+    }
+    const fs::path temporary = temporary_name(file);
+    const bool writable = write_bytes(temporary, "");
+    const std::string reason = std::strerror(errno);
+    std::remove(temporary.c_str());
+    if (!writable) throw UserError(name + ": cannot be written: " + reason);
+}
+
+std::string in_quotes(std::string_view name) {
+    constexpr size_t max_length = 80;
+    std::string text(name.substr(0, max_length));
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+    return '"' + text + (name.size() > max_length ? "...\"" : "\"");
+}
+
+std::string lower_case_extension(const fs::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+}  // namespace lab

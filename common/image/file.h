@@ -1,0 +1,24 @@
+// Whole files in memory: read with checks, written completely or not at all.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace lab {
+
+// The bytes of a regular file. UserError if it is missing, not a regular file, empty, unreadable or larger
+// than max_bytes, so that no bad path makes the program wait for input or fill the memory.
+std::string read_file(const std::filesystem::path& file, uint64_t max_bytes);
+
+// Writes a temporary file in the same folder and renames it. UserError, leaving an older file untouched, if
+// any step fails (no such folder, no permission, disk full).
+void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+// A name from a file, fit for an error message: in double quotes, unprintable characters replaced, shortened.
+std::string in_quotes(std::string_view name);
+
+// The ending of a file name in lower case, with its dot.
+std::string lower_case_extension(const std::filesystem::path& file);
+
+}  // namespace lab

@@ -1,0 +1,77 @@
+// Images in memory, and the files they come from and go to. Every reader refuses damaged files with a
+// UserError.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lab {
+
+// Linear RGB, row by row from the top; pixels has 3 * width * height numbers.
+struct Image {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<float> pixels;
+};
+
+// Eight bits a channel, sRGB-encoded colour and linear alpha; pixels has 4 * width * height bytes.
+struct Texture {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<uint8_t> pixels;
+};
+
+// An OpenEXR file: channels R, G, B (32-bit float), named further channels and string attributes. Names have
+// at most 31 characters; there are at most 128 attributes, none named like one that every OpenEXR file has
+// ("type", ...).
+struct ExrFile {
+    Image image;
+    std::map<std::string, std::vector<float>> channels;  // each has width * height numbers
+    std::map<std::string, std::string> attributes;
+};
+
+// Largest width and height of any image read or written.
+inline constexpr uint32_t max_image_extent = 16384;
+
+// Largest image file that is read, in bytes.
+inline constexpr uint64_t max_image_file_bytes = uint64_t{4} << 30;
+
+// Deflate (PNG, EXR) makes data at most this many times smaller: with it a damaged size is found before it is
+// allocated.
+inline constexpr uint64_t max_deflate_ratio = 1032;
+
+// UserError unless both are in [1, max_image_extent].
+void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height);
+
+// Reads single-part scan line files, uncompressed or with RLE, ZIP or PIZ compression; 16-bit floats are
+// widened.
+ExrFile read_exr(const std::filesystem::path& file);
+
+// Radiance from .hdr or .exr. Negative, infinite and NaN pixels are an error.
+Image read_radiance(const std::filesystem::path& file);
+
+// Colour from .png, .jpg, .bmp or .tga.
+Texture read_texture(const std::filesystem::path& file);
+
+// Writers: the file appears complete or not at all (a temporary file is renamed).
+void write_exr(const std::filesystem::path& file, const ExrFile& exr);
+void write_hdr(const std::filesystem::path& file, const Image& image);
+void write_png(const std::filesystem::path& file, const Texture& image);
+void write_jpg(const std::filesystem::path& file, const Texture& image);
+
+// The endings of image files that can be written.
+inline const std::vector<std::string> image_endings{".exr", ".hdr", ".png", ".jpg"};
+
+// Throws a UserError if a file with this name cannot be written later or has none of the endings; creates the
+// folders on the way. An existing file keeps its contents.
+void check_writable(const std::filesystem::path& file,
+                    const std::vector<std::string>& endings = image_endings);
+
+// The sRGB transfer function (IEC 61966-2-1) from linear [0,1] to encoded [0,1] and back; clamps.
+float linear_to_srgb(float linear);
+float srgb_to_linear(float encoded);
+
+}  // namespace lab

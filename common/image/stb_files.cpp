@@ -1,0 +1,112 @@
+// Eight-bit images through stb_image, and the writers of stb_image_write.
+#include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "error.h"
+#include "image/file.h"
+#include "image/image.h"
+
+namespace lab {
+namespace {
+
+// stb_image takes zeros for what is missing from a truncated file. Reading through callbacks shows that it
+// asked for more than there is.
+struct ByteSource {
+    std::string_view bytes;
+    size_t position = 0;
+    bool exhausted = false;
+
+    // stb_image fills a buffer of 128 bytes ahead, so that only there a short answer is normal at the end of
+    // a file.
+    static int read(void* user, char* target, int size) {
+        auto& source = *static_cast<ByteSource*>(user);
+        const size_t count = std::min(static_cast<size_t>(size), source.bytes.size() - source.position);
+        std::memcpy(target, source.bytes.data() + source.position, count);
+        source.position += count;
+        if (count == 0 || (count < static_cast<size_t>(size) && size != 128)) source.exhausted = true;
+        return static_cast<int>(count);
+    }
+
+    static void skip(void* user, int count) {  // backwards if negative
+        auto& source = *static_cast<ByteSource*>(user);
+        const int64_t target = static_cast<int64_t>(source.position) + count;
+        const auto end = static_cast<int64_t>(source.bytes.size());
+        if (target > end) source.exhausted = true;
+        source.position = static_cast<size_t>(std::clamp<int64_t>(target, 0, end));
+    }
+
+    static int at_end(void* user) {
+        const auto& source = *static_cast<ByteSource*>(user);
+        return source.position == source.bytes.size();
+    }
+};
+
+constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSource::at_end};
+
+void append(void* bytes, void* data, int size) {
+    static_cast<std::string*>(bytes)->append(static_cast<const char*>(data), static_cast<size_t>(size));
+}
+
+void check_written(int success, const std::filesystem::path& file) {
+    if (!success) throw UserError(file.string() + ": the image cannot be encoded: out of memory");
+}
+
+}  // namespace
+
+Texture read_texture(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    const std::string bytes = read_file(file, max_image_file_bytes);
+    int width = 0, height = 0, channels = 0;
+    ByteSource source{bytes};
+    if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels))
+        throw UserError(name + ": not a texture: it must be a .png, .jpg, .bmp or .tga file");
+    check_image_size(file, width, height);
+    // At most: a bit a pixel, deflated. More pixels cannot be in the file, and memory for them is not
+    // allocated.
+    if (static_cast<uint64_t>(width) * height > 8 * max_deflate_ratio * bytes.size())
+        throw UserError(name + ": the file ends too early: copy or export it again");
+
+    source = {bytes};
+    const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+        stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 4), stbi_image_free);
+    if (source.exhausted) throw UserError(name + ": the file ends too early: copy or export it again");
+    if (!pixels) throw UserError(name + ": damaged image: " + stbi_failure_reason());
+    Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
+    texture.pixels.assign(pixels.get(), pixels.get() + 4 * static_cast<size_t>(width) * height);
+    return texture;
+}
+
+void write_png(const std::filesystem::path& file, const Texture& image) {
+    std::string bytes;
+    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+    check_written(stbi_write_png_to_func(append, &bytes, width, height, 4, image.pixels.data(), 4 * width),
+                  file);
+    write_file(file, bytes);
+}
+
+void write_jpg(const std::filesystem::path& file, const Texture& image) {
+    constexpr int quality = 95;
+    std::string bytes;
+    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+    check_written(stbi_write_jpg_to_func(append, &bytes, width, height, 4, image.pixels.data(), quality),
+                  file);
+    write_file(file, bytes);
+}
+
+void write_hdr(const std::filesystem::path& file, const Image& image) {
+    // The shared 8-bit exponent has no sign, infinity or NaN: they become 0 or the largest finite number.
+    constexpr float largest = 1e38f;
+    std::vector<float> pixels(image.pixels.size());
+    std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(),
+                   [largest](float value) { return value > 0 ? std::min(value, largest) : 0; });
+    std::string bytes;
+    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+    check_written(stbi_write_hdr_to_func(append, &bytes, width, height, 3, pixels.data()), file);
+    write_file(file, bytes);
+}
+
+}  // namespace lab

@@ -1,0 +1,48 @@
+#include "scene/features.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lab {
+
+SceneFeatures features_of(const Scene& scene) {
+    const auto any_material = [&](auto property) {
+        return std::any_of(scene.materials.begin(), scene.materials.end(), property);
+    };
+    const auto is_moved = [](const Instance& instance) { return instance.object_to_world != mat4x3(1); };
+    SceneFeatures features;
+    features.vertex_normals = !scene.normals.empty();
+    features.textures = !scene.textures.empty();
+    features.light_probe = scene.light_probe.has_value();
+    features.sky = !features.light_probe && scene.background != vec3(0);
+    features.area_lights =
+        any_material([](const Material& material) { return material.emission != vec3(0); });
+    features.specular =
+        any_material([](const Material& material) { return material.specular_albedo != vec3(0); });
+    features.dielectrics =
+        any_material([](const Material& material) { return material.refractive_index > 0; });
+    features.absorption =
+        any_material([](const Material& material) { return material.absorption != vec3(0); });
+    features.transforms = std::any_of(scene.instances.begin(), scene.instances.end(), is_moved);
+    return features;
+}
+
+std::vector<std::string> SceneFeatures::defines() const {
+    const std::pair<bool, const char*> names[] = {
+        {vertex_normals, "FEATURE_VERTEX_NORMALS"},
+        {textures, "FEATURE_TEXTURES"},
+        {sky, "FEATURE_SKY"},
+        {light_probe, "FEATURE_LIGHT_PROBE"},
+        {area_lights, "FEATURE_AREA_LIGHTS"},
+        {specular, "FEATURE_SPECULAR"},
+        {dielectrics, "FEATURE_DIELECTRICS"},
+        {absorption, "FEATURE_ABSORPTION"},
+        {transforms, "FEATURE_TRANSFORMS"},
+    };
+    std::vector<std::string> present;
+    for (const auto& [is_present, name] : names)
+        if (is_present) present.emplace_back(name);
+    return present;
+}
+
+}  // namespace lab

@@ -1,0 +1,28 @@
+// What a scene needs. Each feature becomes a #define; what is absent costs no instruction, no buffer and no
+// binding.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace lab {
+
+struct SceneFeatures {
+    bool vertex_normals = false;
+    bool textures = false;
+    bool sky = false;  // constant background other than black
+    bool light_probe = false;
+    bool area_lights = false;  // some triangle emits
+    bool specular = false;     // some material has a Phong lobe
+    bool dielectrics = false;
+    bool absorption = false;
+    bool transforms = false;  // some instance is moved, turned or scaled
+
+    // FEATURE_VERTEX_NORMALS and so on, for those present.
+    std::vector<std::string> defines() const;
+};
+
+SceneFeatures features_of(const Scene& scene);
+
+}  // namespace lab

@@ -1,0 +1,49 @@
+// Objects of a JSON file, with errors that name the file and the key.
+#pragma once
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "shaders/interface.h"
+
+namespace lab {
+
+// Parses JSON text. UserError in one line, with the line number, for syntax errors and deep nesting.
+nlohmann::json parse_json(const std::string& file, const std::string& text);
+
+// An object whose keys are read one by one. Every function throws a UserError for a value of the wrong type
+// or out of range; those that return an optional return nothing if the key is absent. All numbers are finite.
+class JsonObject {
+  public:
+    // `where` is what errors call the object. UserError if it is no object or has a key that is not `known`.
+    JsonObject(const nlohmann::json& value, std::string file, std::string where,
+               std::initializer_list<const char*> known);
+
+    bool has(const char* key) const { return value_.contains(key); }
+    JsonObject object(const char* key, std::initializer_list<const char*> known) const;
+    const nlohmann::json& array(const char* key) const;
+
+    std::optional<double> number(const char* key) const;
+    std::optional<vec3> vector(const char* key) const;            // three numbers
+    std::optional<vec3> number_or_vector(const char* key) const;  // one number stands for three equal ones
+    std::optional<uint32_t> integer(const char* key, uint32_t low, uint32_t high) const;
+    std::optional<bool> boolean(const char* key) const;
+    std::optional<std::string> text(const char* key) const;
+
+    // What an optional holds; UserError if the key is absent.
+    template <typename Value>
+    Value required(const char* key, const std::optional<Value>& value) const {
+        if (!value) fail(key, "is missing");
+        return *value;
+    }
+
+    [[noreturn]] void fail(const char* key, const std::string& reason) const;
+
+  private:
+    const nlohmann::json& value_;
+    std::string file_;
+    std::string where_;
+};
+
+}  // namespace lab

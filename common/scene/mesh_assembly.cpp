@@ -1,0 +1,182 @@
+#include "scene/mesh_assembly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include "error.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+
+struct CornerHash {
+    size_t operator()(const ObjCorner& corner) const {
+        uint64_t hash = corner.position;
+        for (const uint32_t index : {corner.texture_coordinates, corner.normal})
+            hash = (hash ^ index) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
+        return hash;
+    }
+};
+
+// A vector that has a direction. (In double the square of a float neither overflows nor vanishes.)
+bool has_direction(const dvec3& vector) {
+    const double square = glm::dot(vector, vector);
+    return square > 0 && std::isfinite(square);
+}
+
+class Assembly {
+  public:
+    Assembly(bool specular, SourceFiles& sources, Scene& scene)
+        : specular_(specular), sources_(sources), scene_(scene) {}
+
+    void add(const ObjFile& obj, bool with_normals, bool with_texture_coordinates) {
+        with_normals_ = with_normals;
+        with_texture_coordinates_ = with_texture_coordinates;
+        vertices_.clear();
+        vertices_.reserve(obj.positions.size());
+        const auto first_triangle = static_cast<uint32_t>(scene_.triangles.size());
+        std::vector<uint32_t> scene_materials(obj.materials.size(), ObjCorner::none);
+        size_t dropped = 0;
+        for (size_t i = 0; i < obj.triangle_materials.size(); ++i) {
+            const uint32_t source = obj.triangle_materials[i];
+            if (!add_triangle(obj, &obj.corners[3 * i])) {
+                ++dropped;
+                continue;
+            }
+            if (scene_materials[source] == ObjCorner::none)
+                scene_materials[source] = add_material(obj, obj.materials[source]);
+            scene_.triangle_materials.push_back(scene_materials[source]);
+        }
+        const auto count = static_cast<uint32_t>(scene_.triangles.size()) - first_triangle;
+        if (count == 0) throw UserError(obj.file + ": none of its triangles has an area");
+        if (dropped > 0)
+            scene_.warnings.push_back(obj.file + ": " + std::to_string(dropped) +
+                                      " triangles without area are left out");
+        scene_.meshes.push_back({obj.file, first_triangle, count});
+    }
+
+  private:
+    // False if the triangle has no area: it has no normal then.
+    bool add_triangle(const ObjFile& obj, const ObjCorner* source) {
+        ObjCorner corners[3] = {source[0], source[1], source[2]};
+        const dvec3 origin(obj.positions[corners[0].position]);
+        dvec3 normal = glm::cross(dvec3(obj.positions[corners[1].position]) - origin,
+                                  dvec3(obj.positions[corners[2].position]) - origin);
+        if (!has_direction(normal)) return false;
+        normal = glm::normalize(normal);
+
+        // The front is the side of the vertex normals.
+        double side = 0;
+        for (ObjCorner& corner : corners) {
+            if (corner.normal == ObjCorner::none) continue;
+            const dvec3 vertex_normal(obj.normals[corner.normal]);
+            if (has_direction(vertex_normal))
+                side += glm::dot(normal, glm::normalize(vertex_normal));
+            else
+                corner.normal = ObjCorner::none;
+        }
+        if (side < 0) {
+            std::swap(corners[1], corners[2]);
+            normal = -normal;
+        }
+        uvec3 triangle;
+        for (int i = 0; i < 3; ++i) triangle[i] = add_vertex(obj, corners[i], normal);
+        scene_.triangles.push_back(triangle);
+        return true;
+    }
+
+    // A vertex that was added before with the same attributes, or a new one. The geometric normal belongs to
+    // one triangle, so that a corner without a normal of its own is not shared.
+    uint32_t add_vertex(const ObjFile& obj, ObjCorner corner, const dvec3& geometric_normal) {
+        if (!with_texture_coordinates_) corner.texture_coordinates = ObjCorner::none;
+        const auto next = static_cast<uint32_t>(scene_.positions.size());
+        if (!with_normals_ || corner.normal != ObjCorner::none) {
+            const auto [vertex, is_new] = vertices_.try_emplace(corner, next);
+            if (!is_new) return vertex->second;
+        }
+        if (next == ObjCorner::none) throw UserError(obj.file + ": the scene has more than 2^32 vertices");
+        scene_.positions.push_back(obj.positions[corner.position]);
+        if (with_normals_)
+            scene_.normals.emplace_back(corner.normal == ObjCorner::none
+                                            ? geometric_normal
+                                            : glm::normalize(dvec3(obj.normals[corner.normal])));
+        if (with_texture_coordinates_) {
+            const bool absent = corner.texture_coordinates == ObjCorner::none;
+            const vec2 uv = absent ? vec2(0, 1) : obj.texture_coordinates[corner.texture_coordinates];
+            scene_.texture_coordinates.emplace_back(uv.x,
+                                                    1 - uv.y);  // v points up in the file, down in the scene
+        }
+        return next;
+    }
+
+    uint32_t add_material(const ObjFile& obj, const MtlMaterial& source) {
+        Material material = source.material;
+        if (!specular_) {
+            if (material.specular_albedo != vec3(0) && !ignored_specular_) {
+                scene_.warnings.push_back(obj.file +
+                                          ": Ks is ignored: \"specular\" switches the Phong lobe on");
+                ignored_specular_ = true;
+            }
+            material.specular_albedo = vec3(0);
+            material.specular_exponent = 0;
+        }
+        const vec3 albedo = material.diffuse_albedo + material.specular_albedo;
+        const float largest = std::max({albedo.x, albedo.y, albedo.z});
+        if (largest > 1) {
+            scene_.warnings.push_back(
+                obj.file + ": material " + in_quotes(source.name) + " reflects more than it receives: " +
+                (specular_ ? "Kd and Ks are" : "Kd is") + " divided by " + std::to_string(largest));
+            // A division alone may leave a sum one rounding error above 1.
+            const float scale = std::nextafter(1 / largest, 0.0f);
+            material.diffuse_albedo *= scale;
+            material.specular_albedo *= scale;
+        }
+        if (!source.albedo_texture.empty()) material.albedo_texture = add_texture(source.albedo_texture);
+        scene_.materials.push_back(material);
+        return static_cast<uint32_t>(scene_.materials.size() - 1);
+    }
+
+    int add_texture(const std::filesystem::path& file) {
+        const auto [texture, is_new] =
+            textures_.try_emplace(file.lexically_normal(), static_cast<int>(scene_.textures.size()));
+        if (is_new) {
+            scene_.textures.push_back(read_texture(file));
+            sources_.read(file, max_image_file_bytes);  // for the hash
+        }
+        return texture->second;
+    }
+
+    const bool specular_;
+    SourceFiles& sources_;
+    Scene& scene_;
+    bool with_normals_ = false;
+    bool with_texture_coordinates_ = false;
+    bool ignored_specular_ = false;
+    std::unordered_map<ObjCorner, uint32_t, CornerHash> vertices_;  // of the current file
+    std::map<std::filesystem::path, int> textures_;
+};
+
+bool has_normals(const ObjFile& obj) {
+    return std::any_of(obj.corners.begin(), obj.corners.end(), [&](const ObjCorner& corner) {
+        return corner.normal != ObjCorner::none && has_direction(dvec3(obj.normals[corner.normal]));
+    });
+}
+
+bool has_textures(const ObjFile& obj) {
+    return std::any_of(obj.triangle_materials.begin(), obj.triangle_materials.end(),
+                       [&](uint32_t material) { return !obj.materials[material].albedo_texture.empty(); });
+}
+
+}  // namespace
+
+void assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene) {
+    const bool with_normals = std::any_of(files.begin(), files.end(), has_normals);
+    const bool with_texture_coordinates = std::any_of(files.begin(), files.end(), has_textures);
+    Assembly assembly(specular, sources, scene);
+    for (const ObjFile& file : files) assembly.add(file, with_normals, with_texture_coordinates);
+}
+
+}  // namespace lab

@@ -1,0 +1,28 @@
+// Materials from Wavefront .mtl files.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/source_files.h"
+#include "shaders/interface.h"
+
+namespace lab {
+
+// A material as its file states it: Kd, Ks and their sum may still exceed 1, albedo_texture is not yet set.
+struct MtlMaterial {
+    std::string name;
+    Material material;
+    std::filesystem::path albedo_texture;  // map_Kd, or empty
+};
+
+// Kd, map_Kd, Ke, Ks and Ns as in Material; Kd is white for a material with map_Kd alone. d < 1 or Tr > 0 (=
+// 1 - d) makes a smooth dielectric of refractive index Ni that absorbs -ln Tf per unit of length, nothing
+// without Tf; Tf 0 would be infinite absorption and is refused. Other keywords have no effect, which a
+// warning says. Textures are relative to texture_folder. UserError for numbers that are missing, not finite
+// or out of range.
+std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file,
+                                  const std::filesystem::path& texture_folder, SourceFiles& files,
+                                  std::vector<std::string>& warnings);
+
+}  // namespace lab

@@ -1,0 +1,217 @@
+#include "scene/obj_file.h"
+
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <streambuf>
+#include <unordered_map>
+
+#include "error.h"
+#include "scene/text_lines.h"
+#include "scene/triangulate.h"
+
+namespace lab {
+namespace {
+
+constexpr uint64_t max_obj_bytes = uint64_t{1} << 30;
+constexpr int max_polygon_corners = 256;
+constexpr size_t max_triangles = size_t{1}
+                                 << 28;  // what the leaves of the bounding volume hierarchy can refer to
+
+// Lets tinyobjloader read text in memory, and knows the line that it read last.
+class TextBuffer : public std::streambuf {
+  public:
+    explicit TextBuffer(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
+
+    std::string_view last_line() const {
+        std::string_view line(eback(), static_cast<size_t>(gptr() - eback()));
+        if (line.ends_with('\n')) line.remove_suffix(1);
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        const size_t end_before = line.find_last_of("\r\n");
+        return end_before == std::string_view::npos ? line : line.substr(end_before + 1);
+    }
+
+    size_t last_line_number() const {
+        std::string_view text(eback(), static_cast<size_t>(gptr() - eback()));
+        size_t count = 0;
+        for (; !text.empty(); ++count) take_line(text);
+        return count;
+    }
+};
+
+// Collects what tinyobjloader's callbacks report.
+class ObjReader : public tinyobj::MaterialReader {
+  public:
+    ObjReader(const std::filesystem::path& path, SourceFiles& files, std::vector<std::string>& warnings)
+        : path_(path),
+          files_(files),
+          warnings_(warnings),
+          text_(files.read(path, max_obj_bytes)),
+          buffer_(text_) {
+        obj_.file = path.string();
+    }
+
+    ObjFile read() {
+        if (text_.find('\0') != std::string::npos)
+            throw UserError(obj_.file + ": not an .obj file: it is binary");
+        tinyobj::callback_t callbacks;
+        callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
+            static_cast<ObjReader*>(self)->check_numbers(3);
+            static_cast<ObjReader*>(self)->obj_.positions.emplace_back(x, y, z);
+        };
+        callbacks.normal_cb = [](void* self, float x, float y, float z) {
+            static_cast<ObjReader*>(self)->check_numbers(3);
+            static_cast<ObjReader*>(self)->obj_.normals.emplace_back(x, y, z);
+        };
+        callbacks.texcoord_cb = [](void* self, float u, float v, float) {
+            static_cast<ObjReader*>(self)->check_numbers(1);
+            static_cast<ObjReader*>(self)->obj_.texture_coordinates.emplace_back(u, v);
+        };
+        callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
+            static_cast<ObjReader*>(self)->add_face({indices, static_cast<size_t>(count)});
+        };
+        callbacks.usemtl_cb = [](void* self, const char* name, int) {
+            static_cast<ObjReader*>(self)->use_material(name);
+        };
+        std::istream stream(&buffer_);
+        tinyobj::LoadObjWithCallback(stream, callbacks, this, this);
+
+        if (obj_.corners.empty()) throw UserError(obj_.file + ": there are no faces in it");
+        if (faces_without_material_ > 0)
+            warnings_.push_back(obj_.file + ": " + std::to_string(faces_without_material_) +
+                                " faces without a material are drawn in grey");
+        return std::move(obj_);
+    }
+
+    // Called for each word after mtllib until one is found. Exporters do not escape spaces: first try them
+    // all as one.
+    bool operator()(const std::string& word, std::vector<tinyobj::material_t>*, std::map<std::string, int>*,
+                    std::string*, std::string*) override {
+        std::string all(buffer_.last_line());
+        all.erase(0, all.find_first_not_of(" \t", all.find("mtllib") + 6));
+        all.erase(all.find_last_not_of(" \t") + 1);
+        std::erase(all, '\\');  // escapes a space
+        const std::filesystem::path folder = path_.parent_path();
+        std::filesystem::path file = folder / all;
+        if (!std::filesystem::exists(file)) file = folder / word;
+        if (!std::filesystem::exists(file) && !all.ends_with(word))
+            return false;  // there are more words to try
+        for (MtlMaterial& material : read_mtl(file, folder, files_, warnings_)) {
+            material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));
+            obj_.materials.push_back(std::move(material));
+        }
+        return true;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& reason) const {
+        throw UserError(obj_.file + ":" + std::to_string(buffer_.last_line_number()) + ": " + reason);
+    }
+
+    // tinyobjloader reads 0 where there is no finite number.
+    void check_numbers(size_t count) const {
+        const std::vector<std::string_view> words = words_of(buffer_.last_line());
+        if (words.size() < count + 1)
+            fail(std::string(words[0]) + " needs " + std::to_string(count) + " numbers");
+        for (size_t i = 1; i < words.size(); ++i)
+            if (!to_number(words[i])) fail(in_quotes(words[i]) + " is not a finite number");
+    }
+
+    // tinyobjloader reads 0 where there is no number, and wraps those of more than 32 bits.
+    void check_indices() const {
+        std::string_view line = buffer_.last_line();
+        line.remove_prefix(line.find('f') + 1);
+        size_t digits = 0;
+        for (const char c : line) {
+            digits = c >= '0' && c <= '9' ? digits + 1 : 0;
+            if (digits > 9) fail("an index has more than 9 digits");
+            if (digits == 0 && c != '-' && c != '/' && c != ' ' && c != '\t')
+                fail("a face must be made of vertex indices");
+        }
+    }
+
+    // Indices in a file count from 1, negative ones from the end; 0 is what tinyobjloader reports for an
+    // absent one.
+    uint32_t resolve(int index, size_t count, const char* what) const {
+        const int64_t resolved = index > 0 ? int64_t{index} - 1 : static_cast<int64_t>(count) + index;
+        if (index == 0 || resolved < 0 || resolved >= static_cast<int64_t>(count))
+            fail("the face refers to " + std::string(what) + " " + std::to_string(index) +
+                 ", but there are " + std::to_string(count) + " so far (counted from 1)");
+        return static_cast<uint32_t>(resolved);
+    }
+
+    void add_face(std::span<const tinyobj::index_t> indices) {
+        check_indices();
+        if (indices.size() < 3) fail("a face needs at least 3 corners");
+        if (indices.size() > max_polygon_corners) fail("a face may have at most 256 corners: triangulate it");
+        face_.clear();
+        for (const tinyobj::index_t& index : indices) {
+            ObjCorner& corner = face_.emplace_back();
+            corner.position = resolve(index.vertex_index, obj_.positions.size(), "vertex");
+            if (index.texcoord_index != 0)
+                corner.texture_coordinates =
+                    resolve(index.texcoord_index, obj_.texture_coordinates.size(), "texture coordinate");
+            if (index.normal_index != 0)
+                corner.normal = resolve(index.normal_index, obj_.normals.size(), "normal");
+        }
+        if (!material_) {
+            material_ = static_cast<uint32_t>(obj_.materials.size());
+            obj_.materials.push_back(grey_material());
+            grey_ = material_;
+        }
+        if (material_ == grey_) ++faces_without_material_;
+        if (face_.size() == 3) {
+            add_triangle(0, 1, 2);
+        } else {
+            std::vector<vec3> polygon;
+            for (const ObjCorner& corner : face_) polygon.push_back(obj_.positions[corner.position]);
+            for (const auto& [a, b, c] : triangulate(polygon)) add_triangle(a, b, c);
+        }
+    }
+
+    void add_triangle(uint32_t a, uint32_t b, uint32_t c) {
+        if (obj_.triangle_materials.size() == max_triangles) fail("there are more than 2^28 triangles");
+        obj_.corners.insert(obj_.corners.end(), {face_[a], face_[b], face_[c]});
+        obj_.triangle_materials.push_back(*material_);
+    }
+
+    void use_material(std::string_view name) {
+        name = name.substr(0, name.find_last_not_of(" \t") + 1);
+        const auto found = material_indices_.find(std::string(name));
+        if (found != material_indices_.end())
+            material_ = found->second;
+        else if (material_indices_.empty())
+            material_ = grey_;
+        else
+            fail("there is no material " + in_quotes(name) + " in the material files named so far");
+    }
+
+    static MtlMaterial grey_material() {
+        Material material{};
+        material.diffuse_albedo = vec3(0.5f);
+        material.albedo_texture = -1;
+        return {"", material, {}};
+    }
+
+    const std::filesystem::path& path_;
+    SourceFiles& files_;
+    std::vector<std::string>& warnings_;
+    std::string text_;
+    TextBuffer buffer_;
+    ObjFile obj_;
+    std::vector<ObjCorner> face_;
+    std::unordered_map<std::string, uint32_t> material_indices_;
+    std::optional<uint32_t> material_;  // of the next face, if usemtl named one
+    std::optional<uint32_t> grey_;
+    size_t faces_without_material_ = 0;
+};
+
+}  // namespace
+
+ObjFile read_obj(const std::filesystem::path& file, SourceFiles& files, std::vector<std::string>& warnings) {
+    return ObjReader(file, files, warnings).read();
+}
+
+}  // namespace lab

@@ -1,0 +1,106 @@
+#include "scene/scene.h"
+
+#include <map>
+
+#include "error.h"
+#include "scene/features.h"
+#include "scene/mesh_assembly.h"
+#include "scene/scene_file.h"
+
+namespace lab {
+namespace {
+
+Instance make_instance(const std::string& file, const MeshPlacement& placement, const Mesh& mesh) {
+    Instance instance;
+    instance.object_to_world = mat4x3(placement.object_to_world);
+    instance.normal_to_world = mat3(glm::inverse(glm::transpose(glm::dmat3(placement.object_to_world))));
+    instance.first_triangle = mesh.first_triangle;
+    for (int column = 0; column < 3; ++column)
+        if (glm::any(glm::isinf(instance.normal_to_world[column])) ||
+            glm::any(glm::isnan(instance.normal_to_world[column])))
+            throw UserError(file + ": the scale of " + mesh.file + " is too small or too large");
+    return instance;
+}
+
+// Reads each mesh file once, however often it is placed, and places it.
+void load_meshes(const SceneDescription& description, bool specular, SourceFiles& sources, Scene& scene) {
+    std::map<std::filesystem::path, uint32_t> mesh_of_file;
+    std::vector<ObjFile> files;
+    for (const MeshPlacement& placement : description.meshes) {
+        const auto [mesh, is_new] =
+            mesh_of_file.try_emplace(placement.file.lexically_normal(), static_cast<uint32_t>(files.size()));
+        if (is_new) files.push_back(read_obj(placement.file, sources, scene.warnings));
+        scene.instance_meshes.push_back(mesh->second);
+    }
+    assemble_meshes(files, specular, sources, scene);
+    for (size_t i = 0; i < description.meshes.size(); ++i)
+        scene.instances.push_back(make_instance(scene.file.string(), description.meshes[i],
+                                                scene.meshes[scene.instance_meshes[i]]));
+}
+
+}  // namespace
+
+Bounds world_bounds(const Scene& scene) {
+    std::vector<Bounds> mesh_bounds(scene.meshes.size());
+    for (size_t i = 0; i < scene.meshes.size(); ++i) {
+        const uint32_t first = scene.meshes[i].first_triangle;
+        for (uint32_t triangle = first; triangle < first + scene.meshes[i].triangle_count; ++triangle)
+            for (int corner = 0; corner < 3; ++corner)
+                mesh_bounds[i].grow(scene.positions[scene.triangles[triangle][corner]]);
+    }
+    Bounds world;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Bounds& box = mesh_bounds[scene.instance_meshes[i]];
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 point(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                   corner & 4 ? box.high.z : box.low.z);
+            world.grow(vec3(glm::dmat4x3(scene.instances[i].object_to_world) * glm::dvec4(point, 1)));
+        }
+    }
+    return world;
+}
+
+Scene load_scene(const std::filesystem::path& file, bool specular) {
+    const std::string name = file.string();
+    const std::string extension = lower_case_extension(file);
+    if (extension != ".json" && extension != ".obj")
+        throw UserError(name + ": a scene must be a .json or .obj file");
+    const bool is_bare_mesh = extension == ".obj";
+
+    SourceFiles sources;
+    SceneDescription description;
+    if (is_bare_mesh)
+        description.meshes.push_back({file});
+    else
+        description = read_scene_file(file, sources);
+
+    Scene scene;
+    scene.file = file;
+    scene.description = description.description;
+    scene.defaults = description.defaults;
+    load_meshes(description, specular || description.specular, sources, scene);
+
+    scene.background = description.background.value_or(vec3(0));
+    scene.probe_rotation = description.probe_rotation;
+    if (!description.light_probe.empty()) {
+        scene.light_probe = read_radiance(description.light_probe);
+        sources.read(description.light_probe, max_image_file_bytes);  // for the hash
+    }
+    if (is_bare_mesh && !features_of(scene).area_lights) {
+        scene.background = vec3(1);
+        scene.warnings.push_back(name + ": nothing in it emits light: the sky is white, of radiance 1");
+    }
+
+    const Bounds bounds = world_bounds(scene);
+    const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
+    if (!std::isfinite(diagonal))
+        throw UserError(name + ": its coordinates are too large for 32-bit numbers");
+    if (description.camera)
+        scene.camera = *description.camera;
+    else if (!scene.instances.empty())
+        scene.camera = framing_pose(bounds);
+    scene.hash = sources.hash();
+    return scene;
+}
+
+}  // namespace lab

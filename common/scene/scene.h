@@ -1,0 +1,84 @@
+// A scene as plain arrays, ready to be copied to a device.
+#pragma once
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+#include "shaders/interface.h"
+
+namespace lab {
+
+// The triangles of one mesh file: a contiguous range of the scene's triangles, in object space.
+struct Mesh {
+    std::string file;
+    uint32_t first_triangle = 0;
+    uint32_t triangle_count = 0;
+};
+
+// What a scene asks for where neither a flag nor a key says otherwise.
+struct RenderDefaults {
+    uint32_t width = 512;
+    uint32_t height = 512;
+    uint32_t samples = 64;
+    uint32_t max_path_length = 8;
+};
+
+struct CameraPose {
+    vec3 position{0, 0, 1};
+    vec3 target{0, 0, 0};
+    vec3 up{0, 1, 0};
+    float vertical_fov = 45;  // degrees, in (0,180)
+};
+
+struct Scene {
+    std::filesystem::path file;
+    std::string description;
+
+    std::vector<vec3> positions;  // object space
+    std::vector<vec3> normals;    // unit length, one a position; empty if no mesh has vertex normals
+    std::vector<vec2> texture_coordinates;  // one a position, v down from the top row; empty without textures
+    std::vector<uvec3> triangles;           // three positions, counter-clockwise seen from the front
+    std::vector<uint32_t> triangle_materials;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<uint32_t> instance_meshes;  // one an instance
+    std::vector<Texture> textures;
+
+    CameraPose camera;
+    vec3 background{0};                // constant sky, or factor of the light probe
+    std::optional<Image> light_probe;  // equirectangular, +Y up, image centre towards -Z
+    float probe_rotation = 0;          // radians
+    RenderDefaults defaults;
+
+    std::vector<std::string> warnings;  // one line each, to be shown to the user
+    uint64_t hash = 0;                  // FNV-1a of all files that the scene was read from
+};
+
+// Axis-aligned bounding box.
+struct Bounds {
+    vec3 low{std::numeric_limits<float>::infinity()};
+    vec3 high{-std::numeric_limits<float>::infinity()};
+    void grow(const vec3& point) { low = glm::min(low, point), high = glm::max(high, point); }
+    void grow(const Bounds& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
+};
+// Contains all instances in world space; tight unless a mesh is rotated. Empty (low > high) without
+// instances.
+Bounds world_bounds(const Scene& scene);
+
+// Reads a .json scene or a bare .obj. `specular` switches the Phong lobe on, as the scene's key of that name
+// does. Scenes that state no camera get the one of framing_pose(); a bare .obj without lights gets a white
+// sky. Throws UserError: one line with the file, what is wrong and what to do.
+Scene load_scene(const std::filesystem::path& file, bool specular = false);
+
+// Shows everything inside the bounds, from the side of +Z and slightly above, in images that are not upright.
+CameraPose framing_pose(const Bounds& bounds);
+
+// Camera for a pose and image size in pixels. An `up` that is zero or along the line of sight is replaced.
+// Throws UserError for a pose without a direction or with a field of view outside (0,180) degrees.
+Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height);
+
+}  // namespace lab

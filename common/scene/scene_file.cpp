@@ -1,0 +1,104 @@
+#include "scene/scene_file.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "error.h"
+#include "scene/json_object.h"
+
+namespace lab {
+namespace {
+
+constexpr uint64_t max_json_bytes = uint64_t{16} << 20;
+
+glm::dmat4 read_rotation(const JsonObject& rotation) {
+    const glm::dvec3 axis(rotation.required("axis", rotation.vector("axis")));
+    const double degrees = rotation.required("degrees", rotation.number("degrees"));
+    if (axis == glm::dvec3(0)) rotation.fail("axis", "must not be zero");
+    return glm::rotate(glm::dmat4(1), glm::radians(degrees), axis);
+}
+
+// The first of scale, rotation and translation to act on a point is the last factor.
+MeshPlacement read_placement(const JsonObject& entry, const std::filesystem::path& folder) {
+    MeshPlacement placement;
+    placement.file = folder / entry.required("file", entry.text("file"));
+    glm::dmat4 matrix(1);
+    if (const auto translation = entry.vector("translation"))
+        matrix = glm::translate(matrix, glm::dvec3(*translation));
+    if (entry.has("rotation")) matrix = matrix * read_rotation(entry.object("rotation", {"axis", "degrees"}));
+    if (const auto scale = entry.number_or_vector("scale")) {
+        if (scale->x == 0 || scale->y == 0 || scale->z == 0) entry.fail("scale", "must not be zero");
+        matrix = glm::scale(matrix, glm::dvec3(*scale));
+    }
+    placement.object_to_world = glm::dmat4x3(matrix);
+    return placement;
+}
+
+CameraPose read_camera(const JsonObject& camera) {
+    CameraPose pose;
+    pose.position = camera.required("position", camera.vector("position"));
+    pose.target = camera.required("target", camera.vector("target"));
+    if (pose.position == pose.target) camera.fail("target", "must differ from \"position\"");
+    pose.up = camera.vector("up").value_or(pose.up);
+    const double vertical_fov = camera.number("vertical_fov").value_or(pose.vertical_fov);
+    if (!(vertical_fov > 0 && vertical_fov < 180))
+        camera.fail("vertical_fov", "must be above 0 and below 180 degrees");
+    pose.vertical_fov = static_cast<float>(vertical_fov);
+    return pose;
+}
+
+vec3 read_radiance_value(const JsonObject& background, const char* key, const vec3& absent) {
+    const vec3 value = background.number_or_vector(key).value_or(absent);
+    if (glm::any(glm::lessThan(value, vec3(0)))) background.fail(key, "must not be negative");
+    return value;
+}
+
+void read_background(const JsonObject& background, const std::filesystem::path& folder,
+                     SceneDescription& scene) {
+    if (background.has("radiance") == background.has("light_probe"))
+        background.fail("radiance", "or \"light_probe\" must be given, and not both");
+    if (background.has("radiance")) {
+        for (const char* key : {"intensity", "rotation_degrees"})
+            if (background.has(key)) background.fail(key, "needs a \"light_probe\"");
+        scene.background = read_radiance_value(background, "radiance", vec3(0));
+    } else {
+        scene.light_probe = folder / background.required("light_probe", background.text("light_probe"));
+        scene.background = read_radiance_value(background, "intensity", vec3(1));
+        const double degrees = background.number("rotation_degrees").value_or(0);
+        scene.probe_rotation = static_cast<float>(glm::radians(std::fmod(degrees, 360.0)));
+    }
+}
+
+}  // namespace
+
+SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles& files) {
+    const std::string name = file.string();
+    const std::filesystem::path folder = file.parent_path();
+    const nlohmann::json content = parse_json(name, files.read(file, max_json_bytes));
+    const JsonObject root(content, name, "the scene",
+                          {"description", "meshes", "camera", "background", "specular", "width", "height",
+                           "samples", "max_path_length"});
+    SceneDescription scene;
+    scene.description = root.text("description").value_or("");
+    for (const nlohmann::json& entry : root.array("meshes"))
+        scene.meshes.push_back(read_placement(
+            {entry, name, "an entry of \"meshes\"", {"file", "scale", "rotation", "translation"}}, folder));
+    if (root.has("camera"))
+        scene.camera = read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
+    if (root.has("background"))
+        read_background(
+            root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder,
+            scene);
+    scene.specular = root.boolean("specular").value_or(false);
+
+    constexpr uint32_t max_count = 1'000'000'000;
+    RenderDefaults& defaults = scene.defaults;
+    defaults.width = root.integer("width", 1, max_image_extent).value_or(defaults.width);
+    defaults.height = root.integer("height", 1, max_image_extent).value_or(defaults.height);
+    defaults.samples = root.integer("samples", 1, max_count).value_or(defaults.samples);
+    defaults.max_path_length =
+        root.integer("max_path_length", 0, max_count).value_or(defaults.max_path_length);
+    return scene;
+}
+
+}  // namespace lab

@@ -1,0 +1,36 @@
+// Scene descriptions in JSON.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/source_files.h"
+
+namespace lab {
+
+// One entry of "meshes".
+struct MeshPlacement {
+    std::filesystem::path file;
+    glm::dmat4x3 object_to_world{1};  // translation * rotation * scale
+};
+
+// What a scene file states. The files that it names are not read yet; relative ones are relative to its
+// folder.
+struct SceneDescription {
+    std::string description;
+    std::vector<MeshPlacement> meshes;
+    std::optional<CameraPose> camera;
+    std::optional<vec3> background;     // constant radiance, or factor of the light probe
+    std::filesystem::path light_probe;  // empty for a constant background
+    float probe_rotation = 0;           // radians
+    bool specular = false;
+    RenderDefaults defaults;
+};
+
+// UserError naming the line of a syntax error, or the key that is unknown, missing, of the wrong type or out
+// of range.
+SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles& files);
+
+}  // namespace lab

@@ -1,0 +1,18 @@
+// Text files line by line, for the checks that tinyobjloader leaves out: it reads what is not a number as 0.
+#pragma once
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace lab {
+
+// Takes the first line off the text; ends of line are \n, \r\n or \r.
+std::string_view take_line(std::string_view& text);
+
+// The words of a line, separated by spaces and tabs, up to a comment (#).
+std::vector<std::string_view> words_of(std::string_view line);
+
+// The number that a whole word is. Nothing if it is none, infinite or NaN in 32 bits.
+std::optional<float> to_number(std::string_view word);
+
+}  // namespace lab

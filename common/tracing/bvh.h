@@ -1,0 +1,62 @@
+// The bounding volume hierarchy of the `compute` backend, built on the CPU.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace lab {
+
+// Four children side by side, 128 bytes = 8 texels: bounds as low/high rows of x, y and z, then references.
+// A reference is the index of an inner node, or (number of triangles << 28) | first triangle for a leaf, or 0
+// where there is no child (no child is the root).
+struct BvhNode {
+    std::array<std::array<std::array<float, 4>, 2>, 3>
+        bounds;  // [axis][low, high][child]; no child: low > high
+    std::array<uint32_t, 4> children;
+    std::array<uint32_t, 4> padding;
+
+    // The bounds of a child. They exceed those of its triangles by bvh_padding times their largest
+    // coordinate.
+    Bounds child_bounds(size_t child) const;
+};
+static_assert(sizeof(BvhNode) == 128);
+
+// Covers the rounding errors of boxes and triangles in the traversal, which adds as much for the ray's
+// origin: these are a few times 2^-24 of the coordinates.
+inline constexpr float bvh_padding = 0x1p-20f;
+
+inline constexpr uint32_t bvh_leaf_shift = 28;
+inline bool is_bvh_leaf(uint32_t reference) { return reference >> bvh_leaf_shift != 0; }
+
+// World-space vertices of a triangle, with its ids in the fourth components: 48 bytes = 3 texels.
+struct BvhTriangle {
+    vec3 vertex_0;
+    uint32_t instance;
+    vec3 vertex_1;
+    uint32_t triangle;  // in Scene::triangles
+    vec3 vertex_2;
+    uint32_t padding;
+};
+static_assert(sizeof(BvhTriangle) == 48);
+
+struct Bvh {
+    std::vector<BvhNode> nodes;          // node 0 is the root; children follow their parents
+    std::vector<BvhTriangle> triangles;  // in the order of the leaves
+    uint32_t max_stack_entries = 1;  // for a traversal that pushes all but the nearest child, and a sentinel
+    double surface_area_cost = 0;    // expected nodes + triangles visited by a random ray that hits the root
+    double build_seconds = 0;
+};
+
+// World-space triangles of all instances; positions are transformed in double. Throws UserError for more than
+// 2^28 triangles and for coordinates beyond 1e18, whose products would overflow in the triangle test.
+std::vector<BvhTriangle> world_triangles(const Scene& scene);
+
+// Binned surface area heuristic (32 bins, 3 axes, at most 4 triangles a leaf), collapsed to four children.
+// Takes any number of triangles below 2^28, also none. Large inputs are built by several threads; the result
+// does not depend on how many. Source: Wald, "On fast construction of SAH-based bounding volume hierarchies",
+// 2007.
+Bvh build_bvh(const std::vector<BvhTriangle>& triangles);
+
+}  // namespace lab

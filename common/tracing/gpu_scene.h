@@ -1,0 +1,33 @@
+// A scene's arrays on the device. What the scene has not got is not allocated.
+#pragma once
+#include <vector>
+
+#include "gpu/compute_kernel.h"
+#include "scene/features.h"
+#include "scene/scene.h"
+
+namespace lab {
+
+class GpuScene {
+  public:
+    GpuScene(const Device& device, const Scene& scene);
+
+    const Scene& scene() const { return *scene_; }
+
+    // Bindings of the arrays, and the defines that make shaders/scene.glsl declare exactly these.
+    const std::vector<Binding>& bindings() const { return bindings_; }
+    const std::vector<std::string>& defines() const { return defines_; }
+
+  private:
+    template <typename T>
+    void add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data);
+    void add_images(const Device& device, const SceneFeatures& features);
+
+    const Scene* scene_;
+    std::vector<Buffer> buffers_;
+    std::vector<SampledImage> images_;
+    std::vector<Binding> bindings_;
+    std::vector<std::string> defines_;
+};
+
+}  // namespace lab

@@ -1,0 +1,46 @@
+// Runs an estimator on a scene. The backends differ in their acceleration structure and in how rays are traced.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tracing/gpu_scene.h"
+
+namespace lab {
+
+enum class Backend { compute };
+
+// The name used on the command line and in reports.
+std::string to_string(Backend backend);
+
+// A shader with the function path_trace(), and the defines that configure it.
+struct Estimator {
+    std::filesystem::path file;
+    std::vector<std::string> defines = {};
+};
+
+// An estimator that is compiled for a scene and a backend.
+class Tracer {
+  public:
+    virtual ~Tracer() = default;
+    // Brings `block_count` blocks of pixels up to the asked number of samples.
+    virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
+                        uint32_t block_count) const = 0;
+};
+
+// A scene's acceleration structure, built once and used by all its tracers.
+class AccelerationStructure {
+  public:
+    virtual ~AccelerationStructure() = default;
+    // `bindings`: render parameters, film and ray counters. Throws UserError if the estimator does not compile.
+    virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
+                                                std::span<const Binding> bindings) const = 0;
+};
+
+// `scene` must outlive the result.
+std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
+                                                                    const GpuScene& scene);
+
+}  // namespace lab

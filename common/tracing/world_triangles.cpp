@@ -1,0 +1,35 @@
+#include "error.h"
+#include "tracing/bvh.h"
+
+namespace lab {
+
+// The triangle test multiplies two coordinates.
+static constexpr float largest_coordinate = 1e18f;
+
+std::vector<BvhTriangle> world_triangles(const Scene& scene) {
+    size_t count = 0;
+    for (const uint32_t mesh : scene.instance_meshes) count += scene.meshes[mesh].triangle_count;
+    if (count >= size_t{1} << bvh_leaf_shift)
+        throw UserError(scene.file.string() + ": its instances have " + std::to_string(count) +
+                        " triangles together, more than 2^28 - 1; remove instances or use another backend");
+    std::vector<BvhTriangle> triangles;
+    triangles.reserve(count);
+    for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
+        const glm::dmat4x3 object_to_world(scene.instances[instance].object_to_world);
+        const auto world = [&](uint32_t position) {
+            const vec3 result(object_to_world * glm::dvec4(scene.positions[position], 1));
+            if (!glm::all(glm::lessThanEqual(glm::abs(result), vec3(largest_coordinate))))
+                throw UserError(scene.file.string() + ": instance " + std::to_string(instance) +
+                                " has coordinates beyond 1e18 in the world; scale it down");
+            return result;
+        };
+        const Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
+        for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i) {
+            const uvec3 vertices = scene.triangles[i];
+            triangles.push_back({world(vertices.x), instance, world(vertices.y), i, world(vertices.z), 0});
+        }
+    }
+    return triangles;
+}
+
+}  // namespace lab

@@ -1,0 +1,20 @@
+// Accumulation of samples in a pixel.
+
+// True for infinities and NaN. Looks at the bits, since compilers may assume that isnan() and isinf() are false.
+bool is_invalid(float number) { return (floatBitsToUint(number) & 0x7f800000u) == 0x7f800000u; }
+
+// Adds a sample by Kahan's compensated summation: in 32 bits a plain sum of 10^7 samples is wrong by percents.
+// An invalid sample adds nothing but is counted.
+void add_sample(inout FilmPixel pixel, vec3 radiance) {
+    pixel.sample_count += 1u;
+    if (is_invalid(radiance.r) || is_invalid(radiance.g) || is_invalid(radiance.b)) {
+        pixel.invalid_count += 1u;
+        return;
+    }
+    // `precise` forbids the algebra that would cancel the compensation to zero.
+    precise vec3 corrected = radiance + pixel.compensation;
+    precise vec3 sum = pixel.sum + corrected;
+    precise vec3 lost = corrected - (sum - pixel.sum);
+    pixel.compensation = lost;
+    pixel.sum = sum;
+}

@@ -1,0 +1,99 @@
+// Structs and constants that C++ and GLSL share: each is written once, here. Both sides use scalar block layout.
+#ifndef INTERFACE_H
+#define INTERFACE_H
+
+#ifdef __cplusplus
+#include <glm/glm.hpp>
+namespace lab {
+using glm::mat3;
+using glm::mat4x3;
+using glm::uvec2;
+using glm::uvec3;
+using glm::vec2;
+using glm::vec3;
+using uint = glm::uint;
+#define SHARED_CONSTANT inline constexpr uint
+#else
+#define SHARED_CONSTANT const uint
+#endif
+
+// Descriptor set 0. Bindings whose scene feature is absent are neither declared nor allocated.
+SHARED_CONSTANT BINDING_RENDER_PARAMETERS = 0u;
+SHARED_CONSTANT BINDING_FILM = 1u;
+SHARED_CONSTANT BINDING_RAY_COUNTERS = 2u;
+SHARED_CONSTANT BINDING_POSITIONS = 3u;
+SHARED_CONSTANT BINDING_TRIANGLES = 4u;
+SHARED_CONSTANT BINDING_TRIANGLE_MATERIALS = 5u;
+SHARED_CONSTANT BINDING_MATERIALS = 6u;
+SHARED_CONSTANT BINDING_NORMALS = 7u;
+SHARED_CONSTANT BINDING_TEXTURE_COORDINATES = 8u;
+SHARED_CONSTANT BINDING_INSTANCES = 9u;
+SHARED_CONSTANT BINDING_TEXTURES = 10u;
+SHARED_CONSTANT BINDING_LIGHT_PROBE = 11u;
+SHARED_CONSTANT BINDING_BVH_NODES = 12u;
+SHARED_CONSTANT BINDING_BVH_TRIANGLES = 13u;
+
+// A workgroup renders a block of BLOCK_WIDTH x BLOCK_HEIGHT pixels.
+SHARED_CONSTANT BLOCK_WIDTH = 8u;
+SHARED_CONSTANT BLOCK_HEIGHT = 8u;
+
+// Rays are counted into this many counters, so that pixels rarely wait for each other.
+SHARED_CONSTANT RAY_COUNTER_COUNT = 64u;
+
+// What a triangle is made of, from MTL. Reflectances are linear, in [0,1]; diffuse + specular is at most 1.
+struct Material {
+    vec3 diffuse_albedo;       // Kd
+    int albedo_texture;        // map_Kd: index into the textures that multiply diffuse_albedo, or -1
+    vec3 emission;             // Ke: emitted radiance, from the front only
+    float specular_exponent;   // Ns: exponent n of the normalised Phong lobe
+    vec3 specular_albedo;      // Ks: zero unless the scene asks for `specular`
+    float refractive_index;    // Ni of a smooth dielectric (d < 1), or 0 for an opaque surface
+    vec3 absorption;           // sigma = -ln Tf per unit of world length inside a dielectric
+};
+
+// One placement of a mesh in the world.
+struct Instance {
+    mat4x3 object_to_world;  // columns: images of the axes, then the translation
+    mat3 normal_to_world;    // inverse transpose of the linear part: keeps the front side, mirrored or not
+    uint first_triangle;     // of the instance's mesh in the array of triangles
+};
+
+// A pinhole camera: the ray through image position (s, t) in [-1,1]^2 (t down) is forward + s right - t up.
+struct Camera {
+    vec3 position;
+    vec3 forward;  // unit length
+    vec3 right;    // scaled by tan(horizontal field of view / 2)
+    vec3 up;       // scaled by tan(vertical field of view / 2)
+};
+
+// Constant during a render.
+struct RenderParameters {
+    Camera camera;
+    uvec2 image_size;
+    uvec2 seed_key;          // scrambles the start states of the random numbers
+    uint first_sample;       // index of this render's first sample in every pixel
+    uint max_path_length;    // number of bounces after which a path ends: 0 shows emission only
+    int only_path_length;    // counts light only after exactly this many bounces; -1 counts all
+    vec3 background;         // radiance of the sky; with a light probe its factor
+    float probe_rotation;    // radians about +Y, counter-clockwise seen from above
+};
+
+// Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from
+// first_sample), so that it does not matter how a render is cut into dispatches.
+struct DispatchParameters {
+    uint first_block;
+    uint target_samples;
+};
+
+// What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation).
+struct FilmPixel {
+    vec3 sum;
+    vec3 compensation;
+    uint sample_count;   // includes the invalid ones
+    uint invalid_count;  // samples that were infinite or not a number; they add 0
+};
+
+#ifdef __cplusplus
+}  // namespace lab
+#endif
+#endif

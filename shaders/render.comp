@@ -1,0 +1,13 @@
+#version 460
+// A path tracer in a compute shader: a workgroup renders a block of pixels.
+#include "interface.h"
+#include "scene.glsl"
+#include "ray.glsl"
+#include "trace_ray/compute.glsl"
+#include "render_pixel.glsl"
+
+layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCK_HEIGHT) in;
+
+layout(scalar, push_constant) uniform DispatchParametersBlock { DispatchParameters dispatch; };
+
+void main() { render_pixel(dispatch.first_block + gl_WorkGroupID.x, gl_LocalInvocationID.xy, dispatch.target_samples); }

@@ -1,0 +1,28 @@
+// The scene's arrays as the device sees them. What a scene has not got is not declared.
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_nonuniform_qualifier : require
+
+layout(scalar, set = 0, binding = BINDING_RENDER_PARAMETERS) uniform RenderParametersBlock {
+    RenderParameters parameters;
+};
+layout(scalar, set = 0, binding = BINDING_POSITIONS) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, set = 0, binding = BINDING_TRIANGLES) readonly buffer Triangles { uvec3 triangles[]; };
+layout(scalar, set = 0, binding = BINDING_TRIANGLE_MATERIALS) readonly buffer TriangleMaterials {
+    uint triangle_materials[];
+};
+layout(scalar, set = 0, binding = BINDING_MATERIALS) readonly buffer Materials { Material materials[]; };
+#ifdef FEATURE_VERTEX_NORMALS
+layout(scalar, set = 0, binding = BINDING_NORMALS) readonly buffer Normals { vec3 normals[]; };
+#endif
+#ifdef FEATURE_TEXTURES
+layout(scalar, set = 0, binding = BINDING_TEXTURE_COORDINATES) readonly buffer TextureCoordinates {
+    vec2 texture_coordinates[];
+};
+layout(set = 0, binding = BINDING_TEXTURES) uniform sampler2D textures[TEXTURE_COUNT];
+#endif
+#ifdef FEATURE_TRANSFORMS
+layout(scalar, set = 0, binding = BINDING_INSTANCES) readonly buffer Instances { Instance instances[]; };
+#endif
+#ifdef FEATURE_LIGHT_PROBE
+layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform sampler2D light_probe;
+#endif

@@ -1,0 +1,84 @@
+// Shading data: what the estimators need to know about the point that a ray has hit.
+
+struct ShadingData {
+    vec3 position;          // x_k
+    vec3 normal;            // n(x_k), interpolated, on the side of the geometric normal that the ray came from
+    vec3 geometric_normal;  // of the triangle, unit length, on the side that the ray came from
+    float offset;           // bound of the error of `position` along the geometric normal, in world units
+    vec3 emission;          // L_e(x_k, -ω_{k-1})
+    vec3 diffuse_albedo;    // in [0,1]
+#ifdef FEATURE_SPECULAR
+    vec3 specular_albedo;  // in [0,1]
+    float specular_exponent;
+#endif
+    vec2 texture_coordinates;  // (0,0) on scenes without textures
+};
+
+vec3 interpolate(vec3 a, vec3 b, vec3 c, vec3 weights) { return weights.x * a + weights.y * b + weights.z * c; }
+
+// Unit vector along v. Scaled first, since the squared length of a tiny triangle's normal would underflow.
+vec3 normalize_tiny(vec3 v) { return normalize(v / max(abs(v.x), max(abs(v.y), abs(v.z)))); }
+
+// Loads the vertices of the hit triangle and interpolates them with the barycentric coordinates w_0, w_1, w_2.
+ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
+    ShadingData s;
+    vec3 w = vec3(1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
+    uvec3 corners = triangles[hit.triangle];
+    vec3 x_0 = positions[corners.x], x_1 = positions[corners.y], x_2 = positions[corners.z];
+    s.position = interpolate(x_0, x_1, x_2, w);
+    vec3 magnitude = interpolate(abs(x_0), abs(x_1), abs(x_2), w);
+    // Counter-clockwise seen from the front: the scene's loader takes care of it.
+    s.geometric_normal = cross(x_1 - x_0, x_2 - x_0);
+#ifdef FEATURE_VERTEX_NORMALS
+    s.normal = interpolate(normals[corners.x], normals[corners.y], normals[corners.z], w);
+#endif
+#ifdef FEATURE_TRANSFORMS
+    Instance instance = instances[hit.instance];
+    mat3 linear = mat3(instance.object_to_world);
+    s.position = linear * s.position + instance.object_to_world[3];
+    magnitude = mat3(abs(linear[0]), abs(linear[1]), abs(linear[2])) * magnitude + abs(instance.object_to_world[3]);
+    s.geometric_normal = instance.normal_to_world * s.geometric_normal;
+#ifdef FEATURE_VERTEX_NORMALS
+    s.normal = instance.normal_to_world * s.normal;
+#endif
+#endif
+    s.geometric_normal = normalize_tiny(s.geometric_normal);
+#ifdef FEATURE_VERTEX_NORMALS
+    // Vertex normals that cancel each other leave only the triangle's own.
+    s.normal = s.normal == vec3(0.0) ? s.geometric_normal : normalize(s.normal);
+#else
+    s.normal = s.geometric_normal;
+#endif
+    // Eight roundings of relative size 2^-24 lie between the vertices and the position.
+    s.offset = 8.0 * 5.9604645e-8 * dot(magnitude, abs(s.geometric_normal));
+
+    Material material = materials[triangle_materials[hit.triangle]];
+    s.diffuse_albedo = material.diffuse_albedo;
+    s.texture_coordinates = vec2(0.0);
+#ifdef FEATURE_TEXTURES
+    s.texture_coordinates = w.x * texture_coordinates[corners.x] + w.y * texture_coordinates[corners.y] +
+                            w.z * texture_coordinates[corners.z];
+    if (material.albedo_texture >= 0)
+        s.diffuse_albedo *=
+            textureLod(textures[nonuniformEXT(material.albedo_texture)], s.texture_coordinates, 0.0).rgb;
+#endif
+#ifdef FEATURE_SPECULAR
+    s.specular_albedo = material.specular_albedo;
+    s.specular_exponent = material.specular_exponent;
+#endif
+    // Emitters emit from the front; surfaces reflect on both sides, so from here on both normals face the ray's origin.
+    bool is_front = dot(s.geometric_normal, ray_direction) < 0.0;
+    s.emission = is_front ? material.emission : vec3(0.0);
+    if (!is_front) {
+        s.geometric_normal = -s.geometric_normal;
+        s.normal = -s.normal;
+    }
+    return s;
+}
+
+// Ray from a surface point into the given direction. Its origin is moved off the surface by the point's error bound,
+// to the side that the direction points to, so that the ray cannot hit the surface it starts from.
+Ray get_ray_from_surface(ShadingData s, vec3 direction) {
+    float side = dot(s.geometric_normal, direction) < 0.0 ? -1.0 : 1.0;
+    return Ray(s.position + side * s.offset * s.geometric_normal, direction);
+}

@@ -1,0 +1,33 @@
+// Views: an estimator that shows what a camera ray hits instead of the radiance that it carries.
+
+// A colour that tells neighbouring numbers apart.
+vec3 get_colour(uint id) {
+    uvec2 seed = uvec2(id, 0u);
+    vec2 u = get_random_numbers(seed);
+    return vec3(u, get_random_numbers(seed).x);
+}
+
+vec3 path_trace(Ray ray, inout uvec2 seed) {
+    Hit hit;
+    bool is_hit = trace_ray(ray, NO_LIMIT, hit);
+#ifdef VIEW_BVH_STEPS
+    return vec3(traversal_steps);
+#endif
+    if (!is_hit) return vec3(0.0);
+    ShadingData s = get_shading_data(hit, ray.direction);
+#if defined(VIEW_NORMALS)
+    return 0.5 + 0.5 * s.normal;
+#elif defined(VIEW_DEPTH)
+    return vec3(hit.distance);
+#elif defined(VIEW_ALBEDO)
+    return s.diffuse_albedo;
+#elif defined(VIEW_EMISSION)
+    return s.emission;
+#elif defined(VIEW_TEXTURE_COORDINATES)
+    return vec3(fract(s.texture_coordinates), 0.0);
+#elif defined(VIEW_TRIANGLES)
+    return get_colour(hit.triangle);
+#else
+    return get_colour(hit.instance);
+#endif
+}

@@ -1,0 +1,500 @@
+#!/usr/bin/env python3
+"""Generates assets/ except references/: meshes, textures, the light probe, scenes and the licence.
+
+    tools/make_assets.py           writes the files
+    tools/make_assets.py --check   writes nothing; exits 1 naming the first file that is not as generated
+
+The same bytes come out on every machine: only Python's standard library, numbers rounded to few decimals,
+random numbers from a fixed seed, images uncompressed. One function a scene, at the end. +Y is up, lengths are
+in scene units, radiance in linear sRGB primaries, triangles counter-clockwise seen from their front.
+"""
+import argparse
+import json
+import math
+import struct
+import sys
+import zlib
+from colorsys import hsv_to_rgb
+from dataclasses import dataclass, field
+from pathlib import Path
+from random import Random
+
+ASSETS = Path(__file__).resolve().parent.parent / "assets"
+files = {}  # path below assets/ -> bytes
+
+
+# ---------------------------------------------------------------------------------------------- vectors
+def add(a, b): return tuple(x + y for x, y in zip(a, b))
+def subtract(a, b): return tuple(x - y for x, y in zip(a, b))
+def scale(s, a): return tuple(s * x for x in a)
+def dot(a, b): return sum(x * y for x, y in zip(a, b))
+def cross(a, b): return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+def normalize(a): return scale(1 / math.hypot(*a), a)
+
+
+def direction(theta, phi):
+    """Unit vector; theta from +Y, phi from +Z towards +X, both in radians."""
+    return (math.sin(theta) * math.sin(phi), math.cos(theta), math.sin(theta) * math.cos(phi))
+
+
+def rotate_y(degrees, a):
+    """Rotates counter-clockwise seen from above."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return (c * a[0] + s * a[2], a[1], c * a[2] - s * a[0])
+
+
+# ---------------------------------------------------------------------------------------------- files
+def numbers(values):
+    """Decimals without trailing zeros; -0 becomes 0."""
+    texts = (f"{x:.5f}".rstrip("0").rstrip(".") for x in values)
+    return " ".join("0" if text == "-0" else text for text in texts)
+
+
+@dataclass
+class Part:
+    """Triangles of one material. Normals, if any, go with positions; texture coordinates have triangles of
+    their own, because a texture has a seam where the surface has none."""
+    material: str
+    positions: list = field(default_factory=list)
+    triangles: list = field(default_factory=list)
+    normals: list = field(default_factory=list)
+    texture_coordinates: list = field(default_factory=list)
+    texture_triangles: list = field(default_factory=list)
+
+
+def write_mesh(name, parts, materials):
+    """meshes/NAME.obj and .mtl; materials: name -> {MTL keyword: text}."""
+    obj, material = [f"mtllib {name}.mtl"], None
+    first_position = first_texture_coordinate = first_normal = 1  # OBJ counts from 1, across all parts
+    for part in parts:
+        textured = "map_Kd" in materials[part.material]
+        obj += [f"v {numbers(p)}" for p in part.positions]
+        obj += [f"vt {numbers(t)}" for t in part.texture_coordinates if textured]
+        obj += [f"vn {numbers(n)}" for n in part.normals]
+        if part.material != material:
+            material = part.material
+            obj.append(f"usemtl {material}")
+        for k, triangle in enumerate(part.triangles):
+            corners = []
+            for i, vertex in enumerate(triangle):
+                corner = str(first_position + vertex)
+                if textured:
+                    corner += f"/{first_texture_coordinate + part.texture_triangles[k][i]}"
+                if part.normals:
+                    corner += ("/" if textured else "//") + str(first_normal + vertex)
+                corners.append(corner)
+            obj.append("f " + " ".join(corners))
+        first_position += len(part.positions)
+        first_texture_coordinate += len(part.texture_coordinates) if textured else 0
+        first_normal += len(part.normals)
+    used = dict.fromkeys(part.material for part in parts)
+    mtl = ["\n".join([f"newmtl {m}"] + [f"{key} {text}" for key, text in materials[m].items()]) for m in used]
+    files[f"meshes/{name}.obj"] = ("\n".join(obj) + "\n").encode()
+    files[f"meshes/{name}.mtl"] = ("\n\n".join(mtl) + "\n").encode()
+
+
+def mesh(name, **placement):
+    """One entry of a scene's list of meshes."""
+    return {"file": f"../meshes/{name}.obj", **placement}
+
+
+def turn(axis, degrees):
+    return {"axis": axis, "degrees": degrees}
+
+
+def camera(position, target, vertical_fov):
+    return {"position": position, "target": target, "up": [0, 1, 0], "vertical_fov": vertical_fov}
+
+
+def write_scene(name, description, meshes, view, **keys):
+    """scenes/NAME.json with one line a mesh."""
+    lines = [f'    "description": {json.dumps(description)}']
+    lines.append('    "meshes": [\n        ' + ",\n        ".join(map(json.dumps, meshes)) + "\n    ]")
+    lines += [f'    "{key}": {json.dumps(value)}' for key, value in {"camera": view, **keys}.items()]
+    files[f"scenes/{name}.json"] = ("{\n" + ",\n".join(lines) + "\n}\n").encode()
+
+
+def write_png(name, width, height, pixel):
+    """textures/NAME.png, eight bits a channel; pixel(x, y), y down: its sRGB-encoded channels in [0,1]."""
+    rows = [b"\0" + bytes(round(255 * c) for x in range(width) for c in pixel(x, y)) for y in range(height)]
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    # Stored, a block a row: what zlib compresses to depends on its version, and git compresses anyway.
+    blocks = b"".join(bytes([y == height - 1]) + struct.pack("<HH", len(row), 0xFFFF - len(row)) + row
+                      for y, row in enumerate(rows))
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)  # 8 bits, RGB, not interlaced
+    stream = b"\x78\x01" + blocks + struct.pack(">I", zlib.adler32(b"".join(rows)))
+    chunks = chunk(b"IHDR", header) + chunk(b"IDAT", stream) + chunk(b"IEND", b"")
+    files[f"textures/{name}.png"] = b"\x89PNG\r\n\x1a\n" + chunks
+
+
+def write_light_probe(name, width, height, radiance):
+    """light_probes/NAME.hdr, equirectangular; radiance(d): linear RGB that comes from direction d. The centre
+    of the image is towards -Z, its right half towards +X, its top +Y."""
+    content = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
+    for y in range(height):
+        pixels = []
+        for x in range(width):
+            d = direction(math.pi * (y + 0.5) / height, math.pi - 2 * math.pi * ((x + 0.5) / width - 0.5))
+            rgb = radiance(d)
+            exponent = math.frexp(max(rgb))[1]
+            pixels.append([min(255, round(c * 2**(8 - exponent))) for c in rgb] + [exponent + 128])
+        content += struct.pack(">BBH", 2, 2, width)  # a row: four planes, each in runs of at most 128 bytes
+        for plane in zip(*pixels):
+            for run in (plane[k:k + 128] for k in range(0, width, 128)):
+                content += bytes([len(run), *run])
+    files[f"light_probes/{name}.hdr"] = content
+
+
+# ---------------------------------------------------------------------------------------------- shapes
+def quad(material, corners, texture_size=(1, 1)):
+    """Two triangles; corners counter-clockwise from the front. The first is at texture coordinates (0,0), the
+    second along +u, the third at texture_size."""
+    (u, v), triangles = texture_size, [(0, 1, 2), (0, 2, 3)]
+    return Part(material, corners, triangles, [], [(0, 0), (u, 0), (u, v), (0, v)], triangles)
+
+
+def box(material, centre, size, degrees=0):
+    """A closed box facing outwards, turned about the vertical through its centre: six quads."""
+    faces = []
+    for axis, side in [(a, s) for a in range(3) for s in (-1, 1)]:
+        # The up of an upright face is +Y, so that its texture stands upright.
+        up = (0, 0, -side) if axis == 1 else (0, 1, 0)
+        outwards = tuple(side if i == axis else 0 for i in range(3))
+        right = cross(up, outwards)  # as seen from outside
+        corners = [add(outwards, add(scale(s, right), scale(t, up)))
+                   for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        sized = [tuple(x * s / 2 for x, s in zip(corner, size)) for corner in corners]
+        faces.append(quad(material, [add(centre, rotate_y(degrees, corner)) for corner in sized]))
+    return faces
+
+
+def globe(material, columns, rows, point):
+    """A closed surface like a globe: point(s, t) with s from 0 (north pole) to 1 (south pole), t from 0 to 1.
+    Texture coordinates are (t, 1 - s); at a pole each triangle has its own, in the middle of its t."""
+    rings = [point(i / rows, j / columns) for i in range(1, rows) for j in range(columns)]
+    part = Part(material, [point(0, 0), *rings, point(1, 0)])
+    part.texture_coordinates = [(j / columns, 1 - i / rows)
+                                for i in range(1, rows) for j in range(columns + 1)]
+    part.texture_coordinates += [((j + 0.5) / columns, v) for v in (1, 0) for j in range(columns)]  # poles
+
+    def vertex(i, j):
+        return 0 if i == 0 else len(rings) + 1 if i == rows else 1 + (i - 1) * columns + j % columns
+
+    def texture_vertex(i, j, column):
+        if 0 < i < rows:
+            return (i - 1) * (columns + 1) + j
+        return (rows - 1) * (columns + 1) + (columns if i == rows else 0) + column
+
+    def add_triangle(*corners, column):
+        part.triangles.append(tuple(vertex(i, j) for i, j in corners))
+        part.texture_triangles.append(tuple(texture_vertex(i, j, column) for i, j in corners))
+
+    for i in range(rows):
+        for j in range(columns):
+            if i < rows - 1:
+                add_triangle((i, j), (i + 1, j), (i + 1, j + 1), column=j)
+            if i > 0:
+                add_triangle((i, j), (i + 1, j + 1), (i, j + 1), column=j)
+    return part
+
+
+def sphere(material):
+    """The unit sphere."""
+    part = globe(material, 64, 32, lambda s, t: direction(math.pi * s, 2 * math.pi * t))
+    part.normals = part.positions
+    return part
+
+
+def torus(material):
+    """A torus about the Y axis: a tube of radius 0.42 around the circle of radius 1."""
+    part, columns, rows = Part(material), 96, 40
+    for i in range(columns):
+        for j in range(rows):
+            around, tube = direction(math.pi / 2, 2 * math.pi * i / columns), 2 * math.pi * j / rows
+            normal = add(scale(math.cos(tube), around), (0, math.sin(tube), 0))
+            part.positions.append(add(around, scale(0.42, normal)))
+            part.normals.append(normal)
+            a, b = i * rows + j, i * rows + (j + 1) % rows
+            c, d = (a + rows) % (columns * rows), (b + rows) % (columns * rows)
+            part.triangles += [(a, c, d), (a, d, b)]
+    return part
+
+
+def smooth(part):
+    """The same part with normals: the mean of the triangles at a vertex, weighted by their angles."""
+    sums = [(0, 0, 0)] * len(part.positions)
+    for triangle in part.triangles:
+        corners = [part.positions[v] for v in triangle]
+        for i, vertex in enumerate(triangle):
+            a, b = (normalize(subtract(corners[(i + k) % 3], corners[i])) for k in (1, 2))
+            angle = math.acos(max(-1, min(1, dot(a, b))))
+            sums[vertex] = add(sums[vertex], scale(angle, normalize(cross(a, b))))
+    part.normals = [normalize(n) for n in sums]
+    return part
+
+
+# ---------------------------------------------------------------------------------------------- the room
+ROOM_MATERIALS = {
+    "white": {"Kd": "0.74 0.73 0.71"}, "red": {"Kd": "0.62 0.12 0.1"}, "green": {"Kd": "0.16 0.46 0.13"},
+    "light": {"Kd": "0.5 0.5 0.5", "Ke": "13.8 12.2 9.8"},
+}
+
+
+def room(floor="white", light=True):
+    """A room of 2 x 2 x 2 with the floor at y = 0, centred at x = z = 0, open towards +Z. The light hangs
+    0.01 below the ceiling: in the same plane it would depend on the backend which of the two a ray hits."""
+    a, b, c, d = (-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)
+    e, f, g, h = (add(p, (0, 2, 0)) for p in (a, b, c, d))
+    parts = [quad(floor, [a, b, c, d]), quad("white", [e, h, g, f]), quad("white", [d, c, g, h]),
+             quad("red", [a, d, h, e]), quad("green", [c, b, f, g])]
+    if light:
+        s, y = 0.3, 1.99
+        parts.append(quad("light", [(-s, y, s), (-s, y, -s), (s, y, -s), (s, y, s)]))
+    return parts
+
+
+ROOM_CAMERA = camera([0, 1, 4], [0, 1, 0], 38)  # the room fills the picture but for a narrow rim
+
+
+# ---------------------------------------------------------------------------------------------- scenes
+def cornell_box():
+    # The boxes reach 0.02 below the floor, again to have no two surfaces in one plane.
+    tall = box("white", (-0.36, 0.59, -0.32), (0.58, 1.22, 0.58), 17)
+    short = box("white", (0.36, 0.28, 0.3), (0.58, 0.6, 0.58), -18)
+    write_mesh("cornell_box", room() + tall + short, ROOM_MATERIALS)
+    write_scene("cornell_box", "The Cornell box: two boxes between a red and a green wall, one ceiling light",
+                [mesh("cornell_box")], ROOM_CAMERA)
+
+
+def torus_scene():
+    write_mesh("room", room(), ROOM_MATERIALS)
+    write_mesh("torus", [torus("porcelain")], {"porcelain": {"Kd": "0.3 0.46 0.68"}})
+    write_scene("torus", "A smooth torus of 7,680 triangles in the Cornell box",
+                [mesh("room"), mesh("torus", scale=0.46, rotation=turn([1, -0.3, -0.45], 62),
+                                    translation=[0, 0.84, 0])], ROOM_CAMERA)
+
+
+def heart_radius(d):
+    """Distance from the centre to Taubin's heart (x^2 + y^2 + 9/4 z^2 - 1)^3 = x^2 y^3 + 9/80 z^2 y^3 in the
+    unit direction d. Along a ray it is a r^2 - 1 = b r^(5/3), which has one positive solution."""
+    a = d[0]**2 + d[1]**2 + 9 / 4 * d[2]**2
+    b = (d[0]**2 + 9 / 80 * d[2]**2)**(1 / 3) * d[1]
+    low, high = 0, 2
+    for _ in range(50):
+        r = (low + high) / 2
+        low, high = (r, high) if a * r * r - 1 < b * r**(5 / 3) else (low, r)
+    return r
+
+
+def heart_light():
+    # Rings lie closest together at the cleft, where the surface is steep: areas differ by a factor of 1,600.
+    def point(s, t):
+        d = direction(math.pi * s**1.6, 2 * math.pi * t)
+        return scale(heart_radius(d), d)
+
+    # Of uniform radiance it would look flat: what faces the camera glows whiter, in steps.
+    heart, steps = globe("", 72, 48, point), 16
+    parts = [Part(f"glow_{k}") for k in range(steps)]
+    materials = dict(ROOM_MATERIALS)
+    for k, part in enumerate(parts):
+        radiance = add((1.5, 0.12, 0.18), scale((k / (steps - 1))**1.5, (0.9, 0.82, 0.72)))
+        materials[part.material] = {"Kd": "0.5 0.2 0.2", "Ke": numbers(radiance)}
+    for triangle in heart.triangles:
+        a, b, c = (heart.positions[v] for v in triangle)
+        facing = abs(normalize(cross(subtract(b, a), subtract(c, a)))[2])
+        part = parts[min(steps - 1, int(steps * facing))]
+        part.triangles.append(tuple(len(part.positions) + k for k in range(3)))
+        part.positions += [a, b, c]
+    write_mesh("empty_room", room(light=False), materials)
+    write_mesh("heart", parts, materials)
+    write_mesh("sphere", [sphere("white")], materials)
+    write_scene("heart_light", "A heart of 6,768 emissive triangles, very unequal in size, lights the room",
+                [mesh("empty_room"), mesh("heart", scale=0.5, translation=[0, 1.16, 0.2]),
+                 mesh("sphere", scale=0.3, translation=[-0.58, 0.29, -0.3]),
+                 mesh("sphere", scale=0.22, translation=[0.62, 0.21, -0.1])], ROOM_CAMERA)
+
+
+# Digits of three columns and five rows, row by row from the top.
+DIGITS = ["111101101101111", "010110010010111", "111001111100111", "111001111001111", "101101111001001",
+          "111100111001111", "111100111101111", "111001001001001", "111101111101111", "111101111001111"]
+
+
+def numbered_squares(x, y):
+    """8 x 8 squares of 32 x 32 pixels, each numbered by column (from the left) and row (from below)."""
+    column, row = x // 32, 7 - y // 32
+    dark = (column + row) % 2
+    for k, digit in enumerate((column, row)):
+        i, j = (x % 32 - 5 - 12 * k) // 3, (y % 32 - 8) // 3
+        if 0 <= i < 3 and 0 <= j < 5 and DIGITS[digit][3 * j + i] == "1":
+            return (0.85, 0.85, 0.82) if dark else (0.2, 0.2, 0.22)
+    return hsv_to_rgb(column / 8, 0.6 if dark else 0.28, 0.55 if dark else 0.85)
+
+
+def planks(x, y):
+    """Four wooden planks of 50 pixels; the pattern continues across the borders of its 300 x 200 pixels."""
+    plank, across = y // 50, y % 50
+    along = (x + 97 * plank) % 300
+    if across < 2 or along < 2:
+        return (0.22, 0.15, 0.1)
+    t = 2 * math.pi * along / 300
+    grain = math.sin(0.5 * across + 3 * math.sin(t + 2 * plank) + 1.3 * math.sin(2 * t + plank))
+    fine = math.sin(2.1 * across + 5 * math.sin(t) + 0.8 * math.sin(7 * t + plank))
+    return scale((0.9 + 0.06 * (plank * 2 % 3 - 1)) * (1 + 0.07 * grain + 0.04 * fine), (0.76, 0.59, 0.42))
+
+
+def panes(x, y):
+    """96 x 160 pixels of coloured panes between dark bars."""
+    white, red, yellow, blue = (0.84, 0.83, 0.79), (0.78, 0.2, 0.16), (0.86, 0.68, 0.2), (0.2, 0.34, 0.62)
+    for left, top, right, bottom, paint in [
+            (0, 0, 60, 50, white), (60, 0, 96, 90, red), (0, 50, 26, 112, blue), (26, 50, 60, 112, yellow),
+            (60, 90, 96, 112, white), (0, 112, 70, 160, white), (70, 112, 96, 160, blue)]:
+        if left + 2 <= x < right - 2 and top + 2 <= y < bottom - 2:
+            return paint
+    return (0.22, 0.22, 0.22)
+
+
+def sky(d):
+    """A clear sky over hazy ground, with a sun so broad and mild that uniform sampling converges."""
+    sun = normalize((-0.62, 0.5, 0.45))
+    glow = 90 * math.exp(200 * (dot(sun, d) - 1))
+    up = max(0, d[1])**0.5
+    above = tuple((1 - up) * horizon + up * zenith + glow * s
+                  for horizon, zenith, s in zip((0.62, 0.7, 0.78), (0.1, 0.26, 0.7), (1, 0.86, 0.62)))
+    ground = 1 / (1 + math.exp(200 * d[1]))  # a soft horizon
+    return add(scale(1 - ground, above), scale(ground, (0.38, 0.33, 0.28)))
+
+
+def textured():
+    write_png("numbered_squares", 256, 256, numbered_squares)
+    write_png("planks", 300, 200, planks)
+    write_png("panes", 96, 160, panes)
+    write_light_probe("sky", 256, 128, sky)
+    materials = {name: {"Kd": "1 1 1", "map_Kd": f"../textures/{name}.png"}
+                 for name in ("numbered_squares", "planks", "panes")}
+    corners = [(-15, 0, 15), (15, 0, 15), (15, 0, -15), (-15, 0, -15)]
+    write_mesh("wooden_floor", [quad("planks", corners, texture_size=(20, 30))], materials)
+    write_mesh("paned_box", box("panes", (0, 0, 0), (0.6, 1, 0.6)), materials)
+    ball = sphere("numbered_squares")
+    ball.texture_coordinates = [(2 * u, v) for u, v in ball.texture_coordinates]  # twice around
+    write_mesh("numbered_ball", [ball], materials)
+    write_scene("textured", "A numbered ball, a paned box and a torus on a wooden floor under a light probe",
+                [mesh("wooden_floor"), mesh("numbered_ball", scale=0.5, translation=[0.05, 0.49, 0.1]),
+                 mesh("paned_box", rotation=turn([0, 1, 0], 24), translation=[-0.75, 0.49, -0.55]),
+                 mesh("torus", scale=0.26, rotation=turn([1, 0, -0.35], 66), translation=[0.78, 0.33, -0.1])],
+                camera([0.25, 1.25, 4.2], [0.02, 0.52, 0], 30),
+                background={"light_probe": "../light_probes/sky.hdr"})
+
+
+def pumpkin(grooves, height):
+    """A pumpkin and its stem, 20,056 triangles. Twisted grooves and a bent stem: its mirror image differs."""
+    def skin(s, t):
+        theta, phi = math.pi * s, 2 * math.pi * t + 0.3 * math.cos(math.pi * s)
+        x, y, z = direction(theta, phi)
+        side = math.sin(theta)
+        groove = side * (0.17 * math.cos(grooves / 2 * phi)**8 + 0.03 * math.sin(2 * phi + 1))
+        dimple = 0.27 * math.exp(-(side / 0.35)**2) * y
+        return ((1 - groove) * x, height * y * (1 - 0.4 * groove) - dimple, (1 - groove) * z)
+
+    def stem(s, t):  # bent, wider towards its lower end inside the skin
+        along = math.cos(math.pi / 2 * s)
+        x, _, z = direction(math.pi / 2, 2 * math.pi * t)
+        width = (0.1 + 0.12 * (1 - along)**2) * math.sqrt(math.sin(math.pi * s))
+        width *= 1 + 0.12 * math.cos(10 * math.pi * t)
+        return (width * x + 0.3 * along**3, height - 0.4 + 0.55 * along, width * z + 0.1 * along**2)
+
+    return [smooth(globe("skin", 140, 70, skin)), smooth(globe("stem", 23, 17, stem))]
+
+
+def instances():
+    heights = {"orange": 0.74, "green": 0.6}
+    write_mesh("orange_pumpkin", pumpkin(10, heights["orange"]),
+               {"skin": {"Kd": "0.72 0.28 0.06"}, "stem": {"Kd": "0.3 0.34 0.14"}})
+    write_mesh("green_pumpkin", pumpkin(14, heights["green"]),
+               {"skin": {"Kd": "0.3 0.38 0.22"}, "stem": {"Kd": "0.42 0.34 0.2"}})
+    grass = quad("grass", [(-40, 0, 40), (40, 0, 40), (40, 0, -40), (-40, 0, -40)])
+    lamp = quad("lamp", [(-11, 5, 9), (-11, 5, 3), (-7, 10, 3), (-7, 10, 9)])  # above on the left
+    write_mesh("field", [grass, lamp],
+               {"grass": {"Kd": "0.3 0.34 0.17"}, "lamp": {"Kd": "0.5 0.5 0.5", "Ke": "17 14 9.5"}})
+
+    random = Random(11)
+    placed = []
+    while len(placed) < 72:  # anywhere in view, as long as it touches none of the others
+        z = 3.4 - 13 * random.random()
+        x = 0.4 * (7 - z) * (2 * random.random() - 1)
+        size = 0.26 + 0.5 * random.random()**2
+        if all(math.hypot(x - other[0], z - other[1]) > 1.03 * (size + other[2]) for other in placed):
+            placed.append((x, z, size))
+    pumpkins = []
+    for x, z, size in placed:
+        kind = "orange" if random.random() < 0.65 else "green"
+        mirror = 1 if random.random() < 0.5 else -1
+        stretch, lean = 0.85 + 0.3 * random.random(), 0.2 * random.random()
+        y = 0.72 * heights[kind] * stretch * size  # a little of it is in the ground
+        pumpkins.append(mesh(f"{kind}_pumpkin", scale=[round(k * size, 3) for k in (mirror, stretch, 1)],
+                             rotation=turn([round(lean, 3), 1, 0], round(360 * random.random())),
+                             translation=[round(k, 3) for k in (x, y, z)]))
+    write_scene("instances", "A field of pumpkins: 72 instances of two meshes, 1.4 million triangles",
+                [mesh("field")] + pumpkins, camera([0, 2, 7], [0, 0.2, 0], 34),
+                background={"radiance": [0.5, 0.66, 0.9]}, width=768, height=512)
+
+
+def furnace():
+    walls = box("grey", (0, 0, 0), (2, 2, 2))
+    for wall in walls:
+        wall.triangles = [triangle[::-1] for triangle in wall.triangles]  # facing inwards
+    write_mesh("furnace", walls, {"grey": {"Kd": "0.5 0.5 0.5", "Ke": "1 1 1"}})
+    write_scene("furnace", "A closed white furnace: albedo 0.5, emission 1, so 2 - 0.5^m at path length m",
+                [mesh("furnace")], camera([0.3, 0.2, 0.6], [-0.4, -0.3, -1], 70))
+
+
+def glossy():
+    materials = {**ROOM_MATERIALS, "polished": {"Kd": "0.35 0.35 0.36", "Ks": "0.4 0.4 0.4", "Ns": "80"},
+                 "gold": {"Kd": "0.25 0.16 0.05", "Ks": "0.6 0.44 0.18", "Ns": "40"},
+                 "lacquer": {"Kd": "0.1 0.16 0.42", "Ks": "0.3 0.3 0.3", "Ns": "120"}}
+    write_mesh("polished_room", room("polished"), materials)
+    write_mesh("gold_ball", [sphere("gold")], materials)
+    write_mesh("lacquer_torus", [torus("lacquer")], materials)
+    write_scene("glossy", "A golden ball and a lacquered torus on a polished floor: the Phong lobe",
+                [mesh("polished_room"), mesh("gold_ball", scale=0.42, translation=[-0.42, 0.41, -0.2]),
+                 mesh("lacquer_torus", scale=0.3, rotation=turn([1, 0, 0.2], 70),
+                      translation=[0.45, 0.4, 0.3])], ROOM_CAMERA, specular=True)
+
+
+def licence():
+    files["LICENSE.md"] = b"""\
+The files in this folder are our own work, generated by `tools/make_assets.py`, and dedicated to the
+public domain under [CC0 1.0 Universal](https://creativecommons.org/publicdomain/zero/1.0/): use them for any
+purpose, without asking and without naming us.
+"""
+
+
+def first_difference():
+    """One line on the first file in assets/ that is not as generated, or None. Others make the references."""
+    present = {path.relative_to(ASSETS).as_posix() for path in ASSETS.rglob("*") if path.is_file()}
+    for name in sorted(files.keys() | {name for name in present if not name.startswith("references/")}):
+        if name not in files:
+            return f"assets/{name}: is not made by tools/make_assets.py; remove it or let the script make it"
+        if name not in present or (ASSETS / name).read_bytes() != files[name]:
+            return f"assets/{name}: is not as tools/make_assets.py makes it; run it or undo the change"
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Generates the files under assets/.")
+    parser.add_argument("--check", action="store_true", help="compare instead of writing")
+    check = parser.parse_args().check
+    for generate in (licence, cornell_box, torus_scene, heart_light, textured, instances, furnace, glossy):
+        generate()
+    if check:
+        sys.exit(first_difference())
+    for name, content in files.items():
+        path = ASSETS / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,27 @@
+// Joins renders of adjacent ranges of samples (--first-sample) into one: merge_images A.exr B.exr … -o C.exr
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <iostream>
+
+#include "error.h"
+#include "film/film_file.h"
+
+int main(int argument_count, char** arguments) {
+    CLI::App app("Joins renders of adjacent ranges of samples", "merge_images");
+    std::vector<std::filesystem::path> parts;
+    std::filesystem::path output;
+    app.add_option("parts", parts, "EXR files written by a chapter, in any order")->required();
+    app.add_option("-o,--output", output, "EXR file to write")->required();
+    CLI11_PARSE(app, argument_count, arguments);
+    try {
+        lab::check_writable(output, {".exr"});
+        const lab::FilmFile merged = lab::merge_films(parts);
+        lab::write_film(output, merged.image, merged.record);
+        std::printf("%s: samples %u to %u\n", output.c_str(), merged.record.first_sample,
+                    merged.record.first_sample + merged.image.min_samples() - 1);
+        return 0;
+    } catch (const lab::UserError& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 1;
+    }
+}
