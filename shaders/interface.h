@@ -32,6 +32,12 @@ SHARED_CONSTANT BINDING_TEXTURES = 10u;
 SHARED_CONSTANT BINDING_LIGHT_PROBE = 11u;
 SHARED_CONSTANT BINDING_BVH_NODES = 12u;
 SHARED_CONSTANT BINDING_BVH_TRIANGLES = 13u;
+SHARED_CONSTANT BINDING_ACCELERATION_STRUCTURE = 14u;
+SHARED_CONSTANT BINDING_GEOMETRY_FIRST_TRIANGLES = 15u;
+
+// How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
+SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
+SHARED_CONSTANT MATERIAL_CLASS_DIELECTRIC = 1u;
 
 // A workgroup renders a block of BLOCK_WIDTH x BLOCK_HEIGHT pixels.
 SHARED_CONSTANT BLOCK_WIDTH = 8u;
@@ -55,7 +61,6 @@ struct Material {
 struct Instance {
     mat4x3 object_to_world;  // columns: images of the axes, then the translation
     mat3 normal_to_world;    // inverse transpose of the linear part: keeps the front side, mirrored or not
-    uint first_triangle;     // of the instance's mesh in the array of triangles
 };
 
 // A pinhole camera: the ray through image position (s, t) in [-1,1]^2 (t down) is forward + s right - t up.

@@ -10,6 +10,9 @@ struct Hit {
     uint triangle;      // index into the scene's triangles
     vec2 barycentrics;  // weights w_1 and w_2 of the second and third vertex; w_0 = 1 - w_1 - w_2
     float distance;     // hit point = origin + distance · direction
+#ifdef FEATURE_DIELECTRICS
+    uint material_class;
+#endif
 };
 
 // As t_max: no limit to the length of a ray.

@@ -3,7 +3,11 @@
 #include "interface.h"
 #include "scene.glsl"
 #include "ray.glsl"
+#ifdef BACKEND_QUERY
+#include "trace_ray/query.glsl"
+#else
 #include "trace_ray/compute.glsl"
+#endif
 #include "render_pixel.glsl"
 
 layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCK_HEIGHT) in;

@@ -3,6 +3,7 @@
 #include "random.glsl"
 #include "frame.glsl"
 #include "camera.glsl"
+#include "textures.glsl"
 #include "background.glsl"
 #include "shading_data.glsl"
 #include "materials.glsl"

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "app/backend_choice.h"
 #include "app/headless.h"
 #include "error.h"
 
@@ -17,9 +18,11 @@ void print_devices() {
         const auto& device = devices[i];
         std::printf("%zu  %s (%s, Vulkan %s, %s)\n", i, device.name.c_str(), device.kind.c_str(),
                     device.api_version.c_str(), device.driver.c_str());
-        std::string missing;
-        for (const auto& name : device.missing) missing += (missing.empty() ? "" : ", ") + name;
-        std::printf("   compute: %s\n", missing.empty() ? "works" : ("lacks " + missing).c_str());
+        for (const Backend backend : all_backends) {
+            std::string missing;
+            for (const auto& name : device.missing.at(backend)) missing += (missing.empty() ? "" : ", ") + name;
+            std::printf("   %-9s %s\n", to_string(backend).c_str(), missing.empty() ? "works" : ("lacks " + missing).c_str());
+        }
     }
 }
 
@@ -123,7 +126,7 @@ void run(const Chapter& chapter, const Options& options) {
                   .scene = scene.file.filename().string(),
                   .scene_hash = hexadecimal(scene.hash),
                   .settings = settings_text(job.parameters, scene, options),
-                  .backend = to_string(Backend::compute),
+                  .backend = "",
                   .device = "",
                   .seed = options.seed,
                   .first_sample = options.first_sample};
@@ -140,14 +143,19 @@ void run(const Chapter& chapter, const Options& options) {
         throw UserError("--first-sample + --samples is above 2^32: there are no more random numbers than that");
 
     const Device device({options.device, options.validation});
+    const GpuScene gpu_scene(device, scene);
+    const Estimator estimator = make_estimator(chapter, options);
+    const Backend backend = options.view && options.view->name == "bvh-steps"
+                                ? Backend::compute  // the only one that can be looked into
+                                : choose_backend(options.backend, device, gpu_scene, estimator, job.parameters);
+    const auto acceleration_structure = build_acceleration_structure(backend, device, gpu_scene);
     job.record.device = device.description().name;
+    job.record.backend = to_string(backend);
     if (!options.quiet)
         std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
-                  << job.parameters.image_size.y << ", " << job.samples << " samples, " << job.record.device << ", "
-                  << job.record.backend << std::endl;
-    const GpuScene gpu_scene(device, scene);
-    const auto acceleration_structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-    render_headless(device, *acceleration_structure, make_estimator(chapter, options), job);
+                  << job.parameters.image_size.y << ", " << job.samples << " samples, " << job.record.device
+                  << ", backend " << job.record.backend << std::endl;
+    render_headless(device, *acceleration_structure, estimator, job);
     check_validation(device, options);
 }
 

@@ -19,14 +19,17 @@ std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) -
 
 // Memory of a type that has all `required` properties and, where there is a choice, the preferred ones.
 Allocation allocate(const Device& device, const vk::MemoryRequirements& requirements,
-                    vk::MemoryPropertyFlags required, vk::MemoryPropertyFlags preferred) {
+                    vk::MemoryPropertyFlags required, vk::MemoryPropertyFlags preferred,
+                    vk::MemoryAllocateFlags flags = {}) {
     const auto memory = device.physical().getMemoryProperties();
     for (const auto wanted : {required | preferred, required})
         for (uint32_t type = 0; type < memory.memoryTypeCount; ++type) {
             const auto properties = memory.memoryTypes[type].propertyFlags;
             if (!(requirements.memoryTypeBits >> type & 1) || (properties & wanted) != wanted) continue;
             try {
-                return {{device.handle(), vk::MemoryAllocateInfo(requirements.size, type)}, properties};
+                const vk::MemoryAllocateFlagsInfo flags_info(flags);
+                const vk::MemoryAllocateInfo info(requirements.size, type, &flags_info);
+                return {{device.handle(), info}, properties};
             } catch (const vk::OutOfDeviceMemoryError&) {
             } catch (const vk::OutOfHostMemoryError&) {
             }
@@ -42,9 +45,11 @@ Allocation allocate(const Device& device, const vk::MemoryRequirements& requirem
 
 Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location)
     : device_(&device), size_(std::max<size_t>(size, 16)) {
-    const auto limit = usage & vk::BufferUsageFlagBits::eUniformTexelBuffer
-                           ? size_t{16} * device.limits().maxTexelBufferElements
-                           : size_t{device.limits().maxStorageBufferRange};
+    size_t limit = SIZE_MAX;
+    if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
+        limit = size_t{16} * device.limits().maxTexelBufferElements;
+    else if (usage & vk::BufferUsageFlagBits::eStorageBuffer)
+        limit = device.limits().maxStorageBufferRange;
     if (size_ > limit)
         throw DeviceFailure("the scene or image needs a buffer of " + mebibytes(size_) + ", the device allows " +
                             mebibytes(limit) + ": use a smaller one");
@@ -53,11 +58,16 @@ Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Lo
     const auto required = location == Location::host ? host_visible : vk::MemoryPropertyFlags();
     const auto preferred = location == Location::host ? vk::MemoryPropertyFlagBits::eHostCached
                                                       : vk::MemoryPropertyFlagBits::eDeviceLocal;
-    auto [memory, properties] = allocate(device, buffer_.getMemoryRequirements(), required, preferred);
+    const auto flags = usage & vk::BufferUsageFlagBits::eShaderDeviceAddress
+                           ? vk::MemoryAllocateFlags(vk::MemoryAllocateFlagBits::eDeviceAddress)
+                           : vk::MemoryAllocateFlags();
+    auto [memory, properties] = allocate(device, buffer_.getMemoryRequirements(), required, preferred, flags);
     memory_ = std::move(memory);
     buffer_.bindMemory(*memory_, 0);
     if ((properties & host_visible) == host_visible) mapped_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
 }
+
+vk::DeviceAddress Buffer::address() const { return device_->handle().getBufferAddress({*buffer_}); }
 
 void Buffer::write(const void* data, size_t size) {
     if (mapped_) {
@@ -84,16 +94,11 @@ void Buffer::read(void* data, size_t size) const {
 }
 
 SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
-                           std::span<const std::byte> pixels, vk::SamplerAddressMode address_v) {
+                           std::span<const std::byte> pixels) {
     if (std::max(width, height) > device.limits().maxImageDimension2D)
         throw DeviceFailure("an image of " + std::to_string(width) + "x" + std::to_string(height) +
                             " is larger than the device allows (" +
                             std::to_string(device.limits().maxImageDimension2D) + "): make it smaller");
-    const auto filtered =
-        vk::FormatFeatureFlagBits::eSampledImageFilterLinear | vk::FormatFeatureFlagBits::eSampledImage;
-    if ((device.physical().getFormatProperties(format).optimalTilingFeatures & filtered) != filtered)
-        throw DeviceError("the device cannot filter images of format " + vk::to_string(format) +
-                          ": choose another device with --device");
     image_ = {device.handle(),
               vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
                                   vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
@@ -124,10 +129,7 @@ SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height
                 vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eComputeShader);
     });
     view_ = {device.handle(), vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole)};
-    vk::SamplerCreateInfo sampler({}, vk::Filter::eLinear, vk::Filter::eLinear);
-    sampler.addressModeU = vk::SamplerAddressMode::eRepeat;
-    sampler.addressModeV = address_v;
-    sampler_ = {device.handle(), sampler};
+    sampler_ = {device.handle(), vk::SamplerCreateInfo()};
 }
 
 }  // namespace lab

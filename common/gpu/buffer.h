@@ -24,6 +24,7 @@ class Buffer {
 
     vk::Buffer handle() const { return *buffer_; }
     size_t size() const { return size_; }
+    vk::DeviceAddress address() const;  // needs the usage eShaderDeviceAddress
 
     // Copies to or from the start of the buffer; the device must not be using it.
     void write(const void* data, size_t size);
@@ -43,12 +44,12 @@ class Buffer {
     void* mapped_ = nullptr;
 };
 
-// Two-dimensional image with a sampler.
+// Two-dimensional image that shaders read texel by texel.
 class SampledImage {
   public:
-    // `pixels` row by row without gaps in `format`. Filters linearly.
+    // `pixels` row by row without gaps in `format`.
     SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
-                 std::span<const std::byte> pixels, vk::SamplerAddressMode address_v);
+                 std::span<const std::byte> pixels);
 
     vk::DescriptorImageInfo info() const { return {*sampler_, *view_, vk::ImageLayout::eShaderReadOnlyOptimal}; }
 

@@ -21,7 +21,8 @@ DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bind
     std::vector<vk::DescriptorPoolSize> sizes;
     const auto count = [](const Binding& binding) {
         return static_cast<uint32_t>(
-            std::max({binding.buffers.size(), binding.images.size(), binding.texel_views.size()}));
+            std::max({binding.buffers.size(), binding.images.size(), binding.texel_views.size(),
+                      binding.acceleration_structures.size()}));
     };
     for (const auto& binding : bindings) {
         layout_bindings.emplace_back(binding.index, binding.type, count(binding), stages);
@@ -33,9 +34,14 @@ DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bind
     set_ = std::move(
         vk::raii::DescriptorSets(device.handle(), vk::DescriptorSetAllocateInfo(*pool_, *layout_)).front());
     std::vector<vk::WriteDescriptorSet> writes;
-    for (const auto& binding : bindings)
+    std::vector<vk::WriteDescriptorSetAccelerationStructureKHR> structures(bindings.size());
+    for (const auto& binding : bindings) {
         writes.emplace_back(*set_, binding.index, 0, count(binding), binding.type, binding.images.data(),
                             binding.buffers.data(), binding.texel_views.data());
+        if (binding.acceleration_structures.empty()) continue;
+        structures[writes.size() - 1].setAccelerationStructures(binding.acceleration_structures);
+        writes.back().pNext = &structures[writes.size() - 1];
+    }
     device.handle().updateDescriptorSets(writes, {});
 }
 

@@ -14,6 +14,7 @@ struct Binding {
     std::vector<vk::DescriptorBufferInfo> buffers = {};
     std::vector<vk::DescriptorImageInfo> images = {};
     std::vector<vk::BufferView> texel_views = {};
+    std::vector<vk::AccelerationStructureKHR> acceleration_structures = {};
 };
 
 Binding storage_binding(uint32_t index, const Buffer& buffer);

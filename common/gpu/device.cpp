@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 #include "error.h"
 #include "gpu/cache.h"
@@ -26,8 +27,33 @@ std::string kind_text(vk::PhysicalDeviceType type) {
     }
 }
 
-// The feature structures that a device needs for every chapter, chained for queries and for device creation.
-using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>;
+// What a device must offer. The ray tracing structures count only where the extensions are there.
+using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                                    vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
+                                    vk::PhysicalDeviceRayTracingPipelineFeaturesKHR,
+                                    vk::PhysicalDeviceRayQueryFeaturesKHR>;
+
+std::vector<const char*> extensions_for(Backend backend) {
+    if (backend == Backend::compute) return {};
+    return {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+            backend == Backend::query ? VK_KHR_RAY_QUERY_EXTENSION_NAME
+                                      : VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME};
+}
+
+// What the device lacks for every backend.
+std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device, const Features& features) {
+    std::vector<std::string> missing;
+    const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
+    if (!vulkan12.scalarBlockLayout) missing.emplace_back("scalarBlockLayout");
+    if (!vulkan12.shaderSampledImageArrayNonUniformIndexing)
+        missing.emplace_back("shaderSampledImageArrayNonUniformIndexing");
+    const auto families = device.getQueueFamilyProperties();
+    if (std::none_of(families.begin(), families.end(), [](const vk::QueueFamilyProperties& family) {
+            return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
+        }))
+        missing.emplace_back("a compute queue with timestamps");
+    return missing;
+}
 
 DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
     const auto properties =
@@ -42,19 +68,24 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         .missing = {},
     };
     if (general.apiVersion < VK_API_VERSION_1_2) {
-        description.missing.push_back("Vulkan 1.2");
+        for (const Backend backend : all_backends) description.missing[backend] = {"Vulkan 1.2"};
         return description;
     }
-    const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
-    const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
-    if (!vulkan12.scalarBlockLayout) description.missing.push_back("scalarBlockLayout");
-    if (!vulkan12.shaderSampledImageArrayNonUniformIndexing)
-        description.missing.push_back("shaderSampledImageArrayNonUniformIndexing");
-    const auto families = device.getQueueFamilyProperties();
-    if (std::none_of(families.begin(), families.end(), [](const vk::QueueFamilyProperties& family) {
-            return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
-        }))
-        description.missing.push_back("a compute queue with timestamps");
+    Features features;
+    device.getDispatcher()->vkGetPhysicalDeviceFeatures2(
+        *device, reinterpret_cast<VkPhysicalDeviceFeatures2*>(&features.get()));
+    const auto extensions = device.enumerateDeviceExtensionProperties();
+    for (const Backend backend : all_backends) {
+        auto& missing = description.missing[backend];
+        missing = missing_everywhere(device, features);
+        for (const char* wanted : extensions_for(backend))
+            if (std::none_of(extensions.begin(), extensions.end(), [&](const vk::ExtensionProperties& extension) {
+                    return std::strcmp(extension.extensionName, wanted) == 0;
+                }))
+                missing.emplace_back(wanted);
+        if (backend != Backend::compute && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
+            missing.emplace_back("bufferDeviceAddress");
+    }
     return description;
 }
 
@@ -108,7 +139,7 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
     } else {
         for (const char* kind : {"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"})
             for (size_t i = 0; i < devices.size(); ++i)
-                if (devices[i].kind == kind && devices[i].missing.empty()) return i;
+                if (devices[i].kind == kind && devices[i].supports(Backend::compute)) return i;
         return 0;
     }
     throw DeviceError("no device '" + choice + "': --list-devices shows the " + std::to_string(devices.size()) +
@@ -116,6 +147,15 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
 }
 
 }  // namespace
+
+std::string to_string(Backend backend) {
+    switch (backend) {
+        case Backend::pipeline: return "pipeline";
+        case Backend::query: return "query";
+        case Backend::compute: return "compute";
+    }
+    return "compute";
+}
 
 Device::Device(const DeviceOptions& options) : context_(load_vulkan()) {
     try {
@@ -141,8 +181,9 @@ Device::Device(const DeviceOptions& options) : context_(load_vulkan()) {
     for (const auto& device : devices) descriptions.push_back(describe(device));
     const size_t chosen = choose_device(descriptions, options.choice);
     description_ = descriptions[chosen];
-    if (!description_.missing.empty())
-        throw DeviceError("device '" + description_.name + "' lacks " + description_.missing.front() +
+    if (!description_.supports(Backend::compute))
+        throw DeviceError("device '" + description_.name + "' lacks " +
+                          description_.missing.at(Backend::compute).front() +
                           ": choose another with --device (see --list-devices) or update its driver");
     physical_ = std::move(devices[chosen]);
     limits_ = physical_.getProperties().limits;
@@ -161,7 +202,25 @@ void Device::create_device() {
     auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     vulkan12.scalarBlockLayout = true;
     vulkan12.shaderSampledImageArrayNonUniformIndexing = true;
-    vk::DeviceCreateInfo info({}, queue);
+    std::set<std::string> extensions;
+    for (const Backend backend : all_backends)
+        if (description_.supports(backend))
+            for (const char* extension : extensions_for(backend)) extensions.insert(extension);
+    if (has_acceleration_structures()) {
+        vulkan12.bufferDeviceAddress = true;
+        features.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure = true;
+    } else {
+        features.unlink<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
+    }
+    if (description_.supports(Backend::pipeline))
+        features.get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>().rayTracingPipeline = true;
+    else features.unlink<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
+    if (description_.supports(Backend::query)) features.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery = true;
+    else features.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
+
+    std::vector<const char*> names;
+    for (const auto& extension : extensions) names.push_back(extension.c_str());
+    vk::DeviceCreateInfo info({}, queue, {}, names);
     info.pNext = &features.get();
     device_ = {physical_, info};
     queue_ = device_.getQueue(queue_family_, 0);

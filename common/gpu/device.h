@@ -1,6 +1,7 @@
 // A Vulkan device with one compute queue, and what the validation layers had to say about its use.
 #pragma once
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,18 +9,31 @@
 
 namespace lab {
 
+// The ways to trace rays (docs/backends.md compares them).
+enum class Backend {
+    pipeline,  // VK_KHR_ray_tracing_pipeline
+    query,     // VK_KHR_ray_query in a compute shader
+    compute,   // our own bounding volume hierarchy in a compute shader
+};
+inline constexpr Backend all_backends[] = {Backend::pipeline, Backend::query, Backend::compute};
+
+// The backend's name on the command line and in reports.
+std::string to_string(Backend backend);
+
 struct DeviceOptions {
     std::string choice;       // index or part of the name (any case) as in --list-devices; empty: the fastest kind
     bool validation = false;  // switches the validation layer on; an error if it is not installed
 };
 
-// A line of --list-devices. `missing` names what the device lacks to run any chapter; empty if it can.
+// What --list-devices tells of a device.
 struct DeviceDescription {
     std::string name;
     std::string kind;    // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
     std::string driver;  // name and version as the driver tells them
     std::string api_version;
-    std::vector<std::string> missing;
+    std::map<Backend, std::vector<std::string>> missing;  // what the device lacks for each backend
+
+    bool supports(Backend backend) const { return missing.at(backend).empty(); }
 };
 
 class Device {
@@ -35,6 +49,9 @@ class Device {
     const vk::raii::PipelineCache& pipeline_cache() const { return pipeline_cache_; }
     const DeviceDescription& description() const { return description_; }
     const vk::PhysicalDeviceLimits& limits() const { return limits_; }
+    bool has_acceleration_structures() const {
+        return description_.supports(Backend::pipeline) || description_.supports(Backend::query);
+    }
 
     // Records commands, submits them, waits, and returns the seconds they took on the device.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;

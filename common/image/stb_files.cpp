@@ -47,6 +47,29 @@ struct ByteSource {
 
 constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSource::at_end};
 
+// stb_image up to version 2.27 writes past its array for a Huffman table of more than 256 codes. Walks over
+// the segments of a .jpg file, each a marker byte after 0xff and a length of two bytes, as stb_image does.
+bool has_valid_huffman_tables(std::string_view jpg) {
+    const auto byte = [&](size_t i) { return i < jpg.size() ? static_cast<uint8_t>(jpg[i]) : 0u; };
+    size_t position = 2;
+    while ((position = jpg.find('\xff', position)) != std::string_view::npos) {
+        const uint32_t marker = byte(++position);
+        if (marker == 0xff) continue;                                                    // padding
+        if (marker == 0 || marker == 1 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // have no length
+        const size_t end = position + 1 + (byte(position + 1) << 8 | byte(position + 2));
+        if (marker == 0xc4) {
+            for (size_t table = position + 3; table < end;) {
+                uint32_t code_count = 0;
+                for (size_t length = 1; length <= 16; ++length) code_count += byte(table + length);
+                if (code_count > 256) return false;
+                table += 17 + code_count;
+            }
+        }
+        position = end;
+    }
+    return true;
+}
+
 void append(void* bytes, void* data, int size) {
     static_cast<std::string*>(bytes)->append(static_cast<const char*>(data), static_cast<size_t>(size));
 }
@@ -69,6 +92,9 @@ Texture read_texture(const std::filesystem::path& file) {
     // allocated.
     if (static_cast<uint64_t>(width) * height > 8 * max_deflate_ratio * bytes.size())
         throw UserError(name + ": the file ends too early: copy or export it again");
+
+    if (bytes.starts_with("\xff\xd8") && !has_valid_huffman_tables(bytes))
+        throw UserError(name + ": damaged image: a Huffman table has too many codes");
 
     source = {bytes};
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(

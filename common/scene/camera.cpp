@@ -30,9 +30,10 @@ Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
 
     // Looking along `up` leaves the camera's roll open: then -Z (or +Y) is up in the image.
     dvec3 up(pose.up);
-    const auto is_usable = [&] { return glm::length(glm::cross(forward, up)) > 1e-6 * glm::length(up); };
-    if (!is_usable()) up = std::abs(forward.y) > 0.5 ? dvec3(0, 0, -1) : dvec3(0, 1, 0);
-    if (!std::isfinite(glm::dot(up, up))) throw UserError("camera: up must be finite");
+    const double up_length = glm::length(up);
+    if (!std::isfinite(up_length)) throw UserError("camera: up must be finite");
+    if (glm::length(glm::cross(forward, up)) <= 1e-6 * up_length)
+        up = std::abs(forward.y) > 0.5 ? dvec3(0, 0, -1) : dvec3(0, 1, 0);
     const dvec3 right = glm::normalize(glm::cross(forward, up));
 
     const double tangent = std::tan(glm::radians(0.5 * pose.vertical_fov));

@@ -37,25 +37,29 @@ class Assembly {
         with_texture_coordinates_ = with_texture_coordinates;
         vertices_.clear();
         vertices_.reserve(obj.positions.size());
-        const auto first_triangle = static_cast<uint32_t>(scene_.triangles.size());
+        Mesh mesh{obj.file, static_cast<uint32_t>(scene_.triangles.size())};
         std::vector<uint32_t> scene_materials(obj.materials.size(), ObjCorner::none);
         size_t dropped = 0;
-        for (size_t i = 0; i < obj.triangle_materials.size(); ++i) {
-            const uint32_t source = obj.triangle_materials[i];
-            if (!add_triangle(obj, &obj.corners[3 * i])) {
-                ++dropped;
-                continue;
+        for (const bool dielectric : {false, true}) {
+            for (size_t i = 0; i < obj.triangle_materials.size(); ++i) {
+                const uint32_t source = obj.triangle_materials[i];
+                if ((obj.materials[source].material.refractive_index > 0) != dielectric) continue;
+                if (!add_triangle(obj, &obj.corners[3 * i])) {
+                    ++dropped;
+                    continue;
+                }
+                if (scene_materials[source] == ObjCorner::none)
+                    scene_materials[source] = add_material(obj, obj.materials[source]);
+                scene_.triangle_materials.push_back(scene_materials[source]);
+                ++mesh.triangle_count;
+                if (dielectric) ++mesh.dielectric_count;
             }
-            if (scene_materials[source] == ObjCorner::none)
-                scene_materials[source] = add_material(obj, obj.materials[source]);
-            scene_.triangle_materials.push_back(scene_materials[source]);
         }
-        const auto count = static_cast<uint32_t>(scene_.triangles.size()) - first_triangle;
-        if (count == 0) throw UserError(obj.file + ": none of its triangles has an area");
+        if (mesh.triangle_count == 0) throw UserError(obj.file + ": none of its triangles has an area");
         if (dropped > 0)
             scene_.warnings.push_back(obj.file + ": " + std::to_string(dropped) +
                                       " triangles without area are left out");
-        scene_.meshes.push_back({obj.file, first_triangle, count});
+        scene_.meshes.push_back(mesh);
     }
 
   private:
@@ -123,20 +127,24 @@ class Assembly {
             material.specular_albedo = vec3(0);
             material.specular_exponent = 0;
         }
-        const vec3 albedo = material.diffuse_albedo + material.specular_albedo;
-        const float largest = std::max({albedo.x, albedo.y, albedo.z});
-        if (largest > 1) {
-            scene_.warnings.push_back(
-                obj.file + ": material " + in_quotes(source.name) + " reflects more than it receives: " +
-                (specular_ ? "Kd and Ks are" : "Kd is") + " divided by " + std::to_string(largest));
-            // A division alone may leave a sum one rounding error above 1.
-            const float scale = std::nextafter(1 / largest, 0.0f);
-            material.diffuse_albedo *= scale;
-            material.specular_albedo *= scale;
-        }
+        limit_reflectance(obj, source.name, material);
         if (!source.albedo_texture.empty()) material.albedo_texture = add_texture(source.albedo_texture);
         scene_.materials.push_back(material);
         return static_cast<uint32_t>(scene_.materials.size() - 1);
+    }
+
+    // Divides Kd and Ks by the largest channel of their sum where that exceeds 1.
+    void limit_reflectance(const ObjFile& obj, const std::string& name, Material& material) {
+        const dvec3 albedo = dvec3(material.diffuse_albedo) + dvec3(material.specular_albedo);
+        const double largest = std::max({albedo.x, albedo.y, albedo.z});
+        if (largest <= 1) return;
+        scene_.warnings.push_back(
+            obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " +
+            (specular_ ? "Kd and Ks are" : "Kd is") + " divided by " + std::to_string(largest));
+        // Rounded down, so that the sum does not exceed 1 by a rounding error.
+        constexpr double rounding = 1 - 0x1p-23;
+        material.diffuse_albedo = vec3(dvec3(material.diffuse_albedo) / largest * rounding);
+        material.specular_albedo = vec3(dvec3(material.specular_albedo) / largest * rounding);
     }
 
     int add_texture(const std::filesystem::path& file) {

@@ -10,15 +10,15 @@
 namespace lab {
 namespace {
 
-Instance make_instance(const std::string& file, const MeshPlacement& placement, const Mesh& mesh) {
+Instance make_instance(const std::string& file, const MeshPlacement& placement) {
     Instance instance;
     instance.object_to_world = mat4x3(placement.object_to_world);
     instance.normal_to_world = mat3(glm::inverse(glm::transpose(glm::dmat3(placement.object_to_world))));
-    instance.first_triangle = mesh.first_triangle;
     for (int column = 0; column < 3; ++column)
         if (glm::any(glm::isinf(instance.normal_to_world[column])) ||
             glm::any(glm::isnan(instance.normal_to_world[column])))
-            throw UserError(file + ": the scale of " + mesh.file + " is too small or too large");
+            throw UserError(file + ": the scale of " + placement.file.string() +
+                            " is too small or too large");
     return instance;
 }
 
@@ -33,12 +33,21 @@ void load_meshes(const SceneDescription& description, bool specular, SourceFiles
         scene.instance_meshes.push_back(mesh->second);
     }
     assemble_meshes(files, specular, sources, scene);
-    for (size_t i = 0; i < description.meshes.size(); ++i)
-        scene.instances.push_back(make_instance(scene.file.string(), description.meshes[i],
-                                                scene.meshes[scene.instance_meshes[i]]));
+    for (const MeshPlacement& placement : description.meshes)
+        scene.instances.push_back(make_instance(scene.file.string(), placement));
 }
 
 }  // namespace
+
+std::vector<MaterialClassRange> material_class_ranges(const Mesh& mesh) {
+    const uint32_t diffuse_count = mesh.triangle_count - mesh.dielectric_count;
+    std::vector<MaterialClassRange> ranges;
+    if (diffuse_count > 0) ranges.push_back({MATERIAL_CLASS_DIFFUSE, mesh.first_triangle, diffuse_count});
+    if (mesh.dielectric_count > 0)
+        ranges.push_back(
+            {MATERIAL_CLASS_DIELECTRIC, mesh.first_triangle + diffuse_count, mesh.dielectric_count});
+    return ranges;
+}
 
 Bounds world_bounds(const Scene& scene) {
     std::vector<Bounds> mesh_bounds(scene.meshes.size());

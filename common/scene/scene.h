@@ -11,12 +11,23 @@
 
 namespace lab {
 
-// The triangles of one mesh file: a contiguous range of the scene's triangles, in object space.
+// The triangles of one mesh file: a contiguous range of the scene's triangles, in object space. The
+// dielectric ones come last, so that the triangles of a material class are contiguous too.
 struct Mesh {
     std::string file;
     uint32_t first_triangle = 0;
     uint32_t triangle_count = 0;
+    uint32_t dielectric_count = 0;
 };
+
+// The triangles of one material class in a mesh.
+struct MaterialClassRange {
+    uint32_t material_class;
+    uint32_t first_triangle;
+    uint32_t triangle_count;
+};
+std::vector<MaterialClassRange> material_class_ranges(
+    const Mesh& mesh);  // diffuse before dielectric; none is empty
 
 // What a scene asks for where neither a flag nor a key says otherwise.
 struct RenderDefaults {

@@ -1,23 +1,9 @@
 // The `compute` backend: our own bounding volume hierarchy in a compute shader.
+#include "tracing/backends.h"
 #include "tracing/bvh.h"
-#include "tracing/tracer.h"
 
 namespace lab {
 namespace {
-
-class ComputeTracer : public Tracer {
-  public:
-    ComputeTracer(const Device& device, const ShaderSource& source, std::span<const Binding> bindings)
-        : kernel_(device, source, bindings, sizeof(DispatchParameters)) {}
-
-    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                uint32_t block_count) const override {
-        kernel_.record(commands, &dispatch, block_count);
-    }
-
-  private:
-    ComputeKernel kernel_;
-};
 
 // An array as 16-byte texels: texel buffers are faster to read than storage buffers on many devices.
 struct TexelArray {
@@ -34,44 +20,43 @@ struct TexelArray {
     }
 };
 
-class ComputeBvh : public AccelerationStructure {
+class ComputeBackend : public AccelerationStructure {
   public:
-    ComputeBvh(const Device& device, const GpuScene& scene)
-        : ComputeBvh(device, scene, build_bvh(world_triangles(scene.scene()))) {}
+    ComputeBackend(const Device& device, const GpuScene& scene)
+        : ComputeBackend(device, scene, build_bvh(world_triangles(scene.scene()))) {}
 
     std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                         std::span<const Binding> bindings) const override {
-        ShaderSource source{.file = project_folder() / "shaders" / "render.comp",
-                            .defines = scene_->defines(),
-                            .named_includes = {{"path_trace.glsl", estimator.file}}};
+        ShaderSource source = shader_source("render.comp", ShaderStage::compute, *scene_, estimator);
         source.defines.push_back("BVH_STACK_SIZE " + std::to_string(max_stack_entries_));
-        source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
-        std::vector<Binding> all(bindings.begin(), bindings.end());
-        all.insert(all.end(), scene_->bindings().begin(), scene_->bindings().end());
-        all.push_back(nodes_.binding(BINDING_BVH_NODES));
-        all.push_back(triangles_.binding(BINDING_BVH_TRIANGLES));
-        return std::make_unique<ComputeTracer>(*device_, source, all);
+        const Binding bvh[] = {nodes_.binding(BINDING_BVH_NODES), triangles_.binding(BINDING_BVH_TRIANGLES)};
+        return make_compute_tracer(*device_, source, join({bindings, scene_->bindings(), bvh}));
     }
 
+    size_t bytes() const override { return nodes_.buffer.size() + triangles_.buffer.size(); }
+    double build_seconds() const override { return build_seconds_; }
+
   private:
-    ComputeBvh(const Device& device, const GpuScene& scene, const Bvh& bvh)
+    ComputeBackend(const Device& device, const GpuScene& scene, const Bvh& bvh)
         : device_(&device),
           scene_(&scene),
           max_stack_entries_(bvh.max_stack_entries),
+          build_seconds_(bvh.build_seconds),
           nodes_(device, bvh.nodes),
           triangles_(device, bvh.triangles) {}
 
     const Device* device_;
     const GpuScene* scene_;
     uint32_t max_stack_entries_;
+    double build_seconds_;
     TexelArray nodes_;
     TexelArray triangles_;
 };
 
 }  // namespace
 
-std::unique_ptr<AccelerationStructure> build_compute_bvh(const Device& device, const GpuScene& scene) {
-    return std::make_unique<ComputeBvh>(device, scene);
+std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& device, const GpuScene& scene) {
+    return std::make_unique<ComputeBackend>(device, scene);
 }
 
 }  // namespace lab

@@ -3,16 +3,22 @@
 namespace lab {
 
 template <typename T>
-void GpuScene::add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data) {
-    buffers_.emplace_back(device, std::span<const T>(data), vk::BufferUsageFlagBits::eStorageBuffer);
+void GpuScene::add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data,
+                          vk::BufferUsageFlags usage) {
+    buffers_.emplace_back(device, std::span<const T>(data), usage);
     bindings_.push_back(storage_binding(binding, buffers_.back()));
 }
 
 GpuScene::GpuScene(const Device& device, const Scene& scene) : scene_(&scene), defines_(features_of(scene).defines()) {
     const SceneFeatures features = features_of(scene);
     buffers_.reserve(8);  // the bindings refer to the buffers
-    add_buffer(device, BINDING_POSITIONS, scene.positions);
-    add_buffer(device, BINDING_TRIANGLES, scene.triangles);
+    // The driver builds its acceleration structure from these two.
+    vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer;
+    if (device.has_acceleration_structures())
+        usage |= vk::BufferUsageFlagBits::eAccelerationStructureBuildInputReadOnlyKHR |
+                 vk::BufferUsageFlagBits::eShaderDeviceAddress;
+    add_buffer(device, BINDING_POSITIONS, scene.positions, usage);
+    add_buffer(device, BINDING_TRIANGLES, scene.triangles, usage);
     add_buffer(device, BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
     add_buffer(device, BINDING_MATERIALS, scene.materials);
     if (features.vertex_normals) add_buffer(device, BINDING_NORMALS, scene.normals);
@@ -29,7 +35,7 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
     if (features.textures) {
         for (const auto& texture : scene_->textures)
             images_.emplace_back(device, texture.width, texture.height, vk::Format::eR8G8B8A8Srgb,
-                                 std::as_bytes(std::span(texture.pixels)), vk::SamplerAddressMode::eRepeat);
+                                 std::as_bytes(std::span(texture.pixels)));
         bind(BINDING_TEXTURES, 0);
         defines_.push_back("TEXTURE_COUNT " + std::to_string(scene_->textures.size()));
     }
@@ -42,7 +48,7 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
             rgba.insert(rgba.end(), {probe.pixels[i], probe.pixels[i + 1], probe.pixels[i + 2], 1.0f});
         const size_t first = images_.size();
         images_.emplace_back(device, probe.width, probe.height, vk::Format::eR32G32B32A32Sfloat,
-                             std::as_bytes(std::span(rgba)), vk::SamplerAddressMode::eClampToEdge);
+                             std::as_bytes(std::span(rgba)));
         bind(BINDING_LIGHT_PROBE, first);
     }
 }

@@ -13,6 +13,8 @@ class GpuScene {
     GpuScene(const Device& device, const Scene& scene);
 
     const Scene& scene() const { return *scene_; }
+    const Buffer& positions() const { return buffers_[0]; }
+    const Buffer& triangles() const { return buffers_[1]; }
 
     // Bindings of the arrays, and the defines that make shaders/scene.glsl declare exactly these.
     const std::vector<Binding>& bindings() const { return bindings_; }
@@ -20,7 +22,8 @@ class GpuScene {
 
   private:
     template <typename T>
-    void add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data);
+    void add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data,
+                    vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer);
     void add_images(const Device& device, const SceneFeatures& features);
 
     const Scene* scene_;

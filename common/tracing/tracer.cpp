@@ -1,14 +1,66 @@
 #include "tracing/tracer.h"
 
+#include "error.h"
+#include "tracing/backends.h"
+
 namespace lab {
+namespace {
 
-std::unique_ptr<AccelerationStructure> build_compute_bvh(const Device& device, const GpuScene& scene);
+class ComputeTracer : public Tracer {
+  public:
+    ComputeTracer(const Device& device, const ShaderSource& source, std::span<const Binding> bindings)
+        : kernel_(device, source, bindings, sizeof(DispatchParameters)) {}
 
-std::string to_string(Backend) { return "compute"; }
+    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
+                uint32_t block_count) const override {
+        kernel_.record(commands, &dispatch, block_count);
+    }
 
-std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend, const Device& device,
+  private:
+    ComputeKernel kernel_;
+};
+
+void require_support(Backend backend, const DeviceDescription& device) {
+    if (device.supports(backend)) return;
+    std::string working;
+    for (const Backend other : all_backends)
+        if (device.supports(other)) working += (working.empty() ? "" : ", ") + to_string(other);
+    throw DeviceError("device '" + device.name + "' lacks " + device.missing.at(backend).front() +
+                      " for the backend '" + to_string(backend) + "'; these work on it: " + working);
+}
+
+}  // namespace
+
+ShaderSource shader_source(const std::string& name, ShaderStage stage, const GpuScene& scene,
+                           const Estimator& estimator) {
+    ShaderSource source{.file = project_folder() / "shaders" / name,
+                        .stage = stage,
+                        .defines = scene.defines(),
+                        .named_includes = {{"path_trace.glsl", estimator.file}}};
+    source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
+    return source;
+}
+
+std::vector<Binding> join(std::initializer_list<std::span<const Binding>> lists) {
+    std::vector<Binding> all;
+    for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+    return all;
+}
+
+std::unique_ptr<Tracer> make_compute_tracer(const Device& device, const ShaderSource& source,
+                                            std::span<const Binding> bindings) {
+    return std::make_unique<ComputeTracer>(device, source, bindings);
+}
+
+std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
                                                                     const GpuScene& scene) {
-    return build_compute_bvh(device, scene);
+    require_support(backend, device.description());
+    switch (backend) {
+        case Backend::pipeline: return build_pipeline_backend(device, scene);
+        case Backend::query: return build_query_backend(device, scene);
+        case Backend::compute: return build_compute_backend(device, scene);
+    }
+    return nullptr;
 }
 
 }  // namespace lab

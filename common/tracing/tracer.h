@@ -10,11 +10,6 @@
 
 namespace lab {
 
-enum class Backend { compute };
-
-// The name used on the command line and in reports.
-std::string to_string(Backend backend);
-
 // A shader with the function path_trace(), and the defines that configure it.
 struct Estimator {
     std::filesystem::path file;
@@ -37,9 +32,11 @@ class AccelerationStructure {
     // `bindings`: render parameters, film and ray counters. Throws UserError if the estimator does not compile.
     virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                                 std::span<const Binding> bindings) const = 0;
+    virtual size_t bytes() const = 0;           // of device memory
+    virtual double build_seconds() const = 0;   // by the CPU or the device, whichever built it
 };
 
-// `scene` must outlive the result.
+// Device and scene must outlive the result. Throws DeviceError if the device does not support the backend.
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
                                                                     const GpuScene& scene);
 

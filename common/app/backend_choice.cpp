@@ -1,0 +1,68 @@
+#include "app/backend_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "gpu/cache.h"
+
+namespace lab {
+namespace {
+
+// Samples of an image of at most 128 x 128 pixels per second on the device. They are thrown away.
+double measure_speed(Backend backend, const Device& device, const GpuScene& scene, const Estimator& estimator,
+                     const RenderParameters& parameters) {
+    const auto structure = build_acceleration_structure(backend, device, scene);
+    Renderer renderer(device, *structure, estimator, parameters);
+    renderer.set_dispatch_seconds(0.02);
+    renderer.advance(UINT32_MAX);  // the first dispatch also warms up the device
+    const double first_samples = renderer.samples();
+    const double first_seconds = renderer.device_seconds();
+    constexpr double seconds = 0.1;
+    while (renderer.device_seconds() < first_seconds + seconds) renderer.advance(UINT32_MAX);
+    return (renderer.samples() - first_samples) / (renderer.device_seconds() - first_seconds);
+}
+
+std::string cache_name(const Device& device, const GpuScene& scene) {
+    size_t triangles = 1;
+    for (const uint32_t mesh : scene.scene().instance_meshes) triangles += scene.scene().meshes[mesh].triangle_count;
+    const auto decade = static_cast<int>(std::log10(static_cast<double>(triangles)));
+    const auto& description = device.description();
+    return "backend-" + std::to_string(hash_text(description.name + description.driver)) + "-" +
+           std::to_string(decade);
+}
+
+std::optional<Backend> find_backend(const std::string& name) {
+    for (const Backend backend : all_backends)
+        if (to_string(backend) == name) return backend;
+    return std::nullopt;
+}
+
+}  // namespace
+
+Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
+                       const Estimator& estimator, RenderParameters parameters) {
+    if (const auto named = find_backend(name)) return *named;
+    const std::string entry = cache_name(device, scene);
+    if (const auto cached = read_cache(entry))
+        if (const auto backend = find_backend({cached->begin(), cached->end()});
+            backend && device.description().supports(*backend))
+            return *backend;
+
+    parameters.image_size = glm::min(parameters.image_size, uvec2(128));
+    Backend fastest = Backend::compute;
+    double highest_speed = 0;
+    for (const Backend backend : all_backends) {
+        if (!device.description().supports(backend)) continue;
+        const double speed = measure_speed(backend, device, scene, estimator, parameters);
+        if (speed > highest_speed) {
+            highest_speed = speed;
+            fastest = backend;
+        }
+    }
+    const std::string chosen = to_string(fastest);
+    write_cache(entry, {chosen.begin(), chosen.end()});
+    return fastest;
+}
+
+}  // namespace lab

@@ -1,0 +1,15 @@
+// Chooses the backend that renders a scene fastest on a device.
+#pragma once
+#include <string>
+
+#include "app/renderer.h"
+
+namespace lab {
+
+// The backend of that name; for "auto" the one that a short measurement on this scene finds fastest. The choice is kept
+// for the device, its driver and the decade of the number of triangles, so only the first run pays for it.
+// Throws DeviceError if the device does not support the named backend.
+Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
+                       const Estimator& estimator, RenderParameters parameters);
+
+}  // namespace lab

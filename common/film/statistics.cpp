@@ -1,0 +1,147 @@
+#include "film/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace lab {
+namespace {
+
+// Upper regularised incomplete gamma function Q(a, x), from the series of P = 1 - Q where that converges fast and by
+// Lentz's continued fraction elsewhere (Press et al., "Numerical Recipes", 6.2).
+double upper_gamma(double a, double x) {
+    if (x <= 0) return 1;
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
+    if (x < a + 1) {
+        double term = 1 / a, sum = term;
+        for (double k = a + 1; term > sum * epsilon; ++k) {
+            term *= x / k;
+            sum += term;
+        }
+        return 1 - scale * sum;
+    }
+    double b = x + 1 - a, c = 1 / std::numeric_limits<double>::min(), d = 1 / b, fraction = d, factor = 0;
+    for (double k = 1; std::abs(factor - 1) > epsilon; ++k) {
+        const double numerator = -k * (k - a);
+        b += 2;
+        d = 1 / (numerator * d + b);
+        c = b + numerator / c;
+        factor = d * c;
+        fraction *= factor;
+    }
+    return scale * fraction;
+}
+
+}  // namespace
+
+double normal_p_value(double z) { return std::erfc(std::abs(z) / std::numbers::sqrt2); }
+
+double normal_quantile(double probability) {
+    if (probability > 0.5) return -normal_quantile(1 - probability);
+    // The lower tail is convex, so Newton's method started below the solution approaches it from there.
+    double z = -std::sqrt(-2 * std::log(probability));
+    for (int step = 0; step < 60; ++step) {
+        const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+        const double change = (0.5 * std::erfc(-z / std::numbers::sqrt2) - probability) / density;
+        z -= change;
+        if (std::abs(change) < 1e-14) break;
+    }
+    return z;
+}
+
+double chi_square_p_value(double x, double degrees_of_freedom) {
+    return upper_gamma(0.5 * degrees_of_freedom, 0.5 * x);
+}
+
+double sidak(double significance, size_t count) {
+    return -std::expm1(std::log1p(-significance) / static_cast<double>(count));
+}
+
+MeanEstimate estimate_mean(std::span<const double> numbers) {
+    const double count = static_cast<double>(numbers.size());
+    MeanEstimate estimate;
+    for (const double number : numbers) estimate.mean += number / count;
+    for (const double number : numbers)
+        estimate.variance += (number - estimate.mean) * (number - estimate.mean) / (count - 1);
+    estimate.standard_error = std::sqrt(estimate.variance / count);
+    return estimate;
+}
+
+double smallest_detectable_bias(double standard_error, double significance, double power) {
+    return (-normal_quantile(0.5 * significance) + normal_quantile(power)) * standard_error;
+}
+
+ChiSquareTest chi_square_test(std::span<const uint64_t> counts, std::span<const double> probabilities) {
+    ChiSquareTest test;
+    for (const uint64_t count : counts) test.sample_count += static_cast<double>(count);
+    constexpr double smallest_expectation = 5;
+    double cells = 0, pooled_count = 0, pooled_expectation = 0;
+    const auto add_cell = [&](double count, double expectation) {
+        test.statistic += (count - expectation) * (count - expectation) / expectation;
+        ++cells;
+    };
+    for (size_t i = 0; i < counts.size(); ++i) {
+        const double count = static_cast<double>(counts[i]), expectation = test.sample_count * probabilities[i];
+        if (expectation >= smallest_expectation) {
+            add_cell(count, expectation);
+        } else {
+            pooled_count += count;
+            pooled_expectation += expectation;
+            if (expectation == 0 && count > 0) test.statistic = std::numeric_limits<double>::infinity();
+        }
+    }
+    if (pooled_expectation > 0) add_cell(pooled_count, pooled_expectation);
+    test.degrees_of_freedom = cells - 1;
+    test.p_value = std::isfinite(test.statistic) ? chi_square_p_value(test.statistic, test.degrees_of_freedom) : 0;
+    return test;
+}
+
+double ChiSquareTest::smallest_detectable_error(double significance, double power) const {
+    // With noncentrality λ the statistic has mean k + λ and variance 2 (k + 2λ). Bisection for the λ whose lower
+    // quantile is the critical value of the central distribution.
+    const double k = degrees_of_freedom;
+    const double critical = k - normal_quantile(significance) * std::sqrt(2 * k);
+    double low = 0, high = 100 * k + 1000;
+    while (high - low > 1e-6 * high) {
+        const double lambda = 0.5 * (low + high);
+        const double quantile = k + lambda - normal_quantile(power) * std::sqrt(2 * (k + 2 * lambda));
+        (quantile < critical ? low : high) = lambda;
+    }
+    return std::sqrt(high / sample_count);
+}
+
+double kolmogorov_smirnov_p_value(std::vector<double> numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    const double count = static_cast<double>(numbers.size());
+    double distance = 0;
+    for (size_t i = 0; i < numbers.size(); ++i) {
+        const double below = static_cast<double>(i) / count;
+        distance = std::max({distance, numbers[i] - below, below + 1 / count - numbers[i]});
+    }
+    const double x = (std::sqrt(count) + 0.12 + 0.11 / std::sqrt(count)) * distance;
+    if (x < 0.3) return 1;  // 1 - p is below 1e-5, and the series converges slowly
+    double sum = 0;
+    for (int k = 1; k <= 20; ++k) sum += (k % 2 == 1 ? 2 : -2) * std::exp(-2 * k * k * x * x);
+    return std::clamp(sum, 0.0, 1.0);
+}
+
+double correlation(std::span<const float> first, std::span<const float> second) {
+    const double count = static_cast<double>(first.size());
+    double mean_x = 0, mean_y = 0;
+    for (size_t i = 0; i < first.size(); ++i) {
+        mean_x += first[i] / count;
+        mean_y += second[i] / count;
+    }
+    double xx = 0, yy = 0, xy = 0;
+    for (size_t i = 0; i < first.size(); ++i) {
+        const double x = first[i] - mean_x, y = second[i] - mean_y;
+        xx += x * x;
+        yy += y * y;
+        xy += x * y;
+    }
+    return xy / std::sqrt(xx * yy);
+}
+
+}  // namespace lab

@@ -1,0 +1,45 @@
+// The driver's acceleration structure: a bottom level (BLAS) of triangles for every mesh file and a top level (TLAS) of
+// instances. The backends `pipeline` and `query` trace rays through it.
+#pragma once
+#include "tracing/gpu_scene.h"
+
+namespace lab {
+
+// Material classes that the scene uses, in ascending order: the pipeline has a hit group for each.
+std::vector<uint32_t> material_classes(const Scene& scene);
+
+class HardwareBvh {
+  public:
+    // Builds and compacts. The device must have acceleration structures. Throws DeviceFailure if memory runs out.
+    HardwareBvh(const Device& device, const GpuScene& scene);
+
+    // The top level, and for every instance the first triangle of each of its mesh's geometries.
+    std::vector<Binding> bindings() const;
+
+    size_t bytes() const { return bytes_; }                    // of device memory, after compaction
+    double build_seconds() const { return build_seconds_; }    // on the device
+
+  private:
+    // An acceleration structure and the buffer that it lives in.
+    struct Level {
+        Buffer buffer;
+        vk::raii::AccelerationStructureKHR handle = nullptr;
+        vk::DeviceAddress address = 0;
+    };
+    Level make_level(vk::AccelerationStructureTypeKHR type, vk::DeviceSize size) const;
+    Level build_level(vk::AccelerationStructureTypeKHR type,
+                      const std::vector<vk::AccelerationStructureGeometryKHR>& geometries,
+                      const std::vector<vk::AccelerationStructureBuildRangeInfoKHR>& ranges);
+    Level compact(const Level& level);
+    Level build_mesh(const GpuScene& scene, const Mesh& mesh);
+    Level build_top(const Scene& scene);
+
+    const Device* device_;
+    size_t bytes_ = 0;
+    double build_seconds_ = 0;
+    std::vector<Level> meshes_;
+    std::vector<Level> top_;  // exactly one
+    std::vector<Buffer> first_triangles_;  // exactly one
+};
+
+}  // namespace lab

@@ -1,0 +1,54 @@
+// Images of the scene, filtered linearly. The weights are computed here since samplers round them to 1/256, each device in
+// its own way: all devices and backends are to give the same image.
+
+// The four texels around a point of an image and the weights of the right and the lower ones.
+struct TexelNeighbours {
+    ivec2 upper_left;
+    ivec2 lower_right;
+    vec2 weights;
+};
+
+// `uv` is (0,0) at the upper left corner, (1,1) at the lower right. The image repeats in u; in v it repeats or ends.
+TexelNeighbours get_texel_neighbours(vec2 uv, ivec2 size, bool repeat_v) {
+    uv.x -= floor(uv.x);
+    uv.y = repeat_v ? uv.y - floor(uv.y) : clamp(uv.y, 0.0, 1.0);
+    vec2 position = uv * vec2(size) - 0.5;
+    TexelNeighbours texels;
+    ivec2 corner = ivec2(floor(position));
+    texels.weights = position - vec2(corner);
+    texels.upper_left = corner;
+    texels.lower_right = corner + 1;
+    if (corner.x < 0) texels.upper_left.x = size.x - 1;
+    if (corner.x + 1 >= size.x) texels.lower_right.x = 0;
+    if (corner.y < 0) texels.upper_left.y = repeat_v ? size.y - 1 : 0;
+    if (corner.y + 1 >= size.y) texels.lower_right.y = repeat_v ? 0 : size.y - 1;
+    return texels;
+}
+
+vec3 mix_texels(vec4 upper_left, vec4 upper_right, vec4 lower_left, vec4 lower_right, vec2 weights) {
+    return mix(mix(upper_left, upper_right, weights.x), mix(lower_left, lower_right, weights.x), weights.y).rgb;
+}
+
+#ifdef FEATURE_TEXTURES
+// Colour of a texture, decoded from sRGB.
+vec3 get_texture_colour(int index, vec2 uv) {
+    TexelNeighbours t = get_texel_neighbours(uv, textureSize(textures[nonuniformEXT(index)], 0), true);
+    return mix_texels(texelFetch(textures[nonuniformEXT(index)], t.upper_left, 0),
+                      texelFetch(textures[nonuniformEXT(index)], ivec2(t.lower_right.x, t.upper_left.y), 0),
+                      texelFetch(textures[nonuniformEXT(index)], ivec2(t.upper_left.x, t.lower_right.y), 0),
+                      texelFetch(textures[nonuniformEXT(index)], t.lower_right, 0), t.weights);
+}
+#endif
+
+#ifdef FEATURE_LIGHT_PROBE
+// Radiance of the light probe in a unit direction. Equirectangular: +Y up, image centre towards -Z before the rotation.
+vec3 get_light_probe_radiance(vec3 direction) {
+    vec2 uv = vec2(0.5 + (atan(direction.x, -direction.z) + parameters.probe_rotation) / (2.0 * PI),
+                   acos(clamp(direction.y, -1.0, 1.0)) / PI);
+    TexelNeighbours t = get_texel_neighbours(uv, textureSize(light_probe, 0), false);
+    return mix_texels(texelFetch(light_probe, t.upper_left, 0),
+                      texelFetch(light_probe, ivec2(t.lower_right.x, t.upper_left.y), 0),
+                      texelFetch(light_probe, ivec2(t.upper_left.x, t.lower_right.y), 0),
+                      texelFetch(light_probe, t.lower_right, 0), t.weights);
+}
+#endif

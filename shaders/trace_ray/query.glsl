@@ -1,0 +1,39 @@
+// trace_ray() by ray queries: the driver's acceleration structure, asked from any shader.
+#extension GL_EXT_ray_query : require
+
+layout(set = 0, binding = BINDING_ACCELERATION_STRUCTURE) uniform accelerationStructureEXT acceleration_structure;
+layout(scalar, set = 0, binding = BINDING_GEOMETRY_FIRST_TRIANGLES) readonly buffer GeometryFirstTriangles {
+    uint geometry_first_triangles[];  // two for each instance
+};
+
+// Closest hit nearer than t_max.
+bool trace_ray(Ray ray, float t_max, out Hit hit) {
+    ++ray_count;
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, acceleration_structure, gl_RayFlagsOpaqueEXT, 0xffu, ray.origin, 0.0, ray.direction,
+                          t_max);
+    // All triangles are opaque: one call goes through the whole structure.
+    rayQueryProceedEXT(query);
+    if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) return false;
+    hit.instance = rayQueryGetIntersectionInstanceCustomIndexEXT(query, true);
+    uint geometry = 2u * hit.instance + rayQueryGetIntersectionGeometryIndexEXT(query, true);
+    hit.triangle = geometry_first_triangles[geometry] + rayQueryGetIntersectionPrimitiveIndexEXT(query, true);
+    hit.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, true);
+    hit.distance = rayQueryGetIntersectionTEXT(query, true);
+#ifdef FEATURE_DIELECTRICS
+    hit.material_class = materials[triangle_materials[hit.triangle]].refractive_index > 0.0
+                             ? MATERIAL_CLASS_DIELECTRIC
+                             : MATERIAL_CLASS_DIFFUSE;
+#endif
+    return true;
+}
+
+// Whether anything is hit nearer than t_max. Any hit will do.
+bool is_occluded(Ray ray, float t_max) {
+    ++ray_count;
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, acceleration_structure, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT,
+                          0xffu, ray.origin, 0.0, ray.direction, t_max);
+    rayQueryProceedEXT(query);
+    return rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
+}
