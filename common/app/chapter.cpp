@@ -121,7 +121,8 @@ void run(const Chapter& chapter, const Options& options) {
                   .parameters = make_parameters(scene, options),
                   .samples = options.samples.value_or(scene.defaults.samples),
                   .record = {},
-                  .resumed = std::nullopt};
+                  .resumed = std::nullopt,
+                  .acceleration = {}};
     job.record = {.chapter = chapter.name,
                   .scene = scene.file.filename().string(),
                   .scene_hash = hexadecimal(scene.hash),
@@ -132,6 +133,10 @@ void run(const Chapter& chapter, const Options& options) {
                   .first_sample = options.first_sample};
     if (!options.resume.empty()) {
         job.resumed = read_film(options.resume);
+        if (options.first_sample != 0 && options.first_sample != job.resumed->record.first_sample)
+            throw UserError("--first-sample " + std::to_string(options.first_sample) + " does not fit " +
+                            options.resume.string() + ", which starts at sample " +
+                            std::to_string(job.resumed->record.first_sample) + ": leave it out");
         job.record.first_sample = job.resumed->record.first_sample;
         job.parameters.first_sample = job.record.first_sample;
         job.record.seconds = job.resumed->record.seconds;
@@ -149,6 +154,7 @@ void run(const Chapter& chapter, const Options& options) {
                                 ? Backend::compute  // the only one that can be looked into
                                 : choose_backend(options.backend, device, gpu_scene, estimator, job.parameters);
     const auto acceleration_structure = build_acceleration_structure(backend, device, gpu_scene);
+    job.acceleration = {acceleration_structure->bytes(), acceleration_structure->build_seconds()};
     job.record.device = device.description().name;
     job.record.backend = to_string(backend);
     if (!options.quiet)

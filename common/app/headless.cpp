@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "app/progress.h"
-#include "app/report.h"
 #include "error.h"
 
 namespace lab {
@@ -153,7 +152,7 @@ class HeadlessRender {
             else write_jpg(file, to_display(snapshot_, transform, options_.exposure));
         }
         const ErrorSource source = reference_ ? ErrorSource::reference : ErrorSource::halves;
-        if (!options_.report.empty()) write_report(options_.report, snapshot_, record, source, rows_);
+        if (!options_.report.empty()) write_report(options_.report, snapshot_, record, job_.acceleration, source, rows_);
     }
 
     void print_summary() const {
@@ -166,6 +165,9 @@ class HeadlessRender {
                     snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
         std::printf("time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
                     short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
+        std::printf("acceleration   structure of %s bytes, built in %s\n",
+                    short_number(static_cast<double>(job_.acceleration.bytes)).c_str(),
+                    duration_text(job_.acceleration.build_seconds).c_str());
         if (!rows_.empty() && rows_.back().error)
             std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n",
                         100 * std::sqrt(rows_.back().error->rel_mse),

@@ -1,6 +1,7 @@
 // Rendering without a window: from the options to the written files.
 #pragma once
 #include "app/options.h"
+#include "app/report.h"
 #include "app/renderer.h"
 #include "film/film_file.h"
 
@@ -15,6 +16,7 @@ struct RenderJob {
     uint32_t samples;    // wanted in every pixel
     FilmRecord record;
     std::optional<FilmFile> resumed;  // the run that this one continues
+    AccelerationRecord acceleration;
 };
 
 // Renders until the samples, the target error or the time limit are reached or Ctrl-C is pressed, then writes all

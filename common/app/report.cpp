@@ -64,7 +64,7 @@ std::string to_csv(const json& rows) {
 }  // namespace
 
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  ErrorSource source, const std::vector<ReportRow>& rows) {
+                  const AccelerationRecord& acceleration, ErrorSource source, const std::vector<ReportRow>& rows) {
     json report{{"chapter", record.chapter},
                 {"scene", record.scene},
                 {"scene_hash", record.scene_hash},
@@ -75,6 +75,8 @@ void write_report(const std::filesystem::path& file, const FilmImage& image, con
                 {"device", record.device},
                 {"seed", record.seed},
                 {"first_sample", record.first_sample},
+                {"acceleration_structure_bytes", acceleration.bytes},
+                {"acceleration_structure_seconds", acceleration.build_seconds},
                 {"invalid_samples", image.invalid_samples()},
                 {"error_source", source_text(source)},
                 {"rows", json::array()}};

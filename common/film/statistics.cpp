@@ -8,8 +8,8 @@
 namespace lab {
 namespace {
 
-// Upper regularised incomplete gamma function Q(a, x), from the series of P = 1 - Q where that converges fast and by
-// Lentz's continued fraction elsewhere (Press et al., "Numerical Recipes", 6.2).
+// Upper regularised incomplete gamma function Q(a, x), from the series of P = 1 - Q where that converges fast
+// and by Lentz's continued fraction elsewhere (Press et al., "Numerical Recipes", 6.2).
 double upper_gamma(double a, double x) {
     if (x <= 0) return 1;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -83,7 +83,8 @@ ChiSquareTest chi_square_test(std::span<const uint64_t> counts, std::span<const 
         ++cells;
     };
     for (size_t i = 0; i < counts.size(); ++i) {
-        const double count = static_cast<double>(counts[i]), expectation = test.sample_count * probabilities[i];
+        const double count = static_cast<double>(counts[i]),
+                     expectation = test.sample_count * probabilities[i];
         if (expectation >= smallest_expectation) {
             add_cell(count, expectation);
         } else {
@@ -94,13 +95,14 @@ ChiSquareTest chi_square_test(std::span<const uint64_t> counts, std::span<const 
     }
     if (pooled_expectation > 0) add_cell(pooled_count, pooled_expectation);
     test.degrees_of_freedom = cells - 1;
-    test.p_value = std::isfinite(test.statistic) ? chi_square_p_value(test.statistic, test.degrees_of_freedom) : 0;
+    test.p_value =
+        std::isfinite(test.statistic) ? chi_square_p_value(test.statistic, test.degrees_of_freedom) : 0;
     return test;
 }
 
 double ChiSquareTest::smallest_detectable_error(double significance, double power) const {
-    // With noncentrality λ the statistic has mean k + λ and variance 2 (k + 2λ). Bisection for the λ whose lower
-    // quantile is the critical value of the central distribution.
+    // With noncentrality λ the statistic has mean k + λ and variance 2 (k + 2λ). Bisection for the λ whose
+    // lower quantile is the critical value of the central distribution.
     const double k = degrees_of_freedom;
     const double critical = k - normal_quantile(significance) * std::sqrt(2 * k);
     double low = 0, high = 100 * k + 1000;

@@ -11,13 +11,10 @@
 #include "error.h"
 #include "image/file.h"
 #include "image/image.h"
+#include "image/image_checks.h"
 
 namespace lab {
 namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-    throw UserError(file.string() + ": " + reason);
-}
 
 // Throws tinyexr's message, if it made one, as a UserError.
 [[noreturn]] void fail_with(const std::filesystem::path& file, const char* message) {
@@ -40,14 +37,13 @@ struct DecodedImage : EXRImage {
     DecodedImage& operator=(const DecodedImage&) = delete;
 };
 
-// Walks over the attributes of a file (name, type, size and value each) and refuses what tinyexr trusts: a
-// type other than a flat image of scan lines, which it asserts, and a chunk count, which it allocates.
-// Neither is needed here.
+// Walks over the attributes of a file (name, type, size and value each) for the one that tinyexr trusts: it
+// aborts if the optional attribute "type" is not of its list.
 void check_attributes(const std::filesystem::path& file, std::string_view bytes) {
     bytes.remove_prefix(8);  // magic number and version
     const auto take_string = [&] {
         const size_t length = bytes.find('\0');
-        if (length == std::string_view::npos) fail(file, "the file ends too early: copy or export it again");
+        if (length == std::string_view::npos) fail_truncated(file);
         const std::string_view text = bytes.substr(0, length);
         bytes.remove_prefix(length + 1);
         return text;
@@ -56,11 +52,10 @@ void check_attributes(const std::filesystem::path& file, std::string_view bytes)
         take_string();  // type
         uint32_t size = 0;
         if (bytes.size() >= sizeof size) std::memcpy(&size, bytes.data(), sizeof size);
-        if (bytes.size() < sizeof size + size) fail(file, "the file ends too early: copy or export it again");
+        if (bytes.size() < sizeof size + size) fail_truncated(file);
         const std::string_view value = bytes.substr(sizeof size, size);
-        if (name == "type" && !value.starts_with("scanlineimage"))
+        if (name == "type" && value.substr(0, value.find('\0')) != "scanlineimage")
             fail(file, "only flat OpenEXR images of scan lines are read");
-        if (name == "chunkCount") fail(file, "only single-part OpenEXR files are read");
         bytes.remove_prefix(sizeof size + size);
     }
 }
@@ -86,7 +81,7 @@ void check_header(const std::filesystem::path& file, const EXRHeader& header, ui
         bytes_per_pixel += channel.pixel_type == TINYEXR_PIXELTYPE_HALF ? 2 : 4;
     }
     if (static_cast<uint64_t>(width * height) * bytes_per_pixel > max_deflate_ratio * file_size)
-        fail(file, "the file ends too early: copy or export it again");
+        fail_truncated(file);
 }
 
 // Moves the decoded planes into an ExrFile.
@@ -118,12 +113,6 @@ ExrFile collect(const std::filesystem::path& file, const EXRHeader& header, cons
 
 }  // namespace
 
-void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height) {
-    if (width >= 1 && width <= max_image_extent && height >= 1 && height <= max_image_extent) return;
-    fail(file, "an image of " + std::to_string(width) + " x " + std::to_string(height) +
-                   " pixels: width and height must be from 1 to " + std::to_string(max_image_extent));
-}
-
 ExrFile read_exr(const std::filesystem::path& file) {
     std::string bytes = read_file(file, max_image_file_bytes);
     const size_t size = bytes.size();
@@ -143,8 +132,8 @@ ExrFile read_exr(const std::filesystem::path& file) {
             fail_with(file, message);
         check_header(file, header, size);
         std::fill_n(header.requested_pixel_types, header.num_channels, TINYEXR_PIXELTYPE_FLOAT);
-        header.line_order =
-            0;  // rows carry their number, and tinyexr would turn a decreasing order upside down
+        header.chunk_count = 0;  // tinyexr computes it then, and does not allocate what the file claims
+        header.line_order = 0;   // rows carry their number; tinyexr would turn decreasing ones upside down
         DecodedImage decoded;
         decoded.num_channels = header.num_channels;  // else tinyexr does not free the planes if it fails
         if (LoadEXRImageFromMemory(&decoded, &header, memory, size, &message) != TINYEXR_SUCCESS) {
@@ -170,8 +159,7 @@ void write_exr(const std::filesystem::path& file, const ExrFile& exr) {
     }
     for (const auto& [name, plane] : exr.channels) planes[name] = plane.data();
 
-    // tinyexr's structs only point to these arrays, so they are not freed with FreeEXRHeader and
-    // FreeEXRImage.
+    // tinyexr's structs only point to these arrays, so that its functions must not free them.
     std::vector<EXRChannelInfo> channels;
     std::vector<unsigned char*> images;
     for (const auto& [name, plane] : planes) {

@@ -36,16 +36,6 @@ struct ExrFile {
 // Largest width and height of any image read or written.
 inline constexpr uint32_t max_image_extent = 16384;
 
-// Largest image file that is read, in bytes.
-inline constexpr uint64_t max_image_file_bytes = uint64_t{4} << 30;
-
-// Deflate (PNG, EXR) makes data at most this many times smaller: with it a damaged size is found before it is
-// allocated.
-inline constexpr uint64_t max_deflate_ratio = 1032;
-
-// UserError unless both are in [1, max_image_extent].
-void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height);
-
 // Reads single-part scan line files, uncompressed or with RLE, ZIP or PIZ compression; 16-bit floats are
 // widened.
 ExrFile read_exr(const std::filesystem::path& file);

@@ -2,16 +2,12 @@
 #include <charconv>
 #include <cmath>
 
-#include "error.h"
 #include "image/file.h"
 #include "image/image.h"
+#include "image/image_checks.h"
 
 namespace lab {
 namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-    throw UserError(file.string() + ": " + reason);
-}
 
 // Takes bytes off the front of a file; the end of the file is an error wherever it comes.
 class HdrBytes {
@@ -20,14 +16,14 @@ class HdrBytes {
 
     std::string_view line() {
         const size_t length = rest_.find('\n');
-        if (length == std::string_view::npos) end_of_file();
+        if (length == std::string_view::npos) fail_truncated(file_);
         const std::string_view text = rest_.substr(0, length);
         rest_.remove_prefix(length + 1);
         return text;
     }
 
     uint8_t byte() {
-        if (rest_.empty()) end_of_file();
+        if (rest_.empty()) fail_truncated(file_);
         const auto value = static_cast<uint8_t>(rest_.front());
         rest_.remove_prefix(1);
         return value;
@@ -36,8 +32,6 @@ class HdrBytes {
     bool starts_with(std::string_view prefix) const { return rest_.starts_with(prefix); }
 
   private:
-    [[noreturn]] void end_of_file() const { fail(file_, "the file ends too early: copy or export it again"); }
-
     const std::filesystem::path& file_;
     std::string_view rest_;
 };
@@ -46,7 +40,7 @@ class HdrBytes {
 void read_resolution(const std::filesystem::path& file, std::string_view line, Image& image) {
     const auto number = [&](std::string_view axis, uint32_t& value) {
         if (!line.starts_with(axis))
-            fail(file, "only .hdr files with rows from the top (\"-Y\", then \"+X\") are read");
+            fail(file, "only .hdr files with rows from the top (-Y, then +X) are read");
         line.remove_prefix(axis.size());
         const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
         if (error != std::errc()) fail(file, "its width and height cannot be read");
@@ -94,7 +88,7 @@ Image read_hdr(const std::filesystem::path& file) {
     read_resolution(file, bytes.line(), image);
     const size_t pixel_count = static_cast<size_t>(image.width) * image.height;
     // A run of 127 equal values takes two bytes in each of the four channels.
-    if (pixel_count > 16 * content.size()) fail(file, "the file ends too early: copy or export it again");
+    if (pixel_count > 16 * content.size()) fail_truncated(file);
     image.pixels.reserve(3 * pixel_count);
     std::vector<uint8_t> row(4 * size_t{image.width});
     for (uint32_t y = 0; y < image.height; ++y) {

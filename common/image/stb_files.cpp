@@ -6,9 +6,9 @@
 #include <cstring>
 #include <memory>
 
-#include "error.h"
 #include "image/file.h"
 #include "image/image.h"
+#include "image/image_checks.h"
 
 namespace lab {
 namespace {
@@ -20,8 +20,7 @@ struct ByteSource {
     size_t position = 0;
     bool exhausted = false;
 
-    // stb_image fills a buffer of 128 bytes ahead, so that only there a short answer is normal at the end of
-    // a file.
+    // stb_image fills a buffer of 128 bytes ahead: only there a short answer is normal at the end of a file.
     static int read(void* user, char* target, int size) {
         auto& source = *static_cast<ByteSource*>(user);
         const size_t count = std::min(static_cast<size_t>(size), source.bytes.size() - source.position);
@@ -51,7 +50,7 @@ constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSo
 // the segments of a .jpg file, each a marker byte after 0xff and a length of two bytes, as stb_image does.
 bool has_valid_huffman_tables(std::string_view jpg) {
     const auto byte = [&](size_t i) { return i < jpg.size() ? static_cast<uint8_t>(jpg[i]) : 0u; };
-    size_t position = 2;
+    size_t position = 0;
     while ((position = jpg.find('\xff', position)) != std::string_view::npos) {
         const uint32_t marker = byte(++position);
         if (marker == 0xff) continue;                                                    // padding
@@ -75,32 +74,28 @@ void append(void* bytes, void* data, int size) {
 }
 
 void check_written(int success, const std::filesystem::path& file) {
-    if (!success) throw UserError(file.string() + ": the image cannot be encoded: out of memory");
+    if (!success) fail(file, "the image cannot be encoded: out of memory");
 }
 
 }  // namespace
 
 Texture read_texture(const std::filesystem::path& file) {
-    const std::string name = file.string();
     const std::string bytes = read_file(file, max_image_file_bytes);
+    if (bytes.starts_with('\xff') && !has_valid_huffman_tables(bytes))
+        fail(file, "damaged image: copy or export it again");
     int width = 0, height = 0, channels = 0;
     ByteSource source{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels))
-        throw UserError(name + ": not a texture: it must be a .png, .jpg, .bmp or .tga file");
+        fail(file, "not a texture: it must be a .png, .jpg, .bmp or .tga file");
     check_image_size(file, width, height);
-    // At most: a bit a pixel, deflated. More pixels cannot be in the file, and memory for them is not
-    // allocated.
-    if (static_cast<uint64_t>(width) * height > 8 * max_deflate_ratio * bytes.size())
-        throw UserError(name + ": the file ends too early: copy or export it again");
-
-    if (bytes.starts_with("\xff\xd8") && !has_valid_huffman_tables(bytes))
-        throw UserError(name + ": damaged image: a Huffman table has too many codes");
+    // At most a bit a pixel, deflated: a file cannot hold more pixels, and memory is not allocated for them.
+    if (static_cast<uint64_t>(width) * height > 8 * max_deflate_ratio * bytes.size()) fail_truncated(file);
 
     source = {bytes};
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 4), stbi_image_free);
-    if (source.exhausted) throw UserError(name + ": the file ends too early: copy or export it again");
-    if (!pixels) throw UserError(name + ": damaged image: " + stbi_failure_reason());
+    if (source.exhausted) fail_truncated(file);
+    if (!pixels) fail(file, "damaged image: copy or export it again");
     Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
     texture.pixels.assign(pixels.get(), pixels.get() + 4 * static_cast<size_t>(width) * height);
     return texture;

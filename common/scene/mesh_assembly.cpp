@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "error.h"
+#include "image/image_checks.h"
 
 namespace lab {
 namespace {
@@ -93,7 +95,7 @@ class Assembly {
     }
 
     // A vertex that was added before with the same attributes, or a new one. The geometric normal belongs to
-    // one triangle, so that a corner without a normal of its own is not shared.
+    // one triangle: a corner that takes it is not shared.
     uint32_t add_vertex(const ObjFile& obj, ObjCorner corner, const dvec3& geometric_normal) {
         if (!with_texture_coordinates_) corner.texture_coordinates = ObjCorner::none;
         const auto next = static_cast<uint32_t>(scene_.positions.size());
@@ -110,8 +112,8 @@ class Assembly {
         if (with_texture_coordinates_) {
             const bool absent = corner.texture_coordinates == ObjCorner::none;
             const vec2 uv = absent ? vec2(0, 1) : obj.texture_coordinates[corner.texture_coordinates];
-            scene_.texture_coordinates.emplace_back(uv.x,
-                                                    1 - uv.y);  // v points up in the file, down in the scene
+            // v points up in the file and down in the scene.
+            scene_.texture_coordinates.emplace_back(uv.x, 1 - uv.y);
         }
         return next;
     }
@@ -121,7 +123,7 @@ class Assembly {
         if (!specular_) {
             if (material.specular_albedo != vec3(0) && !ignored_specular_) {
                 scene_.warnings.push_back(obj.file +
-                                          ": Ks is ignored: \"specular\" switches the Phong lobe on");
+                                          ": Ks is ignored, as the scene does not ask for specular");
                 ignored_specular_ = true;
             }
             material.specular_albedo = vec3(0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -77,8 +78,11 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
     if (!ignored.empty()) {
         std::string list;
         size_t count = 0;
-        for (const std::string& name : ignored)
-            if (++count <= 8) list += (list.empty() ? "" : ", ") + name;
+        for (const std::string& name : ignored) {
+            if (++count > 8) break;
+            if (count > 1) list += ", ";
+            list += name;
+        }
         warnings.push_back(file + ": without effect here: " + list + (count > 8 ? ", ..." : ""));
     }
     return materials;

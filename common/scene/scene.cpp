@@ -1,8 +1,10 @@
 #include "scene/scene.h"
 
+#include <cmath>
 #include <map>
 
 #include "error.h"
+#include "image/image_checks.h"
 #include "scene/features.h"
 #include "scene/mesh_assembly.h"
 #include "scene/scene_file.h"

@@ -1,5 +1,6 @@
 #include "scene/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>

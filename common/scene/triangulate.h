@@ -1,6 +1,7 @@
 // Polygons to triangles.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -146,19 +146,21 @@ std::optional<std::array<Range, 2>> split(const Range& range) {
 
 // The children of a node that covers `range`: the largest is split until there are four or all are leaves.
 std::vector<Range> open(const Range& range) {
+    const auto is_smaller = [](const Range& a, const Range& b) {
+        if (a.is_leaf != b.is_leaf) return a.is_leaf;
+        return std::pair(half_area(a.bounds), a.primitives.size()) <
+               std::pair(half_area(b.bounds), b.primitives.size());
+    };
     std::vector<Range> children{range};
     children.reserve(4);
     while (children.size() < 4) {
-        Range* largest = nullptr;
-        for (auto& child : children)
-            if (!child.is_leaf && (!largest || half_area(child.bounds) > half_area(largest->bounds)))
-                largest = &child;
-        if (!largest) break;
-        if (const auto halves = split(*largest)) {
-            *largest = (*halves)[0];
+        auto& largest = *std::max_element(children.begin(), children.end(), is_smaller);
+        if (largest.is_leaf) break;
+        if (const auto halves = split(largest)) {
+            largest = (*halves)[0];
             children.push_back((*halves)[1]);
         } else {
-            largest->is_leaf = true;
+            largest.is_leaf = true;
         }
     }
     return children;
@@ -294,8 +296,8 @@ Bvh build_bvh(const std::vector<BvhTriangle>& triangles) {
     std::vector<Primitive> primitives(triangles.size());
     for (size_t i = 0; i < triangles.size(); ++i) {
         const BvhTriangle& triangle = triangles[i];
-        for (const vec3& vertex : {triangle.vertex_0, triangle.vertex_1, triangle.vertex_2})
-            primitives[i].bounds.grow(vertex);
+        for (int vertex = 0; vertex < 3; ++vertex)
+            primitives[i].bounds.grow({triangle.x[vertex], triangle.y[vertex], triangle.z[vertex]});
         primitives[i].triangle = static_cast<uint32_t>(i);
     }
     Bvh bvh;

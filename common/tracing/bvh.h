@@ -30,13 +30,15 @@ inline constexpr float bvh_padding = 0x1p-20f;
 inline constexpr uint32_t bvh_leaf_shift = 28;
 inline bool is_bvh_leaf(uint32_t reference) { return reference >> bvh_leaf_shift != 0; }
 
-// World-space vertices of a triangle, with its ids in the fourth components: 48 bytes = 3 texels.
+// World-space coordinates of a triangle's vertices, one axis after the other, with its ids in the fourth
+// components: 48 bytes = 3 texels. The traversal permutes the axes, which so comes down to the order of
+// reading texels.
 struct BvhTriangle {
-    vec3 vertex_0;
+    vec3 x;
     uint32_t instance;
-    vec3 vertex_1;
+    vec3 y;
     uint32_t triangle;  // in Scene::triangles
-    vec3 vertex_2;
+    vec3 z;
     uint32_t padding;
 };
 static_assert(sizeof(BvhTriangle) == 48);

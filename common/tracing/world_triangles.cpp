@@ -26,7 +26,8 @@ std::vector<BvhTriangle> world_triangles(const Scene& scene) {
         const Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
         for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i) {
             const uvec3 vertices = scene.triangles[i];
-            triangles.push_back({world(vertices.x), instance, world(vertices.y), i, world(vertices.z), 0});
+            const mat3 rows = glm::transpose(mat3(world(vertices.x), world(vertices.y), world(vertices.z)));
+            triangles.push_back({rows[0], instance, rows[1], i, rows[2], 0});
         }
     }
     return triangles;

@@ -1,132 +1,128 @@
-// trace_ray() for any device: a bounding volume hierarchy (BVH) in two buffers, built by common/tracing/bvh.cpp.
+// trace_ray() for any device: a bounding volume hierarchy (BVH) that common/tracing/bvh.cpp built, and no extensions.
 #extension GL_EXT_samplerless_texture_functions : require
 
-// A node is eight texels: low x, high x, low y, high y, low z, high z of its four children and references to them.
+// A node is eight texels: low x, high x, low y, high y, low z, high z of its four children, and references to them.
 layout(set = 0, binding = BINDING_BVH_NODES) uniform utextureBuffer bvh_nodes;
-// A triangle is three texels: a vertex each, then instance, triangle and nothing as fourth components.
+// A triangle is three texels: x, y and z of its vertices. The fourth components are instance, triangle and nothing.
 layout(set = 0, binding = BINDING_BVH_TRIANGLES) uniform utextureBuffer bvh_triangles;
 
-const uint LEAF_SHIFT = 28u;  // a leaf's reference is its number of triangles << LEAF_SHIFT | the first
-const uint FIRST_LEAF = 1u << LEAF_SHIFT;
+// A reference is the index of an inner node, or (number of triangles << 28) | first triangle for a leaf.
+const uint FIRST_LEAF = 1u << 28u;
 const uint NONE = 0xffffffffu;
 
 #ifdef COUNT_TRAVERSAL_STEPS
 uint traversal_steps = 0u;  // nodes and triangles visited by this invocation
-#define COUNT_STEP() ++traversal_steps
+#define COUNT_TRAVERSAL_STEP() ++traversal_steps
 #else
-#define COUNT_STEP()
+#define COUNT_TRAVERSAL_STEP()
 #endif
 
-vec4 fetch_row(int row) { return uintBitsToFloat(texelFetch(bvh_nodes, row)); }
-#ifndef V_PRECISE_EDGE
-#define V_PRECISE_EDGE precise
-#endif
+vec4 fetch_node_row(int row) { return uintBitsToFloat(texelFetch(bvh_nodes, row)); }
+vec3 fetch_triangle_row(int row) { return uintBitsToFloat(texelFetch(bvh_triangles, row).xyz); }
 
-// Closest hit nearer than t_max, or with `any_hit` the first that turns up.
+// The closest hit nearer than t_max, or with `any_hit` the first that turns up.
 bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
-    // A zero in the direction would make NaN of rays on the face of a box.
+    // Boxes: the ray meets the plane x = p at p * inverse.x + offset.x. The direction's sign tells which side of a box
+    // comes first. Zeros in the direction would give NaN on the sides of a box.
     vec3 direction = mix(ray.direction, vec3(1e-18), lessThan(abs(ray.direction), vec3(1e-18)));
     precise vec3 inverse = 1.0 / direction;
-    ivec3 near_row = ivec3(0, 2, 4) + ivec3(lessThan(direction, vec3(0.0)));
-    ivec3 far_row = near_row ^ 1;
-    // Rounding errors must not cut off the border of a box. The boxes are padded for theirs, here are those of o.
-    vec3 magnitude = abs(ray.origin);
-    float padding = 9.5367431640625e-07 * max(magnitude.x, max(magnitude.y, magnitude.z));
-    precise vec3 near_offset = -ray.origin * inverse - padding * abs(inverse);
-    precise vec3 far_offset = -ray.origin * inverse + padding * abs(inverse);
+    ivec3 near = ivec3(0, 2, 4) + ivec3(lessThan(direction, vec3(0.0)));
+    ivec3 far = near ^ 1;
+    // Rounding must not make a ray miss a box. The builder has grown the boxes by 2^-20 of their coordinates, here the
+    // ray grows by 2^-20 of its origin's.
+    float radius = max(abs(ray.origin.x), max(abs(ray.origin.y), abs(ray.origin.z))) / 1048576.0;
+    precise vec3 near_offset = -ray.origin * inverse - radius * abs(inverse);
+    precise vec3 far_offset = -ray.origin * inverse + radius * abs(inverse);
 
-#ifndef V_MT
-    vec3 row_x, row_y, row_z;
-    vec3 a = abs(ray.direction), d = ray.direction;
-    if (a.x >= a.y && a.x >= a.z) { row_x = vec3(-d.y / d.x, 1, 0); row_y = vec3(-d.z / d.x, 0, 1); row_z = vec3(1.0 / d.x, 0, 0); }
-    else if (a.y >= a.z) { row_x = vec3(0, -d.z / d.y, 1); row_y = vec3(1, -d.x / d.y, 0); row_z = vec3(0, 1.0 / d.y, 0); }
-    else { row_x = vec3(1, 0, -d.x / d.z); row_y = vec3(0, 1, -d.y / d.z); row_z = vec3(0, 0, 1.0 / d.z); }
-#endif
+    // Triangles: a permutation of the axes makes z the direction's largest component, then a shear turns the ray into
+    // the z-axis. Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1) 2013.
+    vec3 size = abs(ray.direction);
+    ivec3 axes = size.x > max(size.y, size.z) ? ivec3(1, 2, 0) : size.y > size.z ? ivec3(2, 0, 1) : ivec3(0, 1, 2);
+    vec3 origin = vec3(ray.origin[axes.x], ray.origin[axes.y], ray.origin[axes.z]);
+    vec3 shear = vec3(ray.direction[axes.x], ray.direction[axes.y], 1.0) / ray.direction[axes.z];
 
     uint stack[BVH_STACK_SIZE];
     stack[0] = NONE;
     int top = 0;
     uint reference = 0u;
-    int hit_row = -1;
+    int hit_triangle = -1;
     hit.distance = t_max;
     while (reference != NONE) {
         if (reference < FIRST_LEAF) {
-            COUNT_STEP();
+            COUNT_TRAVERSAL_STEP();
             int node = 8 * int(reference);
-            vec4 enter_x = fetch_row(node + near_row.x) * inverse.x + near_offset.x;
-            vec4 enter_y = fetch_row(node + near_row.y) * inverse.y + near_offset.y;
-            vec4 enter_z = fetch_row(node + near_row.z) * inverse.z + near_offset.z;
-            vec4 leave_x = fetch_row(node + far_row.x) * inverse.x + far_offset.x;
-            vec4 leave_y = fetch_row(node + far_row.y) * inverse.y + far_offset.y;
-            vec4 leave_z = fetch_row(node + far_row.z) * inverse.z + far_offset.z;
+            vec4 near_x = fetch_node_row(node + near.x), far_x = fetch_node_row(node + far.x);
+            vec4 near_y = fetch_node_row(node + near.y), far_y = fetch_node_row(node + far.y);
+            vec4 near_z = fetch_node_row(node + near.z), far_z = fetch_node_row(node + far.z);
             uvec4 children = texelFetch(bvh_nodes, node + 6);
-            vec4 enter = max(enter_x, max(enter_y, max(enter_z, vec4(0.0))));
-            vec4 leave = min(leave_x, min(leave_y, min(leave_z, vec4(hit.distance))));
-            // Positive floats sort like their bits. The two lowest bits remember the child.
-            uvec4 key = mix(uvec4(NONE), (floatBitsToUint(enter) & ~3u) | uvec4(0, 1, 2, 3), lessThanEqual(enter, leave));
+            // The bits of positive floats are ordered like the floats, negative ones are negative as integers, too.
+            ivec4 enter_x = floatBitsToInt(near_x * inverse.x + near_offset.x);
+            ivec4 enter_y = floatBitsToInt(near_y * inverse.y + near_offset.y);
+            ivec4 enter_z = floatBitsToInt(near_z * inverse.z + near_offset.z);
+            ivec4 leave_x = floatBitsToInt(far_x * inverse.x + far_offset.x);
+            ivec4 leave_y = floatBitsToInt(far_y * inverse.y + far_offset.y);
+            ivec4 leave_z = floatBitsToInt(far_z * inverse.z + far_offset.z);
+            ivec4 enter = max(enter_x, max(enter_y, max(enter_z, 0)));
+            ivec4 leave = min(leave_x, min(leave_y, min(leave_z, floatBitsToInt(hit.distance))));
+            // The two lowest bits tell which child it is. Missed children sort last.
+            uvec4 key = uvec4((enter & ~3) | ivec4(0, 1, 2, 3));
+            key = mix(uvec4(NONE), key, lessThanEqual(enter, leave));
             key = uvec4(min(key.xz, key.yw), max(key.xz, key.yw)).xzyw;
             key = uvec4(min(key.xy, key.zw), max(key.xy, key.zw));
             key.yz = uvec2(min(key.y, key.z), max(key.y, key.z));
             if (key.w != NONE) stack[++top] = children[key.w & 3u];
             if (key.z != NONE) stack[++top] = children[key.z & 3u];
             if (key.y != NONE) stack[++top] = children[key.y & 3u];
-            if (key.x != NONE) reference = children[key.x & 3u];
-            else reference = stack[top--];
+            if (key.x != NONE)
+                reference = children[key.x & 3u];
+            else
+                reference = stack[top--];
         } else {
-            int row = 3 * int(reference & (FIRST_LEAF - 1u));
-            int end = row + 3 * int(reference >> LEAF_SHIFT);
-            for (; row < end; row += 3) {
-                COUNT_STEP();
-                vec3 v_0 = uintBitsToFloat(texelFetch(bvh_triangles, row).xyz);
-                vec3 v_1 = uintBitsToFloat(texelFetch(bvh_triangles, row + 1).xyz);
-                vec3 v_2 = uintBitsToFloat(texelFetch(bvh_triangles, row + 2).xyz);
-#ifdef V_MT
-                vec3 e_1 = v_1 - v_0, e_2 = v_2 - v_0;
-                vec3 p = cross(ray.direction, e_2);
-                float inv_det = 1.0 / dot(e_1, p);
-                vec3 s = ray.origin - v_0;
-                float u = dot(s, p) * inv_det;
-                vec3 q = cross(s, e_1);
-                float v = dot(ray.direction, q) * inv_det;
-                float t = dot(e_2, q) * inv_det;
-                if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < hit.distance) {
-                    hit.distance = t;
-                    hit.barycentrics = vec2(u, v);
-                    hit_row = row;
-                }
-#else
-                v_0 -= ray.origin; v_1 -= ray.origin; v_2 -= ray.origin;
-                V_PRECISE_EDGE vec3 x = vec3(dot(row_x, v_0), dot(row_x, v_1), dot(row_x, v_2));
-                V_PRECISE_EDGE vec3 y = vec3(dot(row_y, v_0), dot(row_y, v_1), dot(row_y, v_2));
-                vec3 z = vec3(dot(row_z, v_0), dot(row_z, v_1), dot(row_z, v_2));
-                V_PRECISE_EDGE vec3 edge = x.yzx * y.zxy - y.yzx * x.zxy;
-                float lowest = min(edge.x, min(edge.y, edge.z)), highest = max(edge.x, max(edge.y, edge.z));
-                float det = edge.x + edge.y + edge.z;
-                if ((lowest >= 0.0 || highest <= 0.0) && det != 0.0) {
-                    vec3 w = edge / det;
-                    float t = dot(w, z);
-                    if (t > 0.0 && t < hit.distance) {
-                        hit.distance = t;
-                        hit.barycentrics = w.yz;
-                        hit_row = row;
+            int triangle = 3 * int(reference & (FIRST_LEAF - 1u));
+            int end = triangle + 3 * int(reference >> 28u);
+            for (; triangle < end; triangle += 3) {
+                COUNT_TRAVERSAL_STEP();
+                vec3 x = fetch_triangle_row(triangle + axes.x);
+                vec3 y = fetch_triangle_row(triangle + axes.y);
+                vec3 z = fetch_triangle_row(triangle + axes.z) - origin.z;
+                // Triangles that share a vertex get the same numbers for it, and a difference of two rounded products
+                // never has the wrong sign: so no ray slips through between them. `precise` forbids to fuse.
+                precise vec3 sheared_x = (x - origin.x) - shear.x * z;
+                precise vec3 sheared_y = (y - origin.y) - shear.y * z;
+                precise vec3 area = sheared_x.zxy * sheared_y.yzx - sheared_y.zxy * sheared_x.yzx;
+                float sum = area.x + area.y + area.z;
+                bool is_inside = all(greaterThanEqual(area, vec3(0.0))) || all(lessThanEqual(area, vec3(0.0)));
+                if (is_inside && sum != 0.0) {
+                    vec3 weights = area / sum;
+                    float distance = dot(weights, shear.z * z);
+                    if (distance > 0.0 && distance < hit.distance) {
+                        hit.distance = distance;
+                        hit.barycentrics = weights.yz;
+                        hit_triangle = triangle;
                     }
                 }
-#endif
             }
-            reference = any_hit && hit_row >= 0 ? NONE : stack[top--];
+            reference = any_hit && hit_triangle >= 0 ? NONE : stack[top--];
         }
     }
-    if (hit_row < 0) return false;
-    hit.instance = texelFetch(bvh_triangles, hit_row).w;
-    hit.triangle = texelFetch(bvh_triangles, hit_row + 1).w;
+    if (hit_triangle < 0) return false;
+    hit.instance = texelFetch(bvh_triangles, hit_triangle).w;
+    hit.triangle = texelFetch(bvh_triangles, hit_triangle + 1).w;
+#ifdef FEATURE_DIELECTRICS
+    hit.material_class = materials[triangle_materials[hit.triangle]].refractive_index > 0.0
+                             ? MATERIAL_CLASS_DIELECTRIC
+                             : MATERIAL_CLASS_DIFFUSE;
+#endif
     return true;
 }
 
+// Closest hit nearer than t_max.
 bool trace_ray(Ray ray, float t_max, out Hit hit) {
     ++ray_count;
     return traverse(ray, t_max, false, hit);
 }
 
+// Whether anything is hit nearer than t_max. Any hit will do.
 bool is_occluded(Ray ray, float t_max) {
     ++ray_count;
     Hit hit;

@@ -1,0 +1,22 @@
+#include "image/image_checks.h"
+
+#include "error.h"
+#include "image/image.h"
+
+namespace lab {
+
+void fail(const std::filesystem::path& file, const std::string& reason) {
+    throw UserError(file.string() + ": " + reason);
+}
+
+void fail_truncated(const std::filesystem::path& file) {
+    fail(file, "the file ends too early: copy or export it again");
+}
+
+void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height) {
+    if (width >= 1 && width <= max_image_extent && height >= 1 && height <= max_image_extent) return;
+    fail(file, "an image of " + std::to_string(width) + " x " + std::to_string(height) +
+                   " pixels: width and height must be from 1 to " + std::to_string(max_image_extent));
+}
+
+}  // namespace lab

@@ -1,0 +1,23 @@
+// Checks that the readers of image files share.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace lab {
+
+// Largest image file that is read, in bytes.
+inline constexpr uint64_t max_image_file_bytes = uint64_t{4} << 30;
+
+// Deflate (in PNG and EXR) makes data at most this many times smaller. So a damaged size is found before
+// memory for it is allocated.
+inline constexpr uint64_t max_deflate_ratio = 1032;
+
+// Throw the UserErrors "<file>: <reason>" and that the file is cut off.
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason);
+[[noreturn]] void fail_truncated(const std::filesystem::path& file);
+
+// UserError unless both are in [1, max_image_extent].
+void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height);
+
+}  // namespace lab

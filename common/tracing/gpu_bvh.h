@@ -1,0 +1,34 @@
+// A bounding volume hierarchy on the device, as shaders/trace_ray/compute.glsl reads it.
+#pragma once
+#include "gpu/compute_kernel.h"
+#include "tracing/bvh.h"
+
+namespace lab {
+
+class GpuBvh {
+  public:
+    // Throws DeviceFailure if the device cannot hold or address it. The device must outlive the result.
+    GpuBvh(const Device& device, const Bvh& bvh);
+
+    // BINDING_BVH_NODES and BINDING_BVH_TRIANGLES, and the defines that the shader needs.
+    std::vector<Binding> bindings() const;
+    std::vector<std::string> defines() const;
+
+    size_t bytes() const { return nodes_.buffer.size() + triangles_.buffer.size(); }
+    double build_seconds() const { return build_seconds_; }
+
+  private:
+    // An array as 16-byte texels: many devices read them faster than storage buffers.
+    struct Texels {
+        Buffer buffer;
+        vk::raii::BufferView view;
+        template <typename T>
+        Texels(const Device& device, const std::vector<T>& data);
+    };
+    Texels nodes_;
+    Texels triangles_;
+    uint32_t max_stack_entries_;
+    double build_seconds_;
+};
+
+}  // namespace lab

@@ -1,0 +1,10 @@
+// The scene of the traversal benchmark: a Cornell box with a bumpy sphere of any number of triangles.
+#pragma once
+#include "scene/scene.h"
+
+namespace lab {
+
+// Twelve triangles for the box and its light, 2 segments (rings - 1) for the sphere.
+Scene make_box_scene(uint32_t segments, uint32_t rings);
+
+}  // namespace lab

@@ -1,0 +1,143 @@
+"""Long renders: they stop when told to, lose nothing, and go on where they were."""
+
+import math
+import resource
+import signal
+import time
+import unittest
+
+from image_files import Exr, relative_mse
+from program import RenderTest
+
+
+class Interruption(RenderTest):
+    """A large image, so that an interruption finds pixels with different numbers of samples."""
+
+    size = (320, 320)
+
+    def interrupt(self, signal_number, file, *arguments):
+        """Interrupts an endless render that has written the file; returns exit code, seconds until its end, its text."""
+        command = self.command("--samples=4000000000", "--output", file, *arguments, size=self.size)
+        with self.start(*command) as process:
+            self.wait_for(file, process)
+            if signal_number != signal.SIGKILL:
+                file.unlink()
+            start = time.monotonic()
+            process.send_signal(signal_number)
+            out, err = process.communicate(timeout=60)
+        return process.returncode, time.monotonic() - start, out + err
+
+    def assert_resumes(self, checkpoint):
+        """Resumed and uninterrupted renders are the same."""
+        total = int(Exr(checkpoint).text("samples")) + 3
+        resumed = self.picture("resumed", f"--samples={total}", f"--resume={checkpoint}", size=self.size)
+        self.assert_close(resumed, self.picture("uninterrupted", f"--samples={total}", size=self.size))
+        self.assertEqual(int(resumed.text("samples")), total)
+
+    def test_ctrl_c_writes_what_there_is(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                file = self.folder / f"stopped{number}.exr"
+                code, seconds, text = self.interrupt(number, file, "--save-every=0.2")
+                self.assertEqual(code, 0, text)
+                self.assertLess(seconds, 5)
+                self.assertIn("--resume", text)
+                self.assert_resumes(file)
+
+    def test_a_killed_render_goes_on_from_its_checkpoint(self):
+        file = self.folder / "killed.exr"
+        code, _, _ = self.interrupt(signal.SIGKILL, file, "--save-every=0.02")
+        self.assertEqual(code, -signal.SIGKILL)
+        self.assert_resumes(file)
+
+    def test_a_render_resumes_in_its_own_file(self):
+        self.picture("same", "--samples=2")
+        self.picture("same", "--samples=3", "--resume=same.exr")
+        resumed = self.picture("same", "--samples=5", "--resume=same.exr")
+        self.assert_close(resumed, self.picture("whole", "--samples=5"))
+
+
+class Checkpoints(RenderTest):
+    def test_a_finished_render_stays_as_it_is(self):
+        done = self.picture("done", "--samples=4")
+        self.assert_close(self.picture("again", "--samples=4", "--resume=done.exr"), done)
+
+    def test_sample_ranges_resume(self):
+        self.picture("part", "--samples=4", "--first-sample=6", "--seed=3")
+        resumed = self.picture("resumed", "--samples=9", "--first-sample=6", "--seed=3", "--resume=part.exr")
+        self.assert_close(resumed, self.picture("whole", "--samples=9", "--first-sample=6", "--seed=3"))
+        self.assertEqual(resumed.text("first_sample"), "6")
+
+    def test_another_render_is_not_resumed(self):
+        self.picture("part", "--samples=4")
+        others = [
+            self.command("--seed=2"),
+            self.command("--max-path-length=3"),
+            self.command("--view=depth"),
+            self.command("--background=1,1,1"),
+            self.command(size=(24, 21)),
+            self.command(scene="quad.json"),
+        ]
+        for other in others:
+            with self.subTest(other=other):
+                self.assert_refused([*other, "--samples=8", "--resume=part.exr", "--output=new.exr"], r"part\.exr")
+
+    def test_a_truncated_checkpoint_is_refused(self):
+        self.picture("part", "--samples=4")
+        whole = (self.folder / "part.exr").read_bytes()
+        for size in (100, len(whole) // 2, len(whole) - 1):
+            with self.subTest(size=size):
+                self.write("cut.exr", whole[:size])
+                self.assert_refused(self.command("--samples=8", "--resume=cut.exr"), r"cut\.exr")
+
+    def test_a_failed_write_keeps_the_old_file(self):
+        """A limit on file sizes, set while the program runs, stands for a full disk."""
+        file = self.folder / "old.exr"
+        with self.start(*self.command("--samples=4000000000", "--save-every=0.2", "--output", file)) as process:
+            self.wait_for(file, process)
+            resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (1000, 1000))
+            before = file.read_bytes()
+            out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, err)
+        self.assertRegex(err, r"\A[^\n]*old\.exr[^\n]*\n\Z")
+        self.assertEqual(Exr(file).text("chapter"), "01_uniform_sampling")
+        self.assertGreaterEqual(len(before), 1000)
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {"old.exr", "quad.json", "quad.mtl", "quad.obj"})
+
+
+class StoppingEarly(RenderTest):
+    def test_target_error_stops_at_a_power_of_two(self):
+        few = int(self.picture("few", "--samples=1000000", "--target-error=0.9").text("samples"))
+        many = int(self.picture("many", "--samples=1000000", "--target-error=0.3").text("samples"))
+        for samples in (few, many):
+            self.assertEqual(math.log2(samples), int(math.log2(samples)))
+        # The error goes like one over the square root, so three times less takes about nine times as many samples.
+        self.assertIn(many / few, (4, 8, 16, 32))
+
+    def test_target_error_is_met_against_a_reference(self):
+        reference = self.picture("reference", "--samples=4096", "--seed=77")
+        stopped = self.picture("stopped", "--samples=1000000", "--target-error=0.3", "--reference=reference.exr")
+        self.assertLessEqual(math.sqrt(relative_mse(stopped, reference)), 0.3)
+        self.assertGreater(math.sqrt(relative_mse(stopped, reference)), 0.1)
+
+    def test_target_error_is_met_without_a_reference(self):
+        """The error that the image estimates for itself is about its error against a good reference."""
+        reference = self.picture("reference", "--samples=4096", "--seed=77")
+        for target in (2, 0.7, 0.3):
+            with self.subTest(target=target):
+                stopped = self.picture("stopped", "--samples=1000000", f"--target-error={target}")
+                self.assertLessEqual(math.sqrt(relative_mse(stopped, reference)), 2 * target)
+
+    def test_samples_limit_an_error_that_is_out_of_reach(self):
+        self.assertEqual(self.picture("a", "--samples=12", "--target-error=1e-9").text("samples"), "12")
+
+    def test_time_limit(self):
+        start = time.monotonic()
+        picture = self.picture("a", "--samples=4000000000", "--time-limit=1")
+        self.assertLess(time.monotonic() - start, 10)
+        self.assertGreaterEqual(float(picture.text("seconds")), 0.9)
+        self.assertGreater(int(picture.text("samples")), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

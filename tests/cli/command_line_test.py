@@ -1,0 +1,184 @@
+"""The command line: what it understands, and that it refuses everything else with one clear line."""
+
+import re
+import unittest
+
+from program import MERGE, ProgramTest
+
+OPTIONS = """--width --height --samples --seed --first-sample --max-path-length --only-path-length --backend --device
+    --list-devices --headless --output --reference --report --target-error --time-limit --view --camera-position
+    --camera-target --camera-up --vertical-fov --background --specular --exposure --resume --save-every --validation
+    --quiet --help --version""".split()
+
+NO_NUMBERS = ["", "abc", "nan", "inf", "-inf", "1e999", "0x", "1,", "--"]
+NO_COUNTS = NO_NUMBERS + ["-1", "1.5", "99999999999999999999"]
+
+
+class Information(ProgramTest):
+    def test_help_names_every_option_of_the_contract(self):
+        out = self.render("--help")
+        for option in OPTIONS:
+            self.assertRegex(out, rf"{option}\b")
+
+    def test_version(self):
+        self.assertRegex(self.render("--version"), r"\A01_uniform_sampling \d+\.\d+\S*\n\Z")
+
+    def test_list_devices(self):
+        out = self.render("--list-devices")
+        self.assertRegex(out, r"(?m)^0\b.*Vulkan 1\.\d")
+        for backend in ("pipeline", "query", "compute"):
+            self.assertRegex(out, rf"{backend} +(works|lacks \w+)")
+
+    def test_a_render_tells_what_it_did(self):
+        out = self.render("quad.json", "--width", 8, "--height", 8, "--samples", 4)
+        self.assertRegex(out, r"mean radiance +[\d.e+-]+ [\d.e+-]+ [\d.e+-]+")
+        self.assertRegex(out, r"rays/s")
+        self.assertIn("output/01_uniform_sampling.png", out)
+        self.assertIn("output/01_uniform_sampling.exr", out)
+        written = {path.name for path in (self.folder / "output").iterdir()}
+        self.assertEqual(written, {"01_uniform_sampling.png", "01_uniform_sampling.exr"})
+
+    def test_quiet_prints_nothing(self):
+        code, out, err = self.run_program("quad.json", "--width", 8, "--height", 8, "--samples", 1, "--quiet")
+        self.assertEqual((code, out, err), (0, "", ""))
+
+
+class WrongArguments(ProgramTest):
+    def refuse(self, option, value, *words):
+        self.assert_refused(["quad.json", f"{option}={value}", "--samples=1000000000"], option, *words)
+
+    def test_unknown_options(self):
+        for option in ("--no-such-option", "--width-of-image=3", "-x", "--sample"):
+            with self.subTest(option=option):
+                self.assert_refused(["quad.json", option], re.escape(option.split("=")[0]))
+
+    def test_a_second_scene(self):
+        self.assert_refused(["quad.json", "quad.obj"], "quad.obj")
+
+    def test_missing_values(self):
+        for option in ("--width", "--output", "--background", "--device"):
+            with self.subTest(option=option):
+                self.assert_refused(["quad.json", option], option)
+
+    def test_counts(self):
+        for option in ("--width", "--height", "--samples", "--max-path-length", "--only-path-length", "--seed"):
+            for value in NO_COUNTS:
+                with self.subTest(option=option, value=value):
+                    self.assert_refused(["quad.json", f"{option}={value}"], option)
+        self.assert_refused(["quad.json", "--first-sample=-1"], "--first-sample")
+
+    def test_counts_that_must_be_positive_or_are_too_large(self):
+        for option, value in (("--width", 0), ("--height", 0), ("--samples", 0), ("--width", 1000000)):
+            with self.subTest(option=option, value=value):
+                self.refuse(option, value)
+
+    def test_numbers(self):
+        for option in ("--target-error", "--time-limit", "--vertical-fov", "--exposure", "--save-every"):
+            for value in NO_NUMBERS:
+                with self.subTest(option=option, value=value):
+                    self.refuse(option, value)
+
+    def test_numbers_out_of_range(self):
+        for option, values in {
+            "--target-error": (0, -1),
+            "--time-limit": (0, -1),
+            "--vertical-fov": (0, -10, 180, 400),
+            "--exposure": (1e9, -1e9),
+            "--save-every": (0, -1),
+        }.items():
+            for value in values:
+                with self.subTest(option=option, value=value):
+                    self.refuse(option, value)
+
+    def test_vectors(self):
+        for option in ("--camera-position", "--camera-target", "--camera-up", "--background"):
+            for value in NO_NUMBERS + ["1", "1,2", "1,2,3,4", "1,2,nan", "1,inf,3", "1,2,x", "1,,3"]:
+                with self.subTest(option=option, value=value):
+                    self.refuse(option, value)
+        self.refuse("--background", "1,-1,1")
+
+    def test_cameras_without_a_direction(self):
+        self.assert_refused(["quad.json", "--camera-position=1,2,3", "--camera-target=1,2,3"], "camera")
+        self.assert_refused(["quad.json", "--camera-up=0,0,0"], "camera|up")
+        self.assert_refused(["quad.json", "--camera-up=0,0,1"], "camera|up")
+
+    def test_choices(self):
+        self.refuse("--backend", "raster", "pipeline", "query", "compute")
+        self.refuse("--view", "nothing", "normals", "bvh-steps")
+
+    def test_more_samples_than_random_numbers(self):
+        self.assert_refused(["quad.json", "--first-sample=4294967295", "--samples=2"], "--first-sample")
+
+    def test_options_that_contradict_each_other(self):
+        self.assert_refused(["quad.json", "--only-path-length=5", "--max-path-length=4"], "--only-path-length")
+
+
+class WrongOutputs(ProgramTest):
+    """Found before anything is rendered: this many samples would take longer than the test may."""
+
+    def refuse(self, name, *words, option="--output"):
+        self.assert_refused(["quad.json", "--samples=4000000000", option, name], *words)
+
+    def test_endings(self):
+        for name in ("picture.gif", "picture", "picture.exr.txt", "exr"):
+            with self.subTest(name=name):
+                self.refuse(name, re.escape(name), r"\.exr", r"\.png")
+        self.refuse("report.txt", "report.txt", r"\.json", r"\.csv", option="--report")
+
+    def test_unwritable_places(self):
+        (self.folder / "folder.exr").mkdir()
+        (self.folder / "folder.json").mkdir()
+        for name in ("quad.obj/picture.exr", "folder.exr", "/proc/picture.exr", "x" * 300 + ".exr", ""):
+            with self.subTest(name=name[:40]):
+                self.refuse(name)
+        for name in ("quad.obj/report.json", "folder.json", "/proc/report.json"):
+            with self.subTest(name=name):
+                self.refuse(name, option="--report")
+
+    def test_one_bad_output_of_two(self):
+        self.assert_refused(
+            ["quad.json", "--samples=4000000000", "--output", "good.png", "--output", "quad.obj/bad.png"], "bad.png"
+        )
+
+
+class Devices(ProgramTest):
+    def test_unknown_devices(self):
+        for device in ("99", "-1", "No Such Device"):
+            with self.subTest(device=device):
+                self.assert_refused(["quad.json", f"--device={device}"], re.escape(device), "--list-devices", code=2)
+
+    def test_backends_work_or_are_refused(self):
+        devices = self.render("--list-devices")
+        first = re.split(r"(?m)^1\b", devices)[0]
+        for backend in ("pipeline", "query", "compute"):
+            with self.subTest(backend=backend):
+                arguments = ["quad.json", "--width=8", "--height=8", "--samples=1", "--device=0", "--backend", backend]
+                if re.search(rf"{backend} +works", first):
+                    self.assertIn(f"backend {backend}", self.render(*arguments))
+                else:
+                    self.assert_refused(arguments, backend, code=2)
+
+    def test_a_machine_without_vulkan_driver(self):
+        nowhere = {"VK_DRIVER_FILES": "/nonexistent", "VK_ICD_FILENAMES": "/nonexistent"}
+        self.assert_refused(["quad.json"], "mesa-vulkan-drivers", code=2, environment=nowhere)
+        self.assert_refused(["--list-devices"], "mesa-vulkan-drivers", code=2, environment=nowhere)
+
+    def test_an_image_too_large_for_the_device_is_refused(self):
+        self.assert_refused(["quad.json", "--width=16384", "--height=16384", "--samples=1"], "smaller", code=3)
+
+
+class MergeArguments(ProgramTest):
+    def test_wrong_arguments(self):
+        self.assert_refused([], "-o|merge", program=MERGE)
+        self.assert_refused(["a.exr", "b.exr"], "-o", program=MERGE)
+        self.assert_refused(["-o", "c.exr"], program=MERGE)
+        self.assert_refused(["a.exr", "b.exr", "-o", "c.exr"], "a.exr", program=MERGE)
+        self.assert_refused(["quad.obj", "-o", "c.exr"], "quad.obj", program=MERGE)
+        self.assert_refused(["a.exr", "-o", "c.png"], "c.png", r"\.exr", program=MERGE)
+
+    def test_help(self):
+        self.assertIn("-o", self.render("--help", program=MERGE))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,140 @@
+"""Runs the programs under test in a folder of their own."""
+
+import os
+import re
+import resource
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from image_files import Exr, largest_ulp_difference
+
+PROJECT = Path(__file__).resolve().parents[2]
+BINARIES = Path(os.environ.get("LAB_BINARIES", PROJECT / "build" / "bin"))
+CHAPTER = BINARIES / "01_uniform_sampling"
+MERGE = BINARIES / "merge_images"
+
+# A quad that faces +Z under a sky, small enough to be rendered in no time.
+QUAD_OBJ = """mtllib quad.mtl
+v -1 -1 0
+v 1 -1 0
+v 1 1 0
+v -1 1 0
+usemtl white
+f 1 2 3 4
+"""
+QUAD_MTL = "newmtl white\nKd 0.5 0.5 0.5\n"
+QUAD_JSON = """{
+    "meshes": [{"file": "quad.obj"}],
+    "camera": {"position": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "vertical_fov": 40},
+    "background": {"radiance": [1, 1, 1]}
+}
+"""
+
+# What sums in another order may differ by.
+MERGE_ULPS = 2
+
+# Bad input must neither hang nor allocate wildly.
+TIMEOUT_SECONDS = 120
+BAD_INPUT_SECONDS = 20
+BAD_INPUT_MEMORY = 8 << 30
+
+
+class ProgramTest(unittest.TestCase):
+    """Each test has an empty folder as working directory, with the scene quad.json in it."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.write("quad.obj", QUAD_OBJ)
+        self.write("quad.mtl", QUAD_MTL)
+        self.write("quad.json", QUAD_JSON)
+
+    def write(self, name, contents):
+        """Writes a file of the test's folder; returns its path."""
+        path = self.folder / name
+        path.write_bytes(contents if isinstance(contents, bytes) else contents.encode())
+        return path
+
+    def start(self, *arguments, environment=None, prepare=None, program=CHAPTER):
+        return subprocess.Popen(
+            [program, *map(str, arguments)],
+            cwd=self.folder,
+            env={**os.environ, **(environment or {})},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            preexec_fn=prepare,
+            restore_signals=False,
+            text=True,
+        )
+
+    def run_program(self, *arguments, timeout=TIMEOUT_SECONDS, **options):
+        """Runs to the end; returns exit code, standard output, standard error."""
+        with self.start(*arguments, **options) as process:
+            try:
+                out, err = process.communicate(timeout=timeout)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                self.fail(f"still running after {timeout} s: {arguments}")
+        return process.returncode, out, err
+
+    def render(self, *arguments, **options):
+        """Runs a command that must succeed; returns its standard output."""
+        code, out, err = self.run_program(*arguments, **options)
+        self.assertEqual(code, 0, f"{arguments}: {err}")
+        return out
+
+    def assert_refused(self, arguments, *words, code=1, environment=None, prepare=None, program=CHAPTER):
+        """The command ends soon with this exit code and one line that has all the words, and writes no picture."""
+
+        def limit_memory():
+            resource.setrlimit(resource.RLIMIT_AS, (BAD_INPUT_MEMORY, BAD_INPUT_MEMORY))
+            if prepare:
+                prepare()
+
+        before = {path: path.stat().st_mtime_ns for path in self.folder.rglob("*")}
+        actual, out, err = self.run_program(
+            *arguments,
+            timeout=BAD_INPUT_SECONDS,
+            environment=environment,
+            prepare=limit_memory,
+            program=program,
+        )
+        message = f"{arguments} printed {out!r} and the error {err!r}"
+        self.assertEqual(actual, code, message)
+        self.assertRegex(err, r"\A[^\n]{12,400}\n\Z", "one line, but " + message)
+        for word in words:
+            self.assertRegex(err, re.compile(word, re.IGNORECASE), message)
+        after = {path: path.stat().st_mtime_ns for path in self.folder.rglob("*") if path.is_file()}
+        for path, changed in after.items():
+            self.assertEqual(before.get(path), changed, f"{path.name} was written: {message}")
+
+    def wait_for(self, path, process, seconds=30):
+        """Waits until a running program has written a file."""
+        end = time.monotonic() + seconds
+        while not path.exists():
+            if process.poll() is not None or time.monotonic() > end:
+                process.kill()
+                self.fail(f"{path.name} was not written: {process.communicate()}")
+            time.sleep(0.01)
+
+
+class RenderTest(ProgramTest):
+    """Renders small pictures of the Cornell box."""
+
+    def picture(self, name, *arguments, scene="cornell_box", size=(24, 20)):
+        """Renders to NAME.exr and reads it."""
+        file = self.folder / f"{name}.exr"
+        self.render(*self.command(*arguments, scene=scene, size=size), "--quiet", "--output", file)
+        return Exr(file)
+
+    def command(self, *arguments, scene="cornell_box", size=(24, 20)):
+        """The arguments of a render of this size."""
+        return [scene, f"--width={size[0]}", f"--height={size[1]}", "--backend=compute", *arguments]
+
+    def assert_close(self, first, second, ulps=MERGE_ULPS):
+        self.assertLessEqual(largest_ulp_difference(first.pixels(), second.pixels()), ulps)

@@ -1,0 +1,80 @@
+"""The report: error against samples and seconds, as JSON and CSV."""
+
+import csv
+import json
+import math
+import unittest
+
+from image_files import Exr, relative_mse
+from program import RenderTest
+
+FIELDS = ["samples", "seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
+
+
+class Report(RenderTest):
+    def report(self, *arguments):
+        self.image = self.picture("image", "--report=report.json", *arguments)
+        return json.loads((self.folder / "report.json").read_text())
+
+    def test_fields(self):
+        report = self.report("--samples=16", "--seed=5")
+        expected = {"chapter": "01_uniform_sampling", "width": 24, "height": 20, "backend": "compute", "seed": 5}
+        expected |= {"invalid_samples": 0, "scene": "cornell_box.json", "device": self.image.text("device")}
+        self.assertEqual({name: report[name] for name in expected}, expected)
+        for row in report["rows"]:
+            for name in FIELDS:
+                self.assertIn(name, row)
+
+    def test_rows_at_powers_of_two(self):
+        report = self.report("--samples=24")
+        self.assertEqual([row["samples"] for row in report["rows"]], [1, 2, 4, 8, 16, 24])
+        for name in ("seconds", "rays"):
+            numbers = [row[name] for row in report["rows"]]
+            self.assertEqual(numbers, sorted(numbers))
+            self.assertGreater(numbers[0], 0)
+        # At least one ray a path, and at most one more than the default maximal path length 8.
+        paths = 24 * 20 * 24
+        self.assertTrue(paths <= report["rows"][-1]["rays"] <= 9 * paths)
+
+    def test_mean_is_that_of_the_image(self):
+        row = self.report("--samples=8")["rows"][-1]
+        for a, b in zip(row["mean"], self.image.mean()):
+            self.assertAlmostEqual(a, b, delta=1e-5 * b)
+
+    def test_errors_against_a_reference(self):
+        self.picture("reference", "--samples=4096", "--seed=77")
+        reference = Exr(self.folder / "reference.exr")
+        report = self.report("--samples=64", "--reference=reference.exr")
+        x, r = self.image.pixels(), reference.pixels()
+        mse = sum((a - b) ** 2 for a, b in zip(x, r)) / len(r)
+        row = report["rows"][-1]
+        self.assertAlmostEqual(row["mse"] / mse, 1, delta=1e-4)
+        self.assertAlmostEqual(row["rel_mse"] / relative_mse(self.image, reference), 1, delta=1e-4)
+        self.assertAlmostEqual(row["rel_rmse"] / (math.sqrt(mse) / (sum(r) / len(r))), 1, delta=1e-4)
+        self.assertGreater(report["rows"][0]["mse"], 8 * row["mse"])
+
+    def test_errors_without_a_reference_are_estimated(self):
+        """The estimate from the image's own halves agrees with the error against a good reference."""
+        self.picture("reference", "--samples=8192", "--seed=77")
+        estimated = self.report("--samples=1024")["rows"][-1]["mse"]
+        measured = self.report("--samples=1024", "--reference=reference.exr")["rows"][-1]["mse"]
+        self.assertTrue(0.5 < estimated / measured < 2, f"{estimated} against {measured}")
+
+    def test_a_reference_of_another_size_is_refused(self):
+        self.picture("small", "--samples=1", size=(8, 20))
+        arguments = self.command("--samples=4000000000", "--reference=small.exr")
+        self.assert_refused(arguments, r"small\.exr", "8x20", "24x20")
+
+    def test_csv_has_the_same_rows(self):
+        self.picture("image", "--samples=4", "--report=report.csv")
+        with open(self.folder / "report.csv", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        self.assertEqual([row["samples"] for row in rows], ["1", "2", "4"])
+        for row in rows:
+            self.assertTrue({"seconds", "rays", "mse", "rel_mse", "rel_rmse"} <= row.keys())
+            self.assertNotIn(None, row)
+            self.assertGreater(float(row["seconds"]), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,133 @@
+// The same samples give the same image, however a render is cut into pieces.
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "film/film_file.h"
+#include "support/gpu_test.h"
+#include "support/render.h"
+#include "support/scenes.h"
+
+namespace lab {
+namespace {
+
+// A box with a lamp: its pixels differ. The size is no multiple of that of a block.
+Scene lit_box() {
+    Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}));
+    scene.materials.push_back(diffuse_material(vec3(0.2f), {5, 6, 7}));
+    scene.triangle_materials.back() = 1;
+    return scene;
+}
+
+class Determinism : public testing::TestWithParam<std::string> {
+  protected:
+    RenderSettings settings() const {
+        RenderSettings settings{.width = 53, .height = 37, .samples = 24, .max_path_length = 5};
+        settings.estimator = chapter_estimator(GetParam());
+        return settings;
+    }
+    const Scene scene_ = lit_box();
+};
+INSTANTIATE_TEST_SUITE_P(Chapters, Determinism, testing::ValuesIn(all_chapters), chapter_name);
+
+bool are_identical(const FilmImage& a, const FilmImage& b) {
+    return a.pixels.size() == b.pixels.size() &&
+           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(FilmPixel)) == 0;
+}
+
+// Positive floats are numbered by their bits.
+void expect_within_2_ulp(const Image& a, const Image& b) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    for (size_t i = 0; i < a.pixels.size(); ++i)
+        ASSERT_LE(std::abs(std::bit_cast<int32_t>(a.pixels[i]) - std::bit_cast<int32_t>(b.pixels[i])), 2)
+            << "number " << i << ": " << a.pixels[i] << " and " << b.pixels[i];
+}
+
+std::filesystem::path temporary_file(const std::string& name) {
+    return std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + name);
+}
+
+TEST_P(Determinism, SameCommandGivesTheSameImage) {
+    EXPECT_TRUE(are_identical(render(scene_, settings()), render(scene_, settings())));
+}
+
+TEST_P(Determinism, DispatchesOfAnyLengthGiveTheSameImage) {
+    RenderSettings cut = settings(), whole = settings();
+    cut.dispatch_seconds = 1e-9;  // every dispatch has one block and one sample a pixel
+    whole.dispatch_seconds = 10;
+    EXPECT_TRUE(are_identical(render(scene_, cut), render(scene_, whole)));
+}
+
+TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
+    RenderSettings other_seed = settings(), later_samples = settings();
+    other_seed.seed = 2;
+    later_samples.first_sample = later_samples.samples;
+    const FilmImage film = render(scene_, settings()), film_of_other_seed = render(scene_, other_seed),
+                    later_film = render(scene_, later_samples);
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        ASSERT_NE(film.pixels[i].sum, film_of_other_seed.pixels[i].sum);
+        ASSERT_NE(film.pixels[i].sum, later_film.pixels[i].sum);
+    }
+}
+
+TEST_P(Determinism, PartsMergeToTheWhole) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& [first, count] : {std::pair{10u, 14u}, std::pair{0u, 10u}}) {
+        RenderSettings part = settings();
+        part.first_sample = first;
+        part.samples = count;
+        files.push_back(temporary_file("part" + std::to_string(first) + ".exr"));
+        FilmRecord record{};
+        record.first_sample = first;
+        write_film(files.back(), render(scene_, part), record);
+    }
+    const FilmFile merged = merge_films(files);
+    EXPECT_EQ(merged.image.min_samples(), settings().samples);
+    EXPECT_EQ(merged.record.first_sample, 0u);
+    expect_within_2_ulp(merged.image.mean(), render(scene_, settings()).mean());
+    for (const auto& file : files) std::filesystem::remove(file);
+}
+
+TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
+    const GpuScene gpu_scene(test_device(), scene_);
+    const auto acceleration_structure =
+        build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
+    const auto make_renderer = [&] {
+        return Renderer(test_device(), *acceleration_structure, settings().estimator,
+                        make_parameters(scene_, settings()));
+    };
+    // Interrupted within a pass, when some pixels have one sample more than others.
+    Renderer interrupted = make_renderer();
+    interrupted.set_dispatch_seconds(1e-9);
+    for (int dispatch = 0; dispatch < 100; ++dispatch) interrupted.advance(settings().samples);
+    const auto file = temporary_file("interrupted.exr");
+    write_film(file, interrupted.film().read(), {});
+    const FilmFile checkpoint = read_film(file);
+    std::filesystem::remove(file);
+    EXPECT_NE(checkpoint.image.pixels.front().sample_count, checkpoint.image.pixels.back().sample_count);
+
+    Renderer resumed = make_renderer();
+    resumed.resume(checkpoint.image);
+    while (resumed.advance(settings().samples)) {
+    }
+    EXPECT_EQ(resumed.film().read().min_samples(), settings().samples);
+    expect_within_2_ulp(resumed.film().read().mean(), render(scene_, settings()).mean());
+}
+
+TEST_P(Determinism, PathLengthsAddUpToTheImage) {
+    const FilmImage whole = render(scene_, settings());
+    std::vector<glm::dvec3> sums(whole.pixels.size());
+    for (uint32_t length = 0; length <= settings().max_path_length; ++length) {
+        RenderSettings part = settings();
+        part.only_path_length = static_cast<int>(length);
+        const FilmImage film = render(scene_, part);
+        for (size_t i = 0; i < sums.size(); ++i)
+            sums[i] += glm::dvec3(film.pixels[i].sum) + glm::dvec3(film.pixels[i].compensation);
+    }
+    for (size_t i = 0; i < sums.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            ASSERT_NEAR(sums[i][channel], whole.pixels[i].sum[channel], 1e-6 * sums[i][channel]);
+}
+
+}  // namespace
+}  // namespace lab

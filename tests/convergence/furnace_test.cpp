@@ -1,0 +1,74 @@
+// Scenes whose radiance is known exactly.
+#include <array>
+#include <cmath>
+
+#include "support/expect_statistics.h"
+#include "support/render.h"
+#include "support/scenes.h"
+
+namespace lab {
+namespace {
+
+class Furnace : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Chapters, Furnace, testing::ValuesIn(all_chapters), chapter_name);
+
+const std::array<std::string, 3> channel_names{"red", "green", "blue"};
+
+// Inside a closed surface of albedo a and emission E every point shows E (1 + a + a² + ... + a^m) at path
+// length m. Each channel has its own numbers.
+void expect_furnace(const std::string& chapter, Scene (*make_furnace)(const Material&), const vec3& albedo,
+                    const vec3& emission, uint32_t samples) {
+    const Scene scene = make_furnace(diffuse_material(albedo, emission));
+    for (const uint32_t m : {0u, 1u, 2u, 4u, 8u}) {
+        RenderSettings settings{.samples = samples, .max_path_length = m, .seed = 1 + m};
+        settings.estimator = chapter_estimator(chapter);
+        const FilmImage film = render(scene, settings);
+        for (int channel = 0; channel < 3; ++channel) {
+            const double a = albedo[channel], e = emission[channel];
+            expect_mean(
+                "path length " + std::to_string(m) + ", " + channel_names[static_cast<size_t>(channel)],
+                estimate_mean(pixel_means(film, channel)), e * (1 - std::pow(a, m + 1)) / (1 - a), 0.002, 15);
+        }
+    }
+}
+
+TEST_P(Furnace, BoxShowsTheGeometricSeries) {
+    expect_furnace(GetParam(), closed_box, {0.2f, 0.4f, 0.6f}, {1, 2, 0.5f}, 500);
+}
+
+TEST_P(Furnace, SphereShowsTheGeometricSeries) {
+    const auto make_furnace = [](const Material& material) { return make_sphere(material, Facing::inwards); };
+    expect_furnace(GetParam(), make_furnace, {0.45f, 0.3f, 0.1f}, {0.25f, 1.5f, 4}, 256);
+}
+
+// A convex object under a uniform sky shows its albedo times the sky at any path length above 0: light that
+// it reflects does not come back.
+TEST_P(Furnace, ConvexObjectShowsItsAlbedoTimesTheSky) {
+    const vec3 albedo(0.9f, 0.4f, 0.15f), sky(1, 2, 3);
+    Scene scene = make_sphere(diffuse_material(albedo), Facing::outwards);
+    scene.background = sky;
+    for (const uint32_t m : {1u, 8u}) {
+        RenderSettings settings{.samples = 800, .max_path_length = m, .seed = 20 + m};
+        settings.estimator = chapter_estimator(GetParam());
+        const FilmImage film = render(scene, settings);
+        for (int channel = 0; channel < 3; ++channel)
+            expect_mean(
+                "path length " + std::to_string(m) + ", " + channel_names[static_cast<size_t>(channel)],
+                estimate_mean(pixel_means(film, channel)), double{albedo[channel]} * double{sky[channel]},
+                0.002, 6);
+    }
+}
+
+TEST_P(Furnace, SkyIsExact) {
+    Scene scene = make_sphere(diffuse_material(vec3(0.5f)), Facing::outwards);
+    scene.background = {1, 2, 3};
+    scene.camera.target = {6, 1, 2};  // away from the sphere
+    RenderSettings settings{.samples = 3, .max_path_length = 0};
+    settings.estimator = chapter_estimator(GetParam());
+    const FilmImage film = render(scene, settings);
+    for (int channel = 0; channel < 3; ++channel)
+        for (const double mean : pixel_means(film, channel)) ASSERT_EQ(mean, 1 + channel);
+}
+
+}  // namespace
+}  // namespace lab

@@ -1,0 +1,221 @@
+// Textures and light probes: which texel is seen where, with each backend.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "support/gpu_test.h"
+#include "support/render.h"
+#include "support/scenes.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec2;
+using glm::dvec3;
+using std::numbers::pi;
+
+class Textures : public OnEachBackend {
+  protected:
+    // The albedo at texture coordinates: that of squares in a row which have the same coordinates everywhere,
+    // one in each pixel of the image.
+    std::vector<vec3> albedo_at(const Texture& texture, const std::vector<vec2>& coordinates,
+                                const vec3& factor = vec3(1)) const {
+        Material material = diffuse_material(factor);
+        material.albedo_texture = 0;
+        std::vector<Quad> quads;
+        for (size_t i = 0; i < coordinates.size(); ++i) quads.push_back({{i, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+        Scene scene = make_scene({material}, quads);
+        scene.textures = {texture};
+        for (const vec2& uv : coordinates)
+            scene.texture_coordinates.insert(scene.texture_coordinates.end(), 4, uv);
+        const auto count = static_cast<uint32_t>(coordinates.size());
+        const float distance = 10, middle = 0.5f * static_cast<float>(count);
+        scene.camera = {{middle, 0.5f, distance}, {middle, 0.5f, 0}, {0, 1, 0}, 0};
+        scene.camera.vertical_fov = static_cast<float>(glm::degrees(2 * std::atan(0.5 / double{distance})));
+        const FilmImage film = render(scene, {.width = count,
+                                              .height = 1,
+                                              .samples = 1,
+                                              .estimator = view_estimator("albedo"),
+                                              .backend = GetParam()});
+        std::vector<vec3> albedos;
+        for (uint32_t x = 0; x < count; ++x) albedos.push_back(radiance_at(film, x, 0));
+        return albedos;
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Backends, Textures, testing::ValuesIn(all_backends), backend_name);
+
+// Four columns and two rows of colours that are all different.
+Texture colourful_texture() {
+    Texture texture{4, 2, {}};
+    for (int row = 0; row < 2; ++row)
+        for (int column = 0; column < 4; ++column)
+            for (const int value : {20 + 60 * column, 10 + 200 * row, 255 - 17 * column * (row + 1), 255})
+                texture.pixels.push_back(static_cast<uint8_t>(value));
+    return texture;
+}
+
+// IEC 61966-2-1, in double.
+double decode_srgb(uint8_t value) {
+    const double encoded = value / 255.0;
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+dvec3 texel(const Texture& texture, uint32_t column, uint32_t row) {
+    const uint8_t* bytes = &texture.pixels[4 * (size_t{row} * texture.width + column)];
+    return {decode_srgb(bytes[0]), decode_srgb(bytes[1]), decode_srgb(bytes[2])};
+}
+
+// Devices decode sRGB with an error of up to half a step of eight bits.
+constexpr double decoding_error = 0.5 / 255;
+
+TEST_P(Textures, ShowTheirTexelsFromTheTopRowDown) {
+    const Texture texture = colourful_texture();
+    std::vector<vec2> coordinates;
+    std::vector<dvec3> expected;
+    for (uint32_t row = 0; row < 2; ++row)
+        for (uint32_t column = 0; column < 4; ++column)
+            for (const vec2 repeat : {vec2(0, 0), vec2(1, 0), vec2(-3, 2), vec2(0, -1)}) {
+                coordinates.push_back(vec2((glm::dvec2(column, row) + 0.5) / glm::dvec2(4, 2)) + repeat);
+                expected.push_back(texel(texture, column, row));
+            }
+    const auto albedos = albedo_at(texture, coordinates);
+    for (size_t i = 0; i < albedos.size(); ++i)
+        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error)
+            << coordinates[i].x << " " << coordinates[i].y;
+}
+
+TEST_P(Textures, AreDecodedFromSrgb) {
+    Texture texture{256, 1, {}};
+    std::vector<vec2> coordinates;
+    for (int value = 0; value < 256; ++value) {
+        for (int channel = 0; channel < 4; ++channel) texture.pixels.push_back(static_cast<uint8_t>(value));
+        coordinates.push_back({(static_cast<float>(value) + 0.5f) / 256, 0.5f});
+    }
+    const auto albedos = albedo_at(texture, coordinates);
+    for (size_t value = 0; value < albedos.size(); ++value)
+        EXPECT_NEAR(double{albedos[value].g}, decode_srgb(static_cast<uint8_t>(value)), decoding_error)
+            << value;
+}
+
+TEST_P(Textures, AreFilteredLinearlyAcrossTheirBorders) {
+    const Texture texture = colourful_texture();
+    // Between two columns, a quarter of the way between two rows, and between the last column and the first.
+    const auto albedos =
+        albedo_at(texture, {{0.25f, 0.25f}, {0.125f, 0.375f}, {0, 0.25f}, {1, 0.25f}, {0.125f, 0}});
+    const std::array<dvec3, 5> expected{0.5 * (texel(texture, 0, 0) + texel(texture, 1, 0)),
+                                        0.75 * texel(texture, 0, 0) + 0.25 * texel(texture, 0, 1),
+                                        0.5 * (texel(texture, 3, 0) + texel(texture, 0, 0)),
+                                        0.5 * (texel(texture, 3, 0) + texel(texture, 0, 0)),
+                                        0.5 * (texel(texture, 0, 1) + texel(texture, 0, 0))};
+    for (size_t i = 0; i < albedos.size(); ++i)
+        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error) << i;
+}
+
+TEST_P(Textures, AreMultipliedByTheMaterialsColour) {
+    const Texture texture = colourful_texture();
+    const vec3 factor(0.5f, 0.25f, 0.75f);
+    const vec2 centre(0.125f, 0.25f);
+    const vec3 plain = albedo_at(texture, {centre}).front();
+    EXPECT_LT(glm::distance(albedo_at(texture, {centre}, factor).front(), factor * plain), 1e-6f);
+}
+
+TEST_P(Textures, CoordinatesAreInterpolated) {
+    Scene scene = make_scene({diffuse_material(vec3(1))}, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
+    scene.textures = {colourful_texture()};
+    scene.texture_coordinates = {{0.1f, 0.9f}, {0.7f, 0.9f}, {0.7f, 0.2f}, {0.1f, 0.2f}};
+    scene.camera = {{0.25f, 0.75f, 1}, {0.25f, 0.75f, 0}, {0, 1, 0}, 0.01f};
+    const FilmImage film = render(scene, {.width = 1,
+                                          .height = 1,
+                                          .samples = 1,
+                                          .estimator = view_estimator("texture-coordinates"),
+                                          .backend = GetParam()});
+    EXPECT_LT(glm::distance(radiance_at(film, 0, 0), vec3(0.25f, 0.375f, 0)), 1e-3f);
+}
+
+class LightProbe : public OnEachBackend {
+  protected:
+    // A probe whose texels have different colours, over an empty scene.
+    static constexpr uint32_t width = 9, height = 5;
+    static vec3 texel_radiance(uint32_t column, uint32_t row) {
+        return {static_cast<float>(column), static_cast<float>(row) * 100,
+                static_cast<float>(column + row) + 0.5f};
+    }
+    static Scene probe_scene() {
+        Scene scene = make_scene({}, {});
+        scene.background = vec3(1);
+        scene.light_probe = Image{width, height, {}};
+        for (uint32_t row = 0; row < height; ++row)
+            for (uint32_t column = 0; column < width; ++column)
+                for (int channel = 0; channel < 3; ++channel)
+                    scene.light_probe->pixels.push_back(texel_radiance(column, row)[channel]);
+        return scene;
+    }
+    // Radiance that a camera sees in a direction.
+    vec3 radiance(Scene scene, const dvec3& direction) const {
+        scene.camera = {.position = {0, 0, 0},
+                        .target = vec3(direction),
+                        .up = {0.3f, 0.2f, 0.1f},
+                        .vertical_fov = 0.01f};
+        return radiance_at(render(scene, {.width = 1, .height = 1, .samples = 1, .backend = GetParam()}), 0,
+                           0);
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Backends, LightProbe, testing::ValuesIn(all_backends), backend_name);
+
+// +Y up, centre towards -Z; seen from inside, the right half of the image is towards +X.
+TEST_P(LightProbe, ShowsItsCentreTowardsMinusZ) {
+    const Scene scene = probe_scene();
+    const auto expect = [&](const dvec3& direction, const dvec2& position) {
+        const auto column = static_cast<uint32_t>(position.x), row = static_cast<uint32_t>(position.y);
+        EXPECT_LT(glm::distance(radiance(scene, direction), texel_radiance(column, row)), 0.1f)
+            << direction.x << " " << direction.y << " " << direction.z;
+    };
+    expect({0, 0, -1}, {4, 2});
+    for (const dvec2 centre :
+         {dvec2(6, 2), dvec2(2, 2), dvec2(4, 1), dvec2(5, 3), dvec2(0, 1), dvec2(8, 4)}) {
+        const double azimuth = 2 * pi * (centre.x + 0.5 - 4.5) / width,
+                     inclination = pi * (centre.y + 0.5) / height;
+        expect({std::sin(inclination) * std::sin(azimuth), std::cos(inclination),
+                -std::sin(inclination) * std::cos(azimuth)},
+               centre);
+    }
+}
+
+TEST_P(LightProbe, TurnsCounterClockwiseSeenFromAbove) {
+    Scene scene = probe_scene();
+    scene.probe_rotation = static_cast<float>(pi / 2);
+    EXPECT_LT(glm::distance(radiance(scene, {-1, 0, 0}), texel_radiance(4, 2)), 0.1f);
+    scene.probe_rotation = static_cast<float>(-pi / 2);
+    EXPECT_LT(glm::distance(radiance(scene, {1, 0, 0}), texel_radiance(4, 2)), 0.1f);
+}
+
+TEST_P(LightProbe, JoinsAtItsSidesAndEndsAtItsPoles) {
+    const Scene scene = probe_scene();
+    const vec3 sides = 0.5f * (texel_radiance(0, 2) + texel_radiance(8, 2));
+    EXPECT_LT(glm::distance(radiance(scene, {0, 0, 1}), sides), 0.1f);
+    // Above the highest row of texel centres only that row is seen.
+    EXPECT_NEAR(radiance(scene, {0, 1, -0.01}).g, 0, 1e-3);
+    EXPECT_NEAR(radiance(scene, {0, -1, -0.01}).g, 100 * (height - 1), 1e-2);
+}
+
+TEST_P(LightProbe, IsMultipliedByItsIntensity) {
+    Scene scene = probe_scene();
+    scene.background = {2, 3, 4};
+    EXPECT_LT(glm::distance(radiance(scene, {0, 0, -1}), vec3(2, 3, 4) * texel_radiance(4, 2)), 1.0f);
+}
+
+TEST_P(LightProbe, OfOneColourIsASky) {
+    Scene sky = make_scene({diffuse_material({0.5f, 0.6f, 0.7f})}, {{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}});
+    sky.background = {1, 2, 3};
+    Scene probe = sky;
+    probe.background = vec3(1);
+    probe.light_probe = Image{2, 1, {1, 2, 3, 1, 2, 3}};
+    const RenderSettings settings{.width = 16, .height = 16, .samples = 4, .backend = GetParam()};
+    const FilmImage expected = render(sky, settings), film = render(probe, settings);
+    for (size_t i = 0; i < film.pixels.size(); ++i)
+        ASSERT_LT(glm::distance(film.pixels[i].sum, expected.pixels[i].sum),
+                  1e-5f * glm::length(expected.pixels[i].sum));
+}
+
+}  // namespace
+}  // namespace lab

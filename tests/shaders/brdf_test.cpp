@@ -1,0 +1,146 @@
+// shaders/materials.glsl: the Lambertian BRDF with a normalised Phong lobe.
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <random>
+
+#include "support/bounce.h"
+#include "support/expect_statistics.h"
+#include "support/gpu_test.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+using std::numbers::pi;
+
+// As in brdf.comp.
+struct BrdfInput {
+    vec3 normal;
+    vec3 in_direction;
+    vec3 out_direction;
+    Material material;
+};
+struct BrdfResult {
+    vec3 pi_brdf;
+    uint32_t is_above;
+};
+
+std::vector<BrdfResult> evaluate(const std::vector<BrdfInput>& inputs) {
+    return run_shader<BrdfResult>({"brdf.comp"}, inputs);
+}
+
+Material glossy_material(float exponent) {
+    Material material = white_material();
+    material.diffuse_albedo = {0.1f, 0.2f, 0.3f};
+    material.specular_albedo = {0.6f, 0.5f, 0.4f};
+    material.specular_exponent = exponent;
+    return material;
+}
+
+// The definition: π times the BRDF of one channel.
+double pi_brdf(const BrdfInput& input, int channel) {
+    const dvec3 n(input.normal), in(input.in_direction), out(input.out_direction);
+    const double cos_alpha = std::max(glm::dot(2 * glm::dot(n, in) * n - in, out), 0.0);
+    const double exponent = input.material.specular_exponent;
+    return input.material.diffuse_albedo[channel] +
+           input.material.specular_albedo[channel] * 0.5 * (exponent + 2) * std::pow(cos_alpha, exponent);
+}
+
+// Direction about the z-axis.
+vec3 direction(double theta, double phi) {
+    return vec3(dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
+}
+
+TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
+    std::mt19937 generator(1);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::vector<BrdfInput> inputs;
+    for (const float exponent : {1.0f, 10.0f, 100.0f, 1000.0f})
+        for (int i = 0; i < 20'000; ++i) {
+            const vec3 in = direction(1.57 * uniform(generator), 6.28 * uniform(generator));
+            // Half of the directions near the mirror image, where the lobe is.
+            const vec3 mirrored(-in.x, -in.y, in.z);
+            const vec3 other = direction(1.57 * uniform(generator), 6.28 * uniform(generator));
+            const vec3 out = glm::normalize(i % 2 == 0 ? other : mirrored + 3 / std::sqrt(exponent) * other);
+            inputs.push_back({{0, 0, 1}, in, out, glossy_material(exponent)});
+            inputs.push_back({{0, 0, 1}, out, in, glossy_material(exponent)});
+        }
+    const auto results = evaluate(inputs);
+    double worst = 0, worst_reciprocity = 0;
+    for (size_t i = 0; i < inputs.size(); ++i) {
+        ASSERT_EQ(results[i].is_above, 1u);
+        for (int channel = 0; channel < 3; ++channel) {
+            // Relative to the lobe's peak: a power of 1000 magnifies the rounding errors of its base.
+            const double peak = 0.5 * (inputs[i].material.specular_exponent + 2);
+            const double value = results[i].pi_brdf[channel];
+            worst = std::max(worst, std::abs(value - pi_brdf(inputs[i], channel)) / peak);
+            worst_reciprocity =
+                std::max(worst_reciprocity, std::abs(value - results[i ^ 1].pi_brdf[channel]) / peak);
+        }
+    }
+    std::printf("  largest error %.2g, largest difference of exchanged directions %.2g, of the peak\n", worst,
+                worst_reciprocity);
+    EXPECT_LT(worst, 3e-4);
+    EXPECT_LT(worst_reciprocity, 3e-4);
+}
+
+TEST(Brdf, ReflectsItsAlbedoAtNormalIncidence) {
+    // Midpoint rule for the integral over the hemisphere of BRDF · cos θ; around the normal the integrand
+    // depends on the inclination only.
+    for (const float exponent : {0.0f, 1.0f, 20.0f, 500.0f}) {
+        constexpr int steps = 1 << 14;
+        std::vector<BrdfInput> inputs;
+        for (int i = 0; i < steps; ++i)
+            inputs.push_back({{0, 0, 1},
+                              direction((i + 0.5) * 0.5 * pi / steps, 1),
+                              {0, 0, 1},
+                              glossy_material(exponent)});
+        const auto results = evaluate(inputs);
+        for (int channel = 0; channel < 3; ++channel) {
+            double albedo = 0;
+            for (int i = 0; i < steps; ++i)
+                albedo += results[static_cast<size_t>(i)].pi_brdf[channel] *
+                          std::sin((i + 0.5) * pi / steps) * 0.5 * pi / steps;
+            const Material& material = inputs.front().material;
+            EXPECT_NEAR(albedo, material.diffuse_albedo[channel] + material.specular_albedo[channel], 1e-4)
+                << "exponent " << exponent;
+        }
+    }
+}
+
+TEST(Brdf, CarriesNothingBelowTheSurface) {
+    const std::vector<BrdfInput> inputs{{{0, 0, 1}, {0, 0.6f, -0.8f}, {0, 0, 1}, white_material()},
+                                        {{0, 0, 1}, {0, 1, 0}, {0, 0, 1}, white_material()},
+                                        // Seen from behind, the surface reflects to behind.
+                                        {{0, 0, 1}, {0, 0.6f, -0.8f}, {0, 0, -1}, white_material()},
+                                        {{0, 0, 1}, {0, 0.6f, 0.8f}, {0, 0, -1}, white_material()}};
+    const auto results = evaluate(inputs);
+    EXPECT_EQ(results[0].is_above, 0u);
+    EXPECT_EQ(results[1].is_above, 0u);
+    EXPECT_EQ(results[2].is_above, 1u);
+    EXPECT_EQ(results[3].is_above, 0u);
+}
+
+TEST(Brdf, IsIntegratedByTheEstimatorUnderObliqueLight) {
+    // The integral of BRDF · cos θ over the hemisphere for light that leaves at 60 degrees, by quadrature and
+    // by the estimator of chapter 1 under a white sky.
+    constexpr int steps = 1000;
+    const Surface surface{{0, 0, 1}, direction(pi / 3, 0), glossy_material(10)};
+    double albedo = 0;
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j) {
+            const double theta = (i + 0.5) * 0.5 * pi / steps;
+            const vec3 in = direction(theta, (j + 0.5) * 2 * pi / steps);
+            albedo += pi_brdf({surface.normal, in, surface.out_direction, surface.material}, 0) *
+                      std::cos(theta) * std::sin(theta) * pi / steps / steps;
+        }
+    std::vector<double> weights;
+    for (const uint32_t run : {41, 42, 43})
+        for (const Bounce& bounce : sample_bounces("01_uniform_sampling", surface, 4'000'000, run))
+            weights.push_back(bounce.weight);
+    expect_mean("reflected radiance", estimate_mean(weights), albedo, 0.005);
+}
+
+}  // namespace
+}  // namespace lab

@@ -1,0 +1,197 @@
+// Chapter 1's sampling of directions: uniform inclination and azimuth, density 1/(π² sin θ) per solid angle.
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "support/bounce.h"
+#include "support/expect_statistics.h"
+#include "support/gpu_test.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+using std::numbers::pi;
+
+const std::string chapter = "01_uniform_sampling";
+
+// Normals along an axis, against it, in between, and where the construction of the frame is delicate.
+const std::vector<dvec3>& test_normals() {
+    static const std::vector<dvec3> normals{{0, 0, 1},
+                                            {0, 0, -1},
+                                            glm::normalize(dvec3(0.3, -0.8, 0.52)),
+                                            glm::normalize(dvec3(-0.00019813581, -0.00008946839, -1))};
+    return normals;
+}
+
+std::vector<Bounce> sample(const dvec3& normal, size_t count, uint32_t run) {
+    return sample_bounces(chapter, {vec3(normal), vec3(normal), white_material()}, count, run);
+}
+
+// Angles of a direction with respect to a normal, in double. The azimuth counts from an arbitrary direction.
+struct Angles {
+    double cos_theta, sin_theta, phi;
+};
+class Frame {
+  public:
+    explicit Frame(const dvec3& normal)
+        : normal_(dvec3(vec3(normal))),
+          tangent_(glm::normalize(glm::cross(normal_, dvec3(0.36, 0.48, 0.8)))),
+          bitangent_(glm::cross(normal_, tangent_)) {}
+
+    Angles angles(const vec3& direction) const {
+        const dvec3 d(direction);
+        const double x = glm::dot(d, tangent_), y = glm::dot(d, bitangent_);
+        return {glm::dot(d, normal_), std::hypot(x, y), std::atan2(y, x)};
+    }
+
+  private:
+    dvec3 normal_, tangent_, bitangent_;
+};
+
+// Histogram over cells of equal size in cos θ and φ. Of a million directions at most ten may be dropped:
+// those whose cosine is so small that rounding errors bring them below the horizon.
+std::vector<uint64_t> histogram(const std::vector<Bounce>& bounces, const Frame& frame, size_t rows,
+                                size_t columns) {
+    std::vector<uint64_t> counts(rows * columns);
+    size_t dropped = 0;
+    for (const Bounce& bounce : bounces) {
+        if (bounce.ray_count != 2) {
+            ++dropped;
+            continue;
+        }
+        const Angles angles = frame.angles(bounce.direction);
+        const auto index = [](double position, size_t count) {
+            return static_cast<size_t>(std::clamp(position, 0.0, 1 - 1e-12) * static_cast<double>(count));
+        };
+        ++counts[index(angles.cos_theta, rows) * columns + index((angles.phi + pi) / (2 * pi), columns)];
+    }
+    EXPECT_LE(dropped, bounces.size() / 100'000);
+    return counts;
+}
+
+// Integral of the density over each cell: exact, Δφ (acos c_0 - acos c_1) / π².
+std::vector<double> cell_probabilities(size_t rows, size_t columns) {
+    std::vector<double> probabilities;
+    const auto theta = [&](size_t row) {
+        return std::acos(static_cast<double>(row) / static_cast<double>(rows));
+    };
+    for (size_t row = 0; row < rows; ++row)
+        for (size_t column = 0; column < columns; ++column)
+            probabilities.push_back(2 * (theta(row) - theta(row + 1)) / (pi * static_cast<double>(columns)));
+    return probabilities;
+}
+
+TEST(UniformAngles, FollowTheirDensity) {
+    uint32_t run = 0;
+    for (const dvec3& normal : test_normals()) {
+        const auto bounces = sample(normal, 4'000'000, ++run);
+        expect_distribution("normal " + std::to_string(run) + ", 16 x 32 cells",
+                            histogram(bounces, Frame(normal), 16, 32), cell_probabilities(16, 32), 0.01);
+        // Odd numbers: the middle of the range lies within a cell.
+        expect_distribution("normal " + std::to_string(run) + ", 51 x 102 cells",
+                            histogram(bounces, Frame(normal), 51, 102), cell_probabilities(51, 102), 0.015);
+    }
+}
+
+TEST(UniformAngles, HaveUniformInclinationAndAzimuth) {
+    const dvec3 normal = test_normals()[2];
+    const Frame frame(normal);
+    std::vector<double> inclinations, azimuths;
+    for (const Bounce& bounce : sample(normal, 1'000'000, 11)) {
+        const Angles angles = frame.angles(bounce.direction);
+        inclinations.push_back(std::atan2(angles.sin_theta, angles.cos_theta) / (0.5 * pi));
+        azimuths.push_back((angles.phi + pi) / (2 * pi));
+    }
+    expect_uniform("inclination", inclinations);
+    expect_uniform("azimuth", azimuths);
+}
+
+// Where rounding errors would show first.
+constexpr double below_one = 1 - 0x1p-24;
+
+TEST(UniformAngles, AreThoseOfTheRandomNumbers) {
+    std::vector<std::array<double, 2>> numbers;
+    for (const double x : {0.0, 0x1p-24, 0.25, 0.5, 0.75, below_one})
+        for (const double y : {0.0, 0x1p-24, 0.5, below_one}) numbers.push_back({x, y});
+    for (int x = 0; x < 128; ++x)
+        for (int y = 0; y < 128; ++y) numbers.push_back({(x + 0.37) / 128, (y + 0.61) / 128});
+    const auto bounces = bounces_at(chapter, {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers);
+    double worst = 0;
+    for (size_t i = 0; i < numbers.size(); ++i) {
+        const double phi = 2 * pi * numbers[i][0] - pi, theta = 0.5 * pi * numbers[i][1];
+        if (bounces[i].ray_count != 2) {
+            EXPECT_EQ(numbers[i][1], below_one) << "only a direction along the surface may be dropped";
+            continue;
+        }
+        const dvec3 expected(std::cos(phi) * std::sin(theta), std::sin(phi) * std::sin(theta),
+                             std::cos(theta));
+        worst = std::max(worst, glm::length(dvec3(bounces[i].direction) - expected));
+        ASSERT_GE(bounces[i].weight, 0.0f);
+    }
+    std::printf("  largest error of a direction %.2g (Vulkan allows sine and cosine an error of 4.9e-4)\n",
+                worst);
+    EXPECT_LT(worst, 1.5e-3);
+}
+
+TEST(UniformAngles, HaveTheDensityOfTheJacobian) {
+    // |det J| of the map from random numbers to directions is the solid angle per unit area: 1 / density = π²
+    // sin θ. Central differences over 2^-8 have an error of 1e-4 or less.
+    constexpr double step = 0x1p-9;
+    std::vector<std::array<double, 2>> numbers;
+    for (int x = 0; x < 128; ++x)
+        for (int y = 0; y < 128; ++y) {
+            const double u = (x + 0.5) / 128, v = (y + 0.5) / 128;
+            numbers.insert(numbers.end(), {{u - step, v}, {u + step, v}, {u, v - step}, {u, v + step}});
+        }
+    const auto bounces = bounces_at(chapter, {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers);
+    double worst = 0;
+    for (size_t i = 0; i < numbers.size(); i += 4) {
+        const auto difference = [&](size_t k) {
+            return (dvec3(bounces[i + k + 1].direction) - dvec3(bounces[i + k].direction)) / (2 * step);
+        };
+        const double solid_angle = glm::length(glm::cross(difference(0), difference(2)));
+        const double expected = pi * pi * std::sin(0.5 * pi * numbers[i][1]);
+        worst = std::max(worst, std::abs(solid_angle / expected - 1));
+    }
+    std::printf("  largest relative difference of Jacobian and density %.2g\n", worst);
+    EXPECT_LT(worst, 1e-3);
+}
+
+TEST(UniformAngles, AreWeightedByReflectanceTimesCosineOverDensity) {
+    uint32_t run = 20;
+    for (const dvec3& normal : test_normals()) {
+        const Frame frame(normal);
+        double worst = 0;
+        for (const Bounce& bounce : sample(normal, 100'000, ++run)) {
+            if (bounce.ray_count != 2) continue;
+            const Angles angles = frame.angles(bounce.direction);
+            const double density = 1 / (pi * pi * angles.sin_theta);
+            const double expected = 1 / pi * angles.cos_theta / density;
+            worst = std::max(worst, std::abs(bounce.weight - expected));
+        }
+        std::printf("  normal %u: largest error of a weight %.2g\n", run - 20, worst);
+        EXPECT_LT(worst, 1e-5);
+    }
+}
+
+TEST(UniformAngles, HaveTheKnownMeansAndVariance) {
+    std::vector<double> weights, squared_deviations, solid_angles;
+    uint32_t run = 30;
+    for (const dvec3& normal : test_normals()) {
+        const Frame frame(normal);
+        for (const Bounce& bounce : sample(normal, 3'000'000, ++run)) {
+            const double weight = bounce.ray_count == 2 ? bounce.weight : 0;
+            weights.push_back(weight);
+            squared_deviations.push_back((weight - 1) * (weight - 1));
+            solid_angles.push_back(pi * pi * frame.angles(bounce.direction).sin_theta);
+        }
+    }
+    expect_mean("radiance of a white surface under a white sky", estimate_mean(weights), 1, 0.001);
+    expect_mean("variance of one sample, π²/8 - 1", estimate_mean(squared_deviations), pi * pi / 8 - 1, 0.01);
+    expect_mean("mean of 1 / density, the solid angle of the hemisphere", estimate_mean(solid_angles), 2 * pi,
+                0.001);
+}
+
+}  // namespace
+}  // namespace lab

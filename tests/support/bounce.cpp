@@ -1,0 +1,51 @@
+#include "support/bounce.h"
+
+#include "app/renderer.h"
+#include "support/gpu_test.h"
+
+namespace lab {
+namespace {
+
+std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surface, uvec2 key,
+                                const std::vector<RandomState>& seeds, size_t count) {
+    struct Header {
+        Surface surface;
+        uint32_t max_path_length;
+        uvec2 key;
+    };
+    const Header header{surface, 1, key};
+    const auto header_bytes = std::as_bytes(std::span(&header, 1)),
+               seed_bytes = std::as_bytes(std::span(seeds));
+    std::vector<std::byte> inputs(header_bytes.begin(), header_bytes.end());
+    inputs.insert(inputs.end(), seed_bytes.begin(), seed_bytes.end());
+    TestShader shader{.name = "bounce.comp"};
+    shader.named_includes = {
+        {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
+    if (surface.material.specular_albedo != vec3(0)) shader.defines.push_back("FEATURE_SPECULAR");
+    std::vector<Bounce> bounces(count);
+    run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs);
+    return bounces;
+}
+
+}  // namespace
+
+Material white_material() {
+    Material material{};
+    material.diffuse_albedo = vec3(1);
+    material.albedo_texture = -1;
+    return material;
+}
+
+std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& surface, size_t count,
+                                   uint32_t run) {
+    return run_bounces(chapter, surface, seed_key(run), {}, count);
+}
+
+std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surface,
+                               const std::vector<std::array<double, 2>>& numbers) {
+    std::vector<RandomState> seeds;
+    for (const auto& u : numbers) seeds.push_back(state_before(u));
+    return run_bounces(chapter, surface, {0, 0}, seeds, seeds.size());
+}
+
+}  // namespace lab

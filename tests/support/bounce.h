@@ -1,0 +1,35 @@
+// Runs an estimator at a single surface point, see tests/shaders/estimator_stub.glsl.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "shaders/interface.h"
+#include "support/pcg2d.h"
+
+namespace lab {
+
+struct Surface {
+    vec3 normal{0, 0, 1};
+    vec3 out_direction{0, 0, 1};  // towards the camera
+    Material material;
+};
+
+// A Lambertian material that reflects everything.
+Material white_material();
+
+struct Bounce {
+    vec3 direction;
+    float weight;  // of the direction: π ρ cosθ / (π density), the radiance under a sky of radiance 1
+    uint32_t ray_count;  // 2, or 1 if the estimator dropped the direction
+};
+
+// Bounces with random numbers of different samples. `run` chooses other ones.
+std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& surface, size_t count,
+                                   uint32_t run);
+
+// Bounces whose first two random numbers are given (down to multiples of 2^-24).
+std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surface,
+                               const std::vector<std::array<double, 2>>& numbers);
+
+}  // namespace lab

@@ -1,0 +1,28 @@
+#include "support/gpu_test.h"
+
+namespace lab {
+
+const Device& test_device() {
+    static const Device device({.choice = "", .validation = true});
+    return device;
+}
+
+void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
+                std::span<const std::byte> inputs) {
+    const Device& device = test_device();
+    Buffer result_buffer(device, results.size(), vk::BufferUsageFlagBits::eStorageBuffer);
+    const Buffer input_buffer(device, inputs, vk::BufferUsageFlagBits::eStorageBuffer);
+    const std::vector<Binding> bindings{storage_binding(0, result_buffer), storage_binding(1, input_buffer)};
+    const ShaderSource source{.file = project_folder() / "tests" / "shaders" / shader.name,
+                              .stage = ShaderStage::compute,
+                              .defines = shader.defines,
+                              .named_includes = shader.named_includes};
+    const ComputeKernel kernel(device, source, bindings, 0);
+    constexpr size_t group_size = 128;
+    device.submit([&](const vk::raii::CommandBuffer& commands) {
+        kernel.record(commands, nullptr, static_cast<uint32_t>((invocations + group_size - 1) / group_size));
+    });
+    result_buffer.read(results.data(), results.size());
+}
+
+}  // namespace lab

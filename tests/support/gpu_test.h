@@ -1,0 +1,41 @@
+// Support of tests that use a device: the device with validation layers, and test shaders that fill an array.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gpu/compute_kernel.h"
+
+namespace lab {
+
+// The device of this process, created by the first call, with the validation layers on. test_main.cpp lets
+// every test fail in which they complain.
+const Device& test_device();
+
+// A shader that computes one result in each invocation.
+struct TestShader {
+    std::string name;  // of the file in tests/shaders
+    std::vector<std::string> defines = {};
+    std::map<std::string, std::filesystem::path> named_includes = {};
+};
+
+// Runs at least `invocations` invocations in groups of 128. `results` (binding 0) and `inputs` (binding 1)
+// are storage buffers; invocations beyond the results have to end at once.
+void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
+                std::span<const std::byte> inputs);
+
+// The results of an invocation for each input. The shader declares, in scalar layout, arrays `results` and
+// `inputs` of types that match.
+template <typename Result, typename Input>
+std::vector<Result> run_shader(const TestShader& shader, const std::vector<Input>& inputs) {
+    std::vector<Result> results(inputs.size());
+    run_shader(shader, inputs.size(), std::as_writable_bytes(std::span(results)),
+               std::as_bytes(std::span(inputs)));
+    return results;
+}
+
+}  // namespace lab

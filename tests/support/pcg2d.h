@@ -1,0 +1,24 @@
+// The generator of shaders/random.glsl once more, for the CPU, and its inverse. Written from the description
+// in Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3) 2020.
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace lab {
+
+using RandomState = std::array<uint32_t, 2>;
+
+RandomState next_state(RandomState state);
+// The state s with next_state(s) == state. That there is one for every state makes next_state() a bijection.
+RandomState previous_state(RandomState state);
+
+// Start state of a sample of a pixel, and the pixel and sample of a start state.
+RandomState start_state(uint32_t pixel, uint32_t sample, RandomState key);
+RandomState pixel_and_sample(RandomState start_state, RandomState key);
+
+// The two numbers in [0,1) that belong to a state.
+std::array<double, 2> numbers_of_state(RandomState state);
+// A state after which the next two numbers are the multiples of 2^-24 just below or at u in [0,1).
+RandomState state_before(std::array<double, 2> u);
+
+}  // namespace lab

@@ -1,0 +1,53 @@
+// Renders scenes for tests.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "app/renderer.h"
+#include "scene/scene.h"
+
+namespace lab {
+
+// The chapters whose estimators are tested.
+inline const std::vector<std::string> all_chapters{"01_uniform_sampling"};
+
+Estimator chapter_estimator(const std::string& chapter);
+Estimator view_estimator(const std::string& view);
+
+struct RenderSettings {
+    uint32_t width = 64;
+    uint32_t height = 64;
+    uint32_t samples = 16;
+    uint32_t max_path_length = 8;
+    int only_path_length = -1;
+    uint32_t seed = 1;
+    uint32_t first_sample = 0;
+    Estimator estimator = chapter_estimator(all_chapters.front());
+    Backend backend = Backend::compute;
+    double dispatch_seconds = 0.1;
+};
+
+RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings);
+
+// The film after all samples. Fails the test if any of them is invalid.
+FilmImage render(const Scene& scene, const RenderSettings& settings);
+
+// Mean radiance of pixels, row by row from the top.
+vec3 radiance_at(const FilmImage& film, uint32_t x, uint32_t y);
+
+// One channel of all pixels' mean radiances. Where all pixels have the same expectation they are independent
+// estimates.
+std::vector<double> pixel_means(const FilmImage& film, int channel);
+
+// Fixture of tests to be run with each backend that the device has.
+class OnEachBackend : public testing::TestWithParam<Backend> {
+  protected:
+    void SetUp() override;
+};
+
+// For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters.
+std::string backend_name(const testing::TestParamInfo<Backend>& info);
+std::string chapter_name(const testing::TestParamInfo<std::string>& info);
+
+}  // namespace lab

@@ -1,0 +1,112 @@
+#include "support/scenes.h"
+
+#include <array>
+#include <cmath>
+
+namespace lab {
+namespace {
+
+// Makes all triangles one mesh with one instance in its place.
+void finish(Scene& scene) {
+    scene.file = "test scene";
+    scene.triangle_materials.resize(scene.triangles.size(), 0);
+    scene.meshes = {{"test mesh", 0, static_cast<uint32_t>(scene.triangles.size())}};
+    scene.instance_meshes = {0};
+    set_transform(scene, mat4x3(1));
+}
+
+}  // namespace
+
+Material diffuse_material(const vec3& albedo, const vec3& emission) {
+    Material material{};
+    material.diffuse_albedo = albedo;
+    material.albedo_texture = -1;
+    material.emission = emission;
+    return material;
+}
+
+Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>& quads) {
+    Scene scene;
+    scene.materials = materials;
+    for (const Quad& quad : quads) {
+        const auto first = static_cast<uint32_t>(scene.positions.size());
+        scene.positions.insert(scene.positions.end(),
+                               {quad.corner, quad.corner + quad.edge_u,
+                                quad.corner + quad.edge_u + quad.edge_v, quad.corner + quad.edge_v});
+        scene.triangles.push_back({first, first + 1, first + 2});
+        scene.triangles.push_back({first, first + 2, first + 3});
+        scene.triangle_materials.insert(scene.triangle_materials.end(), 2, quad.material);
+    }
+    finish(scene);
+    return scene;
+}
+
+Scene closed_box(const Material& material) {
+    std::vector<Quad> sides;
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 u(0), v(0);
+        u[(axis + 1) % 3] = 2;
+        v[(axis + 2) % 3] = 2;
+        vec3 far_corner(-1);
+        far_corner[axis] = 1;
+        sides.push_back({vec3(-1), u, v});
+        sides.push_back({far_corner, v, u});
+    }
+    Scene scene = make_scene({material}, sides);
+    scene.camera = {
+        .position = {0.3f, -0.2f, 0.5f}, .target = {-0.4f, 0.1f, -1}, .up = {0, 1, 0}, .vertical_fov = 70};
+    return scene;
+}
+
+Scene make_sphere(const Material& material, Facing facing) {
+    Scene scene;
+    scene.materials = {material};
+    // The corners of an icosahedron are those of three golden rectangles.
+    const float golden = (1 + std::sqrt(5.0f)) / 2;
+    std::vector<vec3> corners;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float a : {-1.0f, 1.0f})
+            for (const float b : {-golden, golden}) {
+                vec3 corner(0);
+                corner[(axis + 1) % 3] = a;
+                corner[(axis + 2) % 3] = b;
+                corners.push_back(corner);
+            }
+    const auto add_triangle = [&](vec3 a, vec3 b, vec3 c) {
+        const bool is_outwards = glm::dot(glm::cross(b - a, c - a), a) > 0;
+        if (is_outwards != (facing == Facing::outwards)) std::swap(b, c);
+        const auto first = static_cast<uint32_t>(scene.positions.size());
+        for (const vec3& corner : {a, b, c}) scene.positions.push_back(glm::normalize(corner));
+        scene.triangles.push_back({first, first + 1, first + 2});
+    };
+    // Three corners at a distance of one edge, 2, from each other are a face.
+    const auto are_neighbours = [&](size_t i, size_t j) {
+        return glm::distance(corners[i], corners[j]) < 2.1f;
+    };
+    for (size_t i = 0; i < corners.size(); ++i)
+        for (size_t j = 0; j < i; ++j)
+            for (size_t k = 0; k < j; ++k) {
+                if (!are_neighbours(i, j) || !are_neighbours(j, k) || !are_neighbours(i, k)) continue;
+                const vec3 a = corners[i], b = corners[j], c = corners[k];
+                const vec3 ab = a + b, bc = b + c, ca = c + a;  // on the sphere once normalised
+                const float length = glm::length(a);
+                const auto lift = [&](const vec3& v) { return length * glm::normalize(v); };
+                add_triangle(a, lift(ab), lift(ca));
+                add_triangle(b, lift(bc), lift(ab));
+                add_triangle(c, lift(ca), lift(bc));
+                add_triangle(lift(ab), lift(bc), lift(ca));
+            }
+    finish(scene);
+    scene.camera = facing == Facing::inwards ? CameraPose{{0.1f, 0.2f, 0.3f}, {1, 0.5f, -1}, {0, 1, 0}, 60}
+                                             : CameraPose{{3, 1, 2}, {0, 0, 0}, {0, 1, 0}, 20};
+    return scene;
+}
+
+void set_transform(Scene& scene, const mat4x3& object_to_world) {
+    Instance instance;
+    instance.object_to_world = object_to_world;
+    instance.normal_to_world = glm::transpose(glm::inverse(mat3(object_to_world)));
+    scene.instances = {instance};
+}
+
+}  // namespace lab

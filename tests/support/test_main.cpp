@@ -1,0 +1,32 @@
+// main() of the tests that use a device.
+#include <cstdio>
+
+#include "support/gpu_test.h"
+
+namespace lab {
+namespace {
+
+// Lets a test fail if the validation layers complained while it ran. The driver's own messages are only
+// shown: nobody here can mend them.
+class ValidationListener : public testing::EmptyTestEventListener {
+    void OnTestEnd(const testing::TestInfo&) override {
+        const auto& complaints = test_device().validation_messages();
+        for (; validation_count_ < complaints.size(); ++validation_count_)
+            ADD_FAILURE() << "validation layer: " << complaints[validation_count_];
+        const auto& messages = test_device().driver_messages();
+        for (; driver_count_ < messages.size(); ++driver_count_)
+            std::printf("[  DRIVER  ] %s\n", messages[driver_count_].c_str());
+    }
+
+    size_t validation_count_ = 0;
+    size_t driver_count_ = 0;
+};
+
+}  // namespace
+}  // namespace lab
+
+int main(int argument_count, char** arguments) {
+    testing::InitGoogleTest(&argument_count, arguments);
+    testing::UnitTest::GetInstance()->listeners().Append(new lab::ValidationListener);
+    return RUN_ALL_TESTS();
+}

@@ -1,0 +1,259 @@
+// The builder of the bounding volume hierarchy.
+#include "tracing/bvh.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "error.h"
+
+namespace lab {
+namespace {
+
+BvhTriangle make_triangle(const vec3& a, const vec3& b, const vec3& c, size_t id) {
+    const mat3 rows = glm::transpose(mat3(a, b, c));
+    return {rows[0], 0, rows[1], static_cast<uint32_t>(id), rows[2], 0};
+}
+
+// Triangles of size `extent` in a cube of size 1, times `scale`.
+std::vector<BvhTriangle> random_triangles(size_t count, float extent, float scale = 1) {
+    std::mt19937 generator(1);
+    std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
+    const auto point = [&] {
+        const float x = uniform(generator), y = uniform(generator);
+        return vec3(x, y, uniform(generator));
+    };
+    std::vector<BvhTriangle> triangles;
+    for (size_t i = 0; i < count; ++i) {
+        const vec3 centre = point();
+        const vec3 a = centre + extent * point(), b = centre + extent * point(),
+                   c = centre + extent * point();
+        triangles.push_back(make_triangle(scale * a, scale * b, scale * c, i));
+    }
+    return triangles;
+}
+
+// A height field of 2 width^2 triangles.
+std::vector<BvhTriangle> height_field(size_t width) {
+    const auto vertex = [&](size_t i, size_t j) {
+        const float x = static_cast<float>(i) / static_cast<float>(width);
+        const float z = static_cast<float>(j) / static_cast<float>(width);
+        return vec3(x, 0.1f * std::sin(9 * x) * std::cos(7 * z), z);
+    };
+    std::vector<BvhTriangle> triangles;
+    for (size_t i = 0; i < width; ++i)
+        for (size_t j = 0; j < width; ++j) {
+            triangles.push_back(
+                make_triangle(vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1), triangles.size()));
+            triangles.push_back(
+                make_triangle(vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j), triangles.size()));
+        }
+    return triangles;
+}
+
+bool contains(const Bounds& outer, const Bounds& inner) {
+    return glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
+           glm::all(glm::lessThanEqual(inner.high, outer.high));
+}
+
+// Walks through the tree and checks all that the traversal relies on.
+class TreeWalk {
+  public:
+    explicit TreeWalk(const Bvh& bvh) : bvh_(bvh), visits_(bvh.triangles.size()) {
+        visit(0, 1);
+        EXPECT_LE(deepest_stack_, bvh.max_stack_entries);
+        EXPECT_EQ(visited_nodes_, bvh.nodes.size()) << "nodes that nothing refers to";
+        EXPECT_TRUE(std::all_of(visits_.begin(), visits_.end(), [](int count) { return count == 1; }))
+            << "a triangle is not in exactly one leaf";
+    }
+
+    size_t deepest_stack() const { return deepest_stack_; }
+
+  private:
+    // `stack_entries` before the children are pushed. Returns the bounds of the triangles below, without
+    // padding.
+    Bounds visit(uint32_t index, size_t stack_entries) {
+        ++visited_nodes_;
+        const BvhNode& node = bvh_.nodes.at(index);
+        size_t child_count = 0;
+        for (const uint32_t child : node.children) child_count += child != 0;
+        EXPECT_TRUE(child_count > 1 || index == 0) << "a node with one child is a wasted visit";
+        // The child that is visited first leaves the others on the stack.
+        const size_t entries = stack_entries + std::max<size_t>(child_count, 1) - 1;
+        deepest_stack_ = std::max(deepest_stack_, entries);
+        Bounds all;
+        for (size_t slot = 0; slot < 4; ++slot) {
+            const uint32_t child = node.children[slot];
+            const Bounds bounds = node.child_bounds(slot);
+            if (child == 0) {
+                EXPECT_GT(bounds.low.x, bounds.high.x) << "a ray might hit a child that is not there";
+                continue;
+            }
+            EXPECT_TRUE(is_bvh_leaf(child) || child > index) << "children have to follow their parents";
+            const Bounds inside = is_bvh_leaf(child) ? leaf_bounds(child) : visit(child, entries);
+            EXPECT_TRUE(contains(bounds, inside));
+            all.grow(inside);
+        }
+        return all;
+    }
+
+    Bounds leaf_bounds(uint32_t reference) {
+        const size_t first = reference & ((1u << bvh_leaf_shift) - 1), count = reference >> bvh_leaf_shift;
+        EXPECT_LE(count, 4u);
+        Bounds bounds;
+        for (size_t i = first; i < first + count; ++i) {
+            ++visits_.at(i);
+            const BvhTriangle& triangle = bvh_.triangles[i];
+            for (int k = 0; k < 3; ++k) bounds.grow({triangle.x[k], triangle.y[k], triangle.z[k]});
+        }
+        return bounds;
+    }
+
+    const Bvh& bvh_;
+    std::vector<int> visits_;
+    size_t visited_nodes_ = 0;
+    size_t deepest_stack_ = 1;
+};
+
+// Every triangle of the input is in the tree, whole and with its id.
+void expect_valid(const std::vector<BvhTriangle>& input, const Bvh& bvh) {
+    TreeWalk walk(bvh);
+    ASSERT_EQ(bvh.triangles.size(), input.size());
+    for (const auto& triangle : bvh.triangles)
+        EXPECT_EQ(std::memcmp(&triangle, &input.at(triangle.triangle), sizeof(triangle)), 0);
+}
+
+template <typename T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same(const Bvh& a, const Bvh& b) {
+    EXPECT_TRUE(same_bytes(a.nodes, b.nodes));
+    EXPECT_TRUE(same_bytes(a.triangles, b.triangles));
+}
+
+TEST(BvhBuilder, HoldsAnyNumberOfTriangles) {
+    for (const size_t count : {0, 1, 2, 3, 4, 5, 8, 9, 100, 1000, 150'000}) {
+        SCOPED_TRACE(count);
+        const auto triangles = random_triangles(count, 0.1f);
+        expect_valid(triangles, build_bvh(triangles));
+    }
+}
+
+TEST(BvhBuilder, HoldsCoordinatesOfAnyScale) {
+    for (const float scale : {1e-40f, 1e-25f, 1e-10f, 1e6f, 1e18f, 1e38f}) {
+        SCOPED_TRACE(scale);
+        const auto triangles = random_triangles(1000, 0.1f, scale);
+        const Bvh bvh = build_bvh(triangles);
+        expect_valid(triangles, bvh);
+        if (scale > 1e-30f && scale < 1e30f) {
+            EXPECT_LT(bvh.surface_area_cost, 30) << "the scale spoils the tree";
+        }
+    }
+}
+
+TEST(BvhBuilder, HalvesWhatHasNoExtent) {
+    const size_t count = 100'000;
+    std::vector<BvhTriangle> duplicates, points;
+    for (size_t i = 0; i < count; ++i) {
+        duplicates.push_back(make_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, i));
+        points.push_back(make_triangle({1, 2, 3}, {1, 2, 3}, {1, 2, 3}, i));
+    }
+    for (const auto& triangles : {duplicates, points}) {
+        const Bvh bvh = build_bvh(triangles);
+        expect_valid(triangles, bvh);
+        // A complete binary tree has 15 levels above leaves of four, so eight levels of nodes with four
+        // children.
+        EXPECT_LE(bvh.max_stack_entries, 3 * 9u + 1);
+    }
+}
+
+// Sizes are powers of two, so the cheapest split always cuts off the largest triangles: 240 levels if one let
+// it.
+TEST(BvhBuilder, BoundsTheDepth) {
+    std::vector<BvhTriangle> triangles;
+    for (size_t i = 0; i < 2400; ++i) {
+        const float size = std::ldexp(1.0f, static_cast<int>(i % 240) - 120);
+        const vec3 corner(size, size, size);
+        triangles.push_back(
+            make_triangle(corner, corner + vec3(size, 0, 0), corner + vec3(0, size, size), triangles.size()));
+    }
+    const Bvh bvh = build_bvh(triangles);
+    expect_valid(triangles, bvh);
+    EXPECT_LE(bvh.max_stack_entries, 3 * 64u + 1);
+}
+
+TEST(BvhBuilder, StatesTheDeepestStack) {
+    const Bvh bvh = build_bvh(random_triangles(10'000, 0.1f));
+    EXPECT_EQ(TreeWalk(bvh).deepest_stack(), bvh.max_stack_entries);
+}
+
+// Bounds near what the same algorithm gave when it was checked against a full sweep over all splits, which is
+// 3 % better. A builder that is subtly wrong builds valid trees that cost twice as much.
+TEST(BvhBuilder, FindsGoodSplits) {
+    EXPECT_LT(build_bvh(height_field(200)).surface_area_cost, 15);
+    EXPECT_LT(build_bvh(random_triangles(50'000, 0.01f)).surface_area_cost, 50);
+}
+
+TEST(BvhBuilder, DoesNotDependOnTheNumberOfThreads) {
+    const auto triangles = height_field(300);
+    const Bvh parallel = build_bvh(triangles);
+    cpu_set_t all, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+    const Bvh serial = build_bvh(triangles);
+    sched_setaffinity(0, sizeof(all), &all);
+    expect_same(parallel, serial);
+    expect_same(parallel, build_bvh(triangles));
+}
+
+Scene two_instances() {
+    Scene scene;
+    scene.file = "two.json";
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    scene.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}};
+    scene.meshes = {{"a.obj", 0, 1}, {"b.obj", 1, 2}};
+    Instance moved{};
+    moved.object_to_world = {vec3(2, 0, 0), vec3(0, -3, 0), vec3(0, 0, 4), vec3(10, 20, 30)};
+    Instance still{};
+    still.object_to_world = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(0)};
+    scene.instances = {still, moved};
+    scene.instance_meshes = {0, 1};
+    return scene;
+}
+
+TEST(WorldTriangles, TransformsInstances) {
+    const auto triangles = world_triangles(two_instances());
+    ASSERT_EQ(triangles.size(), 3u);
+    EXPECT_EQ(triangles[0].instance, 0u);
+    EXPECT_EQ(triangles[0].triangle, 0u);
+    EXPECT_EQ(triangles[0].x, vec3(0, 1, 0));
+    EXPECT_EQ(triangles[2].instance, 1u);
+    EXPECT_EQ(triangles[2].triangle, 2u);
+    EXPECT_EQ(triangles[2].x, vec3(12, 10, 10));
+    EXPECT_EQ(triangles[2].y, vec3(20, 17, 20));
+    EXPECT_EQ(triangles[2].z, vec3(30, 30, 34));
+}
+
+TEST(WorldTriangles, RefusesWhatTheTraversalCannotHold) {
+    Scene scene = two_instances();
+    scene.instances[1].object_to_world[0].x = 1e30f;
+    EXPECT_THROW(world_triangles(scene), UserError);
+    scene.instances[1].object_to_world[0].x = NAN;
+    EXPECT_THROW(world_triangles(scene), UserError);
+    scene = two_instances();
+    scene.meshes[1].triangle_count = 1u << 27;
+    scene.instances.resize(1000, scene.instances[1]);
+    scene.instance_meshes.resize(1000, 1);
+    EXPECT_THROW(world_triangles(scene), UserError);
+}
+
+}  // namespace
+}  // namespace lab
