@@ -14,6 +14,10 @@ void add_sample(inout FilmPixel pixel, vec3 radiance) {
     // `precise` forbids the algebra that would cancel the compensation to zero.
     precise vec3 corrected = radiance + pixel.compensation;
     precise vec3 sum = pixel.sum + corrected;
+    if (is_invalid(sum.r) || is_invalid(sum.g) || is_invalid(sum.b)) {  // finite samples can overflow together
+        pixel.invalid_count += 1u;
+        return;
+    }
     precise vec3 lost = corrected - (sum - pixel.sum);
     pixel.compensation = lost;
     pixel.sum = sum;

@@ -1,4 +1,5 @@
-// Structs and constants that C++ and GLSL share: each is written once, here. Both sides use scalar block layout.
+// Structs and constants that C++ and GLSL share: each is written once, here. Both sides use scalar block
+// layout.
 #ifndef INTERFACE_H
 #define INTERFACE_H
 
@@ -48,13 +49,13 @@ SHARED_CONSTANT RAY_COUNTER_COUNT = 64u;
 
 // What a triangle is made of, from MTL. Reflectances are linear, in [0,1]; diffuse + specular is at most 1.
 struct Material {
-    vec3 diffuse_albedo;       // Kd
-    int albedo_texture;        // map_Kd: index into the textures that multiply diffuse_albedo, or -1
-    vec3 emission;             // Ke: emitted radiance, from the front only
-    float specular_exponent;   // Ns: exponent n of the normalised Phong lobe
-    vec3 specular_albedo;      // Ks: zero unless the scene asks for `specular`
-    float refractive_index;    // Ni of a smooth dielectric (d < 1), or 0 for an opaque surface
-    vec3 absorption;           // sigma = -ln Tf per unit of world length inside a dielectric
+    vec3 diffuse_albedo;      // Kd
+    int albedo_texture;       // map_Kd: index into the textures that multiply diffuse_albedo, or -1
+    vec3 emission;            // Ke: emitted radiance, from the front only
+    float specular_exponent;  // Ns: exponent n of the normalised Phong lobe
+    vec3 specular_albedo;     // Ks: zero unless the scene asks for `specular`
+    float refractive_index;   // Ni of a smooth dielectric (d < 1), or 0 for an opaque surface
+    vec3 absorption;          // sigma = -ln Tf per unit of world length inside a dielectric
 };
 
 // One placement of a mesh in the world.
@@ -75,12 +76,12 @@ struct Camera {
 struct RenderParameters {
     Camera camera;
     uvec2 image_size;
-    uvec2 seed_key;          // scrambles the start states of the random numbers
-    uint first_sample;       // index of this render's first sample in every pixel
-    uint max_path_length;    // number of bounces after which a path ends: 0 shows emission only
-    int only_path_length;    // counts light only after exactly this many bounces; -1 counts all
-    vec3 background;         // radiance of the sky; with a light probe its factor
-    float probe_rotation;    // radians about +Y, counter-clockwise seen from above
+    uvec2 seed_key;        // scrambles the start states of the random numbers
+    uint first_sample;     // index of this render's first sample in every pixel
+    uint max_path_length;  // number of bounces after which a path ends: 0 shows emission only
+    int only_path_length;  // counts light only after exactly this many bounces; -1 counts all
+    vec3 background;       // radiance of the sky; with a light probe its factor
+    float probe_rotation;  // radians about +Y, counter-clockwise seen from above
 };
 
 // Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from

@@ -16,8 +16,10 @@ struct ShadingData {
 
 vec3 interpolate(vec3 a, vec3 b, vec3 c, vec3 weights) { return weights.x * a + weights.y * b + weights.z * c; }
 
-// Unit vector along v. Scaled first, since the squared length of a tiny triangle's normal would underflow.
-vec3 normalize_tiny(vec3 v) { return normalize(v / max(abs(v.x), max(abs(v.y), abs(v.z)))); }
+float max_component(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
+// Unit vector along v. Scaled first, since the square of a tiny or huge vector's length is no float.
+vec3 normalize_scaled(vec3 v) { return normalize(v / max_component(v)); }
 
 // Loads the vertices of the hit triangle and interpolates them with the barycentric coordinates w_0, w_1, w_2.
 ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
@@ -28,7 +30,8 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     s.position = interpolate(x_0, x_1, x_2, w);
     vec3 magnitude = interpolate(abs(x_0), abs(x_1), abs(x_2), w);
     // Counter-clockwise seen from the front: the scene's loader takes care of it.
-    s.geometric_normal = cross(x_1 - x_0, x_2 - x_0);
+    float size = max(max_component(x_1 - x_0), max_component(x_2 - x_0));
+    s.geometric_normal = cross((x_1 - x_0) / size, (x_2 - x_0) / size);
 #ifdef FEATURE_VERTEX_NORMALS
     s.normal = interpolate(normals[corners.x], normals[corners.y], normals[corners.z], w);
 #endif
@@ -42,10 +45,10 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     s.normal = instance.normal_to_world * s.normal;
 #endif
 #endif
-    s.geometric_normal = normalize_tiny(s.geometric_normal);
+    s.geometric_normal = normalize_scaled(s.geometric_normal);
 #ifdef FEATURE_VERTEX_NORMALS
     // Vertex normals that cancel each other leave only the triangle's own.
-    s.normal = s.normal == vec3(0.0) ? s.geometric_normal : normalize(s.normal);
+    s.normal = s.normal == vec3(0.0) ? s.geometric_normal : normalize_scaled(s.normal);
 #else
     s.normal = s.geometric_normal;
 #endif

@@ -12,15 +12,21 @@ int main(int argument_count, char** arguments) {
     std::filesystem::path output;
     app.add_option("parts", parts, "EXR files written by a chapter, in any order")->required();
     app.add_option("-o,--output", output, "EXR file to write")->required();
-    CLI11_PARSE(app, argument_count, arguments);
     try {
+        app.parse(argument_count, arguments);
         lab::check_writable(output, {".exr"});
         const lab::FilmFile merged = lab::merge_films(parts);
         lab::write_film(output, merged.image, merged.record);
         std::printf("%s: samples %u to %u\n", output.c_str(), merged.record.first_sample,
                     merged.record.first_sample + merged.image.min_samples() - 1);
         return 0;
-    } catch (const lab::UserError& error) {
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        std::cerr << "error: " << error.what() << " (--help shows how it is used)\n";
+        return 1;
+    } catch (const std::exception& error) {
         std::cerr << "error: " << error.what() << "\n";
         return 1;
     }

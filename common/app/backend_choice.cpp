@@ -1,6 +1,7 @@
 #include "app/backend_choice.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -19,13 +20,18 @@ double measure_speed(Backend backend, const Device& device, const GpuScene& scen
     const double first_samples = renderer.samples();
     const double first_seconds = renderer.device_seconds();
     constexpr double seconds = 0.1;
-    while (renderer.device_seconds() < first_seconds + seconds) renderer.advance(UINT32_MAX);
-    return (renderer.samples() - first_samples) / (renderer.device_seconds() - first_seconds);
+    const auto start = std::chrono::steady_clock::now();
+    // At least one dispatch more, also where the device's clock is coarse.
+    do {
+        renderer.advance(UINT32_MAX);
+    } while (std::chrono::steady_clock::now() < start + std::chrono::duration<double>(seconds));
+    return (renderer.samples() - first_samples) / std::max(renderer.device_seconds() - first_seconds, 1e-9);
 }
 
 std::string cache_name(const Device& device, const GpuScene& scene) {
     size_t triangles = 1;
-    for (const uint32_t mesh : scene.scene().instance_meshes) triangles += scene.scene().meshes[mesh].triangle_count;
+    for (const uint32_t mesh : scene.scene().instance_meshes)
+        triangles += scene.scene().meshes[mesh].triangle_count;
     const auto decade = static_cast<int>(std::log10(static_cast<double>(triangles)));
     const auto& description = device.description();
     return "backend-" + std::to_string(hash_text(description.name + description.driver)) + "-" +
@@ -50,6 +56,8 @@ Backend choose_backend(const std::string& name, const Device& device, const GpuS
             return *backend;
 
     parameters.image_size = glm::min(parameters.image_size, uvec2(128));
+    parameters.max_path_length =
+        scene.scene().defaults.max_path_length;  // the choice serves later renders, too
     Backend fastest = Backend::compute;
     double highest_speed = 0;
     for (const Backend backend : all_backends) {

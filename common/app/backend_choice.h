@@ -6,9 +6,9 @@
 
 namespace lab {
 
-// The backend of that name; for "auto" the one that a short measurement on this scene finds fastest. The choice is kept
-// for the device, its driver and the decade of the number of triangles, so only the first run pays for it.
-// Throws DeviceError if the device does not support the named backend.
+// The backend of that name; for "auto" the one that a short measurement on this scene finds fastest. The
+// choice is kept for the device, its driver and the decade of the number of triangles, so only the first run
+// pays for it.
 Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
                        const Estimator& estimator, RenderParameters parameters);
 

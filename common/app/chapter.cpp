@@ -1,6 +1,6 @@
 #include "app/chapter.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <sstream>
@@ -8,6 +8,8 @@
 #include "app/backend_choice.h"
 #include "app/headless.h"
 #include "error.h"
+#include "gpu/cache.h"
+#include "image/file.h"
 
 namespace lab {
 namespace {
@@ -20,8 +22,10 @@ void print_devices() {
                     device.api_version.c_str(), device.driver.c_str());
         for (const Backend backend : all_backends) {
             std::string missing;
-            for (const auto& name : device.missing.at(backend)) missing += (missing.empty() ? "" : ", ") + name;
-            std::printf("   %-9s %s\n", to_string(backend).c_str(), missing.empty() ? "works" : ("lacks " + missing).c_str());
+            for (const auto& name : device.missing.at(backend))
+                missing += (missing.empty() ? "" : ", ") + name;
+            std::printf("   %-9s %s\n", to_string(backend).c_str(),
+                        missing.empty() ? "works" : ("lacks " + missing).c_str());
         }
     }
 }
@@ -40,14 +44,19 @@ void override_scene(Scene& scene, const Options& options) {
 RenderParameters make_parameters(const Scene& scene, const Options& options) {
     const uint32_t width = options.width.value_or(scene.defaults.width);
     const uint32_t height = options.height.value_or(scene.defaults.height);
-    return {.camera = make_camera(scene.camera, width, height),
-            .image_size = {width, height},
-            .seed_key = seed_key(options.seed),
-            .first_sample = options.first_sample,
-            .max_path_length = options.max_path_length.value_or(scene.defaults.max_path_length),
-            .only_path_length = options.only_path_length ? static_cast<int>(*options.only_path_length) : -1,
-            .background = scene.background,
-            .probe_rotation = scene.probe_rotation};
+    const uint32_t only = options.only_path_length.value_or(0);
+    if (options.max_path_length && only > *options.max_path_length)
+        throw UserError("--only-path-length " + std::to_string(only) + " is above --max-path-length " +
+                        std::to_string(*options.max_path_length) + ": the picture would be black");
+    return {
+        .camera = make_camera(scene.camera, width, height),
+        .image_size = {width, height},
+        .seed_key = seed_key(options.seed),
+        .first_sample = options.first_sample,
+        .max_path_length = std::max(options.max_path_length.value_or(scene.defaults.max_path_length), only),
+        .only_path_length = options.only_path_length ? static_cast<int>(*options.only_path_length) : -1,
+        .background = scene.background,
+        .probe_rotation = scene.probe_rotation};
 }
 
 // The options that decide the expected image, in a fixed order: renders with equal settings can be joined.
@@ -89,22 +98,76 @@ void check_outputs(const Options& options) {
     if (!options.report.empty()) check_writable(options.report, {".json", ".csv"});
 }
 
-// The capabilities that the contract promises for a scene's materials.
+// Refuses a scene that the chapter's estimator would render wrongly.
 void check_scene(const Chapter& chapter, const Scene& scene) {
     if (features_of(scene).dielectrics && !chapter.dielectrics)
         throw UserError(scene.file.string() + ": has a dielectric (d < 1), which " + chapter.name +
                         " cannot render: use chapter 6, ./lab run 6");
 }
 
-// Throws DeviceError if the device has validation complaints about the run.
+// Throws UserError if the validation layers complained about the run.
 void check_validation(const Device& device, const Options& options) {
     if (!options.validation) return;
     for (const auto& message : device.driver_messages()) std::cerr << "driver: " << message << "\n";
     for (const auto& message : device.validation_messages()) std::cerr << "validation: " << message << "\n";
     if (!device.validation_messages().empty())
-        throw UserError("the validation layers complained " + std::to_string(device.validation_messages().size()) +
-                        " times");
+        throw UserError("the validation layers complained " +
+                        std::to_string(device.validation_messages().size()) + " times");
     if (!options.quiet) std::cout << "validation     no complaints\n";
+}
+
+// The earlier run that this one continues. Throws UserError if it rendered something else.
+FilmFile load_earlier_run(const RenderJob& job, const Options& options) {
+    FilmFile earlier = read_film(options.resume);
+    if (options.first_sample != 0 && options.first_sample != earlier.record.first_sample)
+        throw UserError("--first-sample " + std::to_string(options.first_sample) + " does not fit " +
+                        options.resume.string() + ", which starts at sample " +
+                        std::to_string(earlier.record.first_sample) + ": leave it out");
+    const FilmFile wanted{{job.parameters.image_size.x, job.parameters.image_size.y, {}}, job.record};
+    require_same_render(earlier, wanted, options.resume.string(), "this command");
+    return earlier;
+}
+
+// Everything about the render that needs no device, so that mistakes show before one is asked for.
+RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& estimator,
+                   const Options& options) {
+    RenderJob job{.options = &options,
+                  .parameters = make_parameters(scene, options),
+                  .samples = options.samples.value_or(scene.defaults.samples),
+                  .record = {},
+                  .resumed = std::nullopt,
+                  .acceleration = {}};
+    job.record = {.chapter = chapter.name,
+                  .scene = scene.file.filename().string(),
+                  .scene_hash = hexadecimal(scene.hash),
+                  .estimator_hash = hexadecimal(hash_text(read_file(estimator.file, 1 << 24))),
+                  .settings = settings_text(job.parameters, scene, options),
+                  .backend = "",
+                  .device = "",
+                  .seed = options.seed,
+                  .first_sample = options.first_sample};
+    if (!options.resume.empty()) {
+        job.resumed = load_earlier_run(job, options);
+        job.record.first_sample = job.resumed->record.first_sample;
+        job.parameters.first_sample = job.record.first_sample;
+        job.record.seconds = job.resumed->record.seconds;
+        job.record.rays = job.resumed->record.rays;
+    }
+    if (uint64_t{job.record.first_sample} + job.samples > uint64_t{1} << 32)
+        throw UserError(
+            "--first-sample + --samples is above 2^32: there are no more random numbers than that");
+    return job;
+}
+
+// Views trace camera rays only, so that their speed says nothing about renders, and one looks into our own
+// hierarchy.
+Backend choose_backend(const Options& options, const Device& device, const GpuScene& scene,
+                       const Estimator& estimator, const RenderParameters& parameters) {
+    if (!options.view) return choose_backend(options.backend, device, scene, estimator, parameters);
+    if (options.view->name == "bvh-steps" && options.backend != "auto" && options.backend != "compute")
+        throw UserError("--view bvh-steps looks into our own hierarchy: leave --backend out or use compute");
+    return choose_backend(options.backend == "auto" ? "compute" : options.backend, device, scene, estimator,
+                          parameters);
 }
 
 void run(const Chapter& chapter, const Options& options) {
@@ -114,45 +177,12 @@ void run(const Chapter& chapter, const Options& options) {
     override_scene(scene, options);
     for (const auto& warning : scene.warnings)
         if (!options.quiet) std::cerr << "note: " << warning << "\n";
-
-    RenderJob job{.chapter = &chapter,
-                  .options = &options,
-                  .scene = &scene,
-                  .parameters = make_parameters(scene, options),
-                  .samples = options.samples.value_or(scene.defaults.samples),
-                  .record = {},
-                  .resumed = std::nullopt,
-                  .acceleration = {}};
-    job.record = {.chapter = chapter.name,
-                  .scene = scene.file.filename().string(),
-                  .scene_hash = hexadecimal(scene.hash),
-                  .settings = settings_text(job.parameters, scene, options),
-                  .backend = "",
-                  .device = "",
-                  .seed = options.seed,
-                  .first_sample = options.first_sample};
-    if (!options.resume.empty()) {
-        job.resumed = read_film(options.resume);
-        if (options.first_sample != 0 && options.first_sample != job.resumed->record.first_sample)
-            throw UserError("--first-sample " + std::to_string(options.first_sample) + " does not fit " +
-                            options.resume.string() + ", which starts at sample " +
-                            std::to_string(job.resumed->record.first_sample) + ": leave it out");
-        job.record.first_sample = job.resumed->record.first_sample;
-        job.parameters.first_sample = job.record.first_sample;
-        job.record.seconds = job.resumed->record.seconds;
-        job.record.rays = job.resumed->record.rays;
-        const FilmFile wanted{{job.parameters.image_size.x, job.parameters.image_size.y, {}}, job.record};
-        require_same_render(*job.resumed, wanted, options.resume.string(), "this command");
-    }
-    if (uint64_t{job.record.first_sample} + job.samples > uint64_t{1} << 32)
-        throw UserError("--first-sample + --samples is above 2^32: there are no more random numbers than that");
+    const Estimator estimator = make_estimator(chapter, options);
+    RenderJob job = make_job(chapter, scene, estimator, options);
 
     const Device device({options.device, options.validation});
     const GpuScene gpu_scene(device, scene);
-    const Estimator estimator = make_estimator(chapter, options);
-    const Backend backend = options.view && options.view->name == "bvh-steps"
-                                ? Backend::compute  // the only one that can be looked into
-                                : choose_backend(options.backend, device, gpu_scene, estimator, job.parameters);
+    const Backend backend = choose_backend(options, device, gpu_scene, estimator, job.parameters);
     const auto acceleration_structure = build_acceleration_structure(backend, device, gpu_scene);
     job.acceleration = {acceleration_structure->bytes(), acceleration_structure->build_seconds()};
     job.record.device = device.description().name;
@@ -161,6 +191,8 @@ void run(const Chapter& chapter, const Options& options) {
         std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
                   << job.parameters.image_size.y << ", " << job.samples << " samples, " << job.record.device
                   << ", backend " << job.record.backend << std::endl;
+    if (job.resumed && job.resumed->record.device != job.record.device) job.record.device = "several";
+    if (job.resumed && job.resumed->record.backend != job.record.backend) job.record.backend = "several";
     render_headless(device, *acceleration_structure, estimator, job);
     check_validation(device, options);
 }
@@ -171,8 +203,10 @@ int run_chapter(const Chapter& chapter, int argument_count, char** arguments) {
     try {
         const auto options = parse_options(chapter, argument_count, arguments);
         if (!options) return 0;
-        if (options->list_devices) print_devices();
-        else run(chapter, *options);
+        if (options->list_devices)
+            print_devices();
+        else
+            run(chapter, *options);
         return 0;
     } catch (const UserError& error) {
         std::cerr << "error: " << error.what() << "\n";
@@ -189,6 +223,9 @@ int run_chapter(const Chapter& chapter, int argument_count, char** arguments) {
     } catch (const std::bad_alloc&) {
         std::cerr << "error: out of memory: use a smaller scene or image\n";
         return 3;
+    } catch (const std::exception& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 1;
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/progress.h"
 #include "error.h"
+#include "image/file.h"
 
 namespace lab {
 namespace {
@@ -44,22 +45,30 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
+        // If the device fails, what was last read from it is all there is.
+        const auto keep = [&](const std::string& why) {
+            write_outputs();
+            throw DeviceFailure(why + ": the outputs hold " + std::to_string(snapshot_.min_samples()) +
+                                " samples a pixel; --resume continues");
+        };
         try {
             sample();
             snapshot_ = renderer_.film().read();
         } catch (const vk::SystemError& error) {
-            // What was last read from the device is all there is.
-            write_outputs();
-            throw DeviceFailure(std::string("the device failed (") + error.what() + "): the outputs hold " +
-                                std::to_string(snapshot_.min_samples()) + " samples a pixel; --resume continues");
+            keep(std::string("the device failed: ") + error.what());
+        } catch (const DeviceFailure& error) {
+            keep(error.what());
+        } catch (const std::bad_alloc&) {
+            keep("out of memory");
         }
+        if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
         if (!options_.quiet) print_summary();
     }
 
   private:
-    // Stops at 1, 2, 4, … samples for a row of the report: errors are compared at powers of two, and a test for the
-    // target error at every dispatch would prefer images that look converged by chance.
+    // Stops at 1, 2, 4, … samples for a row of the report: errors are compared at powers of two, and a test
+    // for the target error at every dispatch would prefer images that look converged by chance.
     void sample() {
         Progress progress(job_.samples, renderer_.samples(), options_.quiet);
         uint32_t done = snapshot_.min_samples();
@@ -86,7 +95,8 @@ class HeadlessRender {
     }
 
     bool is_time_over() const {
-        return options_.time_limit && seconds() - job_.record.seconds >= *options_.time_limit;
+        return options_.time_limit && renderer_.samples() > 0 &&
+               seconds() - job_.record.seconds >= *options_.time_limit;
     }
 
     bool is_accurate() const {
@@ -102,7 +112,13 @@ class HeadlessRender {
         if (std::chrono::duration<double>(now - last_save_).count() < interval) return;
         last_save_ = now;
         snapshot_ = renderer_.film().read();
-        if (options_.save_every) write_outputs();
+        if (!options_.save_every) return;
+        try {
+            write_outputs();
+        } catch (const UserError& error) {
+            // The disk may have room again when the render ends.
+            std::fprintf(stderr, "\nnote: %s\n", error.what());
+        }
     }
 
     void add_row(uint32_t samples) {
@@ -116,7 +132,8 @@ class HeadlessRender {
         row.mean = film.mean_radiance();
         if (reference_) {
             row.error = compare(film.mean(), *reference_);
-        } else if (const uint32_t before = last_row_film_.min_samples(); before > 0 && samples == 2 * before) {
+        } else if (const uint32_t before = last_row_film_.min_samples();
+                   before > 0 && samples == 2 * before) {
             row.error = estimate_error(last_row_film_.mean(), second_half(last_row_film_, film).mean());
         }
         rows_.push_back(row);
@@ -143,16 +160,32 @@ class HeadlessRender {
         FilmRecord record = job_.record;
         record.seconds = seconds();
         record.rays += renderer_.rays();
-        const DisplayTransform transform = options_.view ? options_.view->display : DisplayTransform::exposure;
-        for (const auto& file : options_.outputs) {
-            const std::string ending = file.extension().string();
-            if (ending == ".exr") write_film(file, snapshot_, record);
-            else if (ending == ".hdr") write_hdr(file, snapshot_.mean());
-            else if (ending == ".png") write_png(file, to_display(snapshot_, transform, options_.exposure));
-            else write_jpg(file, to_display(snapshot_, transform, options_.exposure));
-        }
-        const ErrorSource source = reference_ ? ErrorSource::reference : ErrorSource::halves;
-        if (!options_.report.empty()) write_report(options_.report, snapshot_, record, job_.acceleration, source, rows_);
+        const DisplayTransform transform =
+            options_.view ? options_.view->display : DisplayTransform::exposure;
+        const auto write = [&](const std::filesystem::path& file) {
+            const std::string ending = lower_case_extension(file);
+            if (ending == ".exr")
+                write_film(file, snapshot_, record);
+            else if (ending == ".hdr")
+                write_hdr(file, snapshot_.mean());
+            else if (ending == ".png")
+                write_png(file, to_display(snapshot_, transform, options_.exposure));
+            else if (ending == ".jpg")
+                write_jpg(file, to_display(snapshot_, transform, options_.exposure));
+            else
+                write_report(file, snapshot_, record, job_.acceleration,
+                             reference_ ? ErrorSource::reference : ErrorSource::halves, rows_);
+        };
+        auto files = options_.outputs;
+        if (!options_.report.empty()) files.push_back(options_.report);
+        // One file that cannot be written must not keep the others from being written.
+        std::optional<UserError> failure;
+        for (const auto& file : files) try {
+                write(file);
+            } catch (const UserError& error) {
+                if (!failure) failure = error;
+            }
+        if (failure) throw *failure;
     }
 
     void print_summary() const {
@@ -161,10 +194,12 @@ class HeadlessRender {
         double paths = 0;
         for (const auto& pixel : snapshot_.pixels) paths += pixel.sample_count;
         std::printf("mean radiance  %.5g %.5g %.5g (red, green, blue)\n", mean[0], mean[1], mean[2]);
-        std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(), short_number(paths).c_str(),
+        std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(),
+                    short_number(paths).c_str(),
                     snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
-        std::printf("time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
-                    short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
+        std::printf(
+            "time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
+            short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
         std::printf("acceleration   structure of %s bytes, built in %s\n",
                     short_number(static_cast<double>(job_.acceleration.bytes)).c_str(),
                     duration_text(job_.acceleration.build_seconds).c_str());

@@ -22,11 +22,12 @@ CLI::Validator within(double low, double high, const std::string& meaning) {
 }
 
 CLI::Validator whole_number(uint32_t low, uint32_t high) {
-    const std::string meaning =
-        "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    const std::string meaning = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
     return {[=](std::string& text) -> std::string {
-                const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-                if (digits && text.size() <= 10 && std::stoull(text) >= low && std::stoull(text) <= high) return {};
+                const bool digits =
+                    !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+                if (digits && text.size() <= 10 && std::stoull(text) >= low && std::stoull(text) <= high)
+                    return {};
                 return "'" + text + "' is not " + meaning;
             },
             meaning};
@@ -35,16 +36,21 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
 void add_image_options(CLI::App& app, Options& options) {
     constexpr uint32_t max_count = 4294967295u;
     app.add_option("--width", options.width, "Pixels in a row")->check(whole_number(1, max_image_extent));
-    app.add_option("--height", options.height, "Pixels in a column")->check(whole_number(1, max_image_extent));
+    app.add_option("--height", options.height, "Pixels in a column")
+        ->check(whole_number(1, max_image_extent));
     app.add_option("--samples", options.samples, "Samples a pixel")->check(whole_number(1, max_count));
     app.add_option("--seed", options.seed, "Chooses the random numbers")->check(whole_number(0, max_count));
-    app.add_option("--first-sample", options.first_sample, "Index of the first sample: splits a render into ranges")
+    app.add_option("--first-sample", options.first_sample,
+                   "Index of the first sample: splits a render into ranges")
         ->check(whole_number(0, max_count));
-    app.add_option("--max-path-length", options.max_path_length, "Bounces after which a path ends; 0: emission only")
-        ->check(whole_number(0, 1000000));
-    app.add_option("--only-path-length", options.only_path_length, "Show only light after exactly this many bounces")
-        ->check(whole_number(0, 1000000));
-    app.add_option("--target-error", options.target_error, "Stop when the relative error is below this: 0.01 is 1 %")
+    app.add_option("--max-path-length", options.max_path_length,
+                   "Bounces after which a path ends; 0: emission only")
+        ->check(whole_number(0, path_length_limit));
+    app.add_option("--only-path-length", options.only_path_length,
+                   "Show only light after exactly this many bounces")
+        ->check(whole_number(0, path_length_limit));
+    app.add_option("--target-error", options.target_error,
+                   "Stop when the relative error is below this: 0.01 is 1 %")
         ->check(within(1e-12, 1e12, "a positive number"));
     app.add_option("--time-limit", options.time_limit, "Stop after this many seconds")
         ->check(within(1e-3, 1e9, "a positive number of seconds"));
@@ -58,7 +64,8 @@ void add_scene_options(CLI::App& app, Options& options) {
     vector("--camera-position", options.camera_position, "Where the camera stands");
     vector("--camera-target", options.camera_target, "What it looks at");
     vector("--camera-up", options.camera_up, "What it holds upwards");
-    app.add_option("--vertical-fov", options.vertical_fov, "Angle between the picture's top and bottom in degrees")
+    app.add_option("--vertical-fov", options.vertical_fov,
+                   "Angle between the picture's top and bottom in degrees")
         ->check(within(1e-6, 179.999, "an angle between 0 and 180 degrees"));
     app.add_option("--background", options.background, "Radiance of the sky; with a light probe its factor")
         ->delimiter(',')
@@ -87,29 +94,32 @@ void add_device_options(CLI::App& app, Options& options) {
         ->check(CLI::IsMember({"auto", "pipeline", "query", "compute"}));
     app.add_option("--device", options.device, "Number or part of the name of the device");
     app.add_flag("--list-devices", options.list_devices, "Show the devices and what they lack");
-    app.add_flag("--headless")->description("Render without a window, which is also what happens without this flag");
+    app.add_flag("--headless")
+        ->description("Render without a window, which is also what happens without this flag");
     app.add_flag("--validation", options.validation, "Check the use of Vulkan; any complaint is an error");
     app.add_flag("--quiet", options.quiet, "Print errors only");
 }
 
 // A scene is a file or the name of one in assets/scenes.
 std::filesystem::path find_scene(const std::string& name) {
-    if (std::filesystem::exists(name)) return name;
+    std::error_code ignored;  // a name that the file system refuses is reported when it is read
+    if (std::filesystem::exists(name, ignored)) return name;
     const auto shipped = project_folder() / "assets" / "scenes" / (name + ".json");
-    return std::filesystem::exists(shipped) ? shipped : std::filesystem::path(name);
+    return std::filesystem::exists(shipped, ignored) ? shipped : std::filesystem::path(name);
 }
 
 }  // namespace
 
 const std::vector<View>& views() {
-    static const std::vector<View> all{{"normals", "VIEW_NORMALS", DisplayTransform::as_is},
-                                       {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
-                                       {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
-                                       {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
-                                       {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
-                                       {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
-                                       {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
-                                       {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum}};
+    static const std::vector<View> all{
+        {"normals", "VIEW_NORMALS", DisplayTransform::as_is},
+        {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
+        {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
+        {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
+        {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
+        {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
+        {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
+        {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum}};
     return all;
 }
 

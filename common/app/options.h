@@ -44,8 +44,8 @@ struct Options {
     bool quiet = false;
 };
 
-// Parses the command line. Returns nothing where the program is already done (--help, --version), after printing.
-// Throws UserError with one line for anything it does not understand.
+// Parses the command line. Returns nothing where the program is already done (--help, --version), after
+// printing. Throws UserError with one line for anything it does not understand.
 std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments);
 
 }  // namespace lab

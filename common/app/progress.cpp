@@ -29,15 +29,18 @@ void Progress::update(double samples, uint64_t rays) {
     const int filled = static_cast<int>(fraction * bar_width);
     std::string line = "[" + std::string(filled, '#') + std::string(bar_width - filled, '.') + "] ";
     char text[160];
-    std::snprintf(text, sizeof text, "%.4g/%u samples  %s samples/s  %s rays/s  %s left", samples, target_samples_,
-                  short_number(rate).c_str(), short_number(static_cast<double>(rays) / seconds).c_str(),
+    std::snprintf(text, sizeof text, "%.4g/%u samples  %s samples/s  %s rays/s  %s left", samples,
+                  target_samples_, short_number(rate).c_str(),
+                  short_number(static_cast<double>(rays) / seconds).c_str(),
                   rate > 0 ? duration_text((target_samples_ - samples) / rate).c_str() : "?");
     print(line + text);
 }
 
 void Progress::print(const std::string& line) {
-    if (terminal_) std::fprintf(stderr, "\r\033[K%s", line.c_str());
-    else std::fprintf(stderr, "%s\n", line.c_str());
+    if (terminal_)
+        std::fprintf(stderr, "\r\033[K%s", line.c_str());
+    else
+        std::fprintf(stderr, "%s\n", line.c_str());
     std::fflush(stderr);
     printed_ = true;
 }
@@ -60,8 +63,10 @@ std::string duration_text(double seconds) {
         std::snprintf(text, sizeof text, "%.3g s", seconds);
     } else {
         const auto whole = std::llround(std::min(seconds, 1e12));
-        if (whole < 3600) std::snprintf(text, sizeof text, "%lld min %02lld s", whole / 60, whole % 60);
-        else std::snprintf(text, sizeof text, "%lld h %02lld min", whole / 3600, whole / 60 % 60);
+        if (whole < 3600)
+            std::snprintf(text, sizeof text, "%lld min %02lld s", whole / 60, whole % 60);
+        else
+            std::snprintf(text, sizeof text, "%lld h %02lld min", whole / 3600, whole / 60 % 60);
     }
     return text;
 }

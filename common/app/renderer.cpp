@@ -17,17 +17,20 @@ uvec2 seed_key(uint32_t seed) {
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
                    const Estimator& estimator, const RenderParameters& parameters)
     : device_(&device),
-      parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
+      parameters_(device, std::span<const RenderParameters>(&parameters, 1),
+                  vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y) {
-    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
+    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_),
+                                        film_.binding(),
                                         storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
     tracer_ = acceleration_structure.make_tracer(estimator, bindings);
 }
 
 uint32_t Renderer::block_count() const {
-    return ((film_.width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH) * ((film_.height() + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
+    return ((film_.width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
+           ((film_.height() + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
 }
 
 double Renderer::samples() const {
@@ -43,7 +46,8 @@ void Renderer::resume(const FilmImage& image) {
 
 bool Renderer::advance(uint32_t target_samples) {
     if (finished_samples_ >= target_samples) return false;
-    // A pass brings all blocks to pass_samples_: several samples at a time if all blocks fit into one dispatch.
+    // A pass brings all blocks to pass_samples_: several samples at a time if all blocks fit into one
+    // dispatch.
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
         const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, 1.0));

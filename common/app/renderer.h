@@ -11,17 +11,17 @@ uvec2 seed_key(uint32_t seed);
 class Renderer {
   public:
     // The device and the acceleration structure must outlive the renderer.
-    Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
-             const RenderParameters& parameters);
+    Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
+             const Estimator& estimator, const RenderParameters& parameters);
 
-    // One dispatch of about `dispatch_seconds` on the way to `target_samples` samples in every pixel; true while more
-    // are needed. Short dispatches keep driver watchdogs quiet and the program responsive: one sample of a large image
-    // can take a minute on a slow device.
+    // One dispatch of about `dispatch_seconds` on the way to `target_samples` samples in every pixel; true
+    // while more are needed. Short dispatches keep driver watchdogs quiet and the program responsive: one
+    // sample of a large image can take a minute on a slow device.
     bool advance(uint32_t target_samples);
 
     Film& film() { return film_; }
-    uint64_t rays() const { return rays_; }                     // traced so far
-    double device_seconds() const { return device_seconds_; }   // spent by the device so far
+    uint64_t rays() const { return rays_; }                    // traced so far
+    double device_seconds() const { return device_seconds_; }  // spent by the device so far
     // Samples per pixel so far, averaged over the image.
     double samples() const;
 

@@ -10,15 +10,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-std::string source_text(ErrorSource source) {
-    switch (source) {
-        case ErrorSource::none: return "none";
-        case ErrorSource::reference: return "reference";
-        case ErrorSource::halves: return "halves";
-    }
-    return "none";
-}
-
 // One row with the same fields in JSON and CSV; unknown errors are null.
 json to_json(const ReportRow& row) {
     json result{{"samples", row.samples},
@@ -27,8 +18,10 @@ json to_json(const ReportRow& row) {
                 {"rays", row.rays}};
     const ErrorMetrics error = row.error.value_or(ErrorMetrics{});
     const auto set = [&](const char* name, double value) {
-        if (row.error) result[name] = value;
-        else result[name] = nullptr;
+        if (row.error)
+            result[name] = value;
+        else
+            result[name] = nullptr;
     };
     set("mse", error.mse);
     set("rel_mse", error.rel_mse);
@@ -64,7 +57,8 @@ std::string to_csv(const json& rows) {
 }  // namespace
 
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationRecord& acceleration, ErrorSource source, const std::vector<ReportRow>& rows) {
+                  const AccelerationRecord& acceleration, ErrorSource source,
+                  const std::vector<ReportRow>& rows) {
     json report{{"chapter", record.chapter},
                 {"scene", record.scene},
                 {"scene_hash", record.scene_hash},
@@ -78,10 +72,10 @@ void write_report(const std::filesystem::path& file, const FilmImage& image, con
                 {"acceleration_structure_bytes", acceleration.bytes},
                 {"acceleration_structure_seconds", acceleration.build_seconds},
                 {"invalid_samples", image.invalid_samples()},
-                {"error_source", source_text(source)},
+                {"error_source", source == ErrorSource::reference ? "reference" : "halves"},
                 {"rows", json::array()}};
     for (const auto& row : rows) report["rows"].push_back(to_json(row));
-    const bool is_csv = file.extension() == ".csv";
+    const bool is_csv = lower_case_extension(file) == ".csv";
     const std::string text = is_csv ? to_csv(report["rows"]) : report.dump(2) + "\n";
     write_file(file, text);
 }

@@ -10,25 +10,26 @@
 namespace lab {
 
 struct ReportRow {
-    uint32_t samples = 0;         // a pixel
-    double seconds = 0;           // of rendering, by the clock
-    double device_seconds = 0;    // of these, busy on the device
+    uint32_t samples = 0;       // a pixel
+    double seconds = 0;         // of rendering, by the clock
+    double device_seconds = 0;  // that the device was busy in this run
     uint64_t rays = 0;
-    std::array<double, 3> mean{}; // radiance of the image
+    std::array<double, 3> mean{};  // radiance of the image
     std::optional<ErrorMetrics> error;
 };
 
 // What the errors of a report are: against a reference, or estimated from two halves of the samples.
-enum class ErrorSource { none, reference, halves };
+enum class ErrorSource { reference, halves };
 
 // What the acceleration structure has cost.
 struct AccelerationRecord {
-    size_t bytes = 0;          // of device memory
+    size_t bytes = 0;  // of device memory
     double build_seconds = 0;
 };
 
 // Writes .json or .csv, by the file's ending.
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationRecord& acceleration, ErrorSource source, const std::vector<ReportRow>& rows);
+                  const AccelerationRecord& acceleration, ErrorSource source,
+                  const std::vector<ReportRow>& rows);
 
 }  // namespace lab

@@ -1,7 +1,10 @@
 #include "film/error_metrics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include "error.h"
 
 namespace lab {
 namespace {
@@ -33,12 +36,38 @@ ErrorMetrics metrics(const Image& scale, const std::function<double(size_t)>& sq
     return result;
 }
 
+// Every pixel replaced by the mean of its block of 8 x 8 pixels.
+Image block_means(const Image& image) {
+    constexpr uint32_t size = 8;
+    Image result = image;
+    for (uint32_t top = 0; top < image.height; top += size)
+        for (uint32_t left = 0; left < image.width; left += size)
+            for (uint32_t channel = 0; channel < 3; ++channel) {
+                const uint32_t bottom = std::min(top + size, image.height),
+                               right = std::min(left + size, image.width);
+                const auto index = [&](uint32_t x, uint32_t y) {
+                    return 3 * (size_t{y} * image.width + x) + channel;
+                };
+                double sum = 0;
+                for (uint32_t y = top; y < bottom; ++y)
+                    for (uint32_t x = left; x < right; ++x) sum += image.pixels[index(x, y)];
+                const auto mean = static_cast<float>(sum / ((bottom - top) * (right - left)));
+                for (uint32_t y = top; y < bottom; ++y)
+                    for (uint32_t x = left; x < right; ++x) result.pixels[index(x, y)] = mean;
+            }
+    return result;
+}
+
 }  // namespace
 
 Reference read_reference(const std::filesystem::path& file) {
     ExrFile exr = read_exr(file);
     Reference reference{std::move(exr.image), std::nullopt};
-    Image variance{reference.mean.width, reference.mean.height, std::vector<float>(reference.mean.pixels.size())};
+    if (!std::all_of(reference.mean.pixels.begin(), reference.mean.pixels.end(),
+                     [](float value) { return std::isfinite(value); }))
+        throw UserError(file.string() + ": has infinite pixels: it cannot serve as a reference");
+    Image variance{reference.mean.width, reference.mean.height,
+                   std::vector<float>(reference.mean.pixels.size())};
     const std::array<std::string, 3> names{"variance.R", "variance.G", "variance.B"};
     for (size_t channel = 0; channel < 3; ++channel) {
         const auto found = exr.channels.find(names[channel]);
@@ -61,9 +90,10 @@ ErrorMetrics compare(const Image& image, const Reference& reference) {
 
 ErrorMetrics estimate_error(const Image& first, const Image& second) {
     Image mean = first;
-    for (size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
+    for (size_t i = 0; i < mean.pixels.size(); ++i)
+        mean.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
     return metrics(
-        mean,
+        block_means(mean),
         [&](size_t i) {
             const double difference = double{first.pixels[i]} - double{second.pixels[i]};
             return difference * difference / 4;

@@ -27,8 +27,10 @@ Reference read_reference(const std::filesystem::path& file);
 // Both images have the same size.
 ErrorMetrics compare(const Image& image, const Reference& reference);
 
-// Expected error of the mean (first + second) / 2 of two independent renders with equally many samples, estimated from
-// their difference: its expected square is four times the variance of the mean.
+// Expected error of the mean (first + second) / 2 of two independent renders with equally many samples,
+// estimated from their difference: its expected square is four times the variance of the mean. The unknown
+// reference is replaced by the mean over blocks of 8 x 8 pixels: a noisy pixel's own value would excuse its
+// error.
 ErrorMetrics estimate_error(const Image& first, const Image& second);
 
 }  // namespace lab

@@ -5,10 +5,16 @@
 namespace lab {
 
 uint32_t FilmImage::min_samples() const {
-    const auto fewest = std::min_element(pixels.begin(), pixels.end(), [](const FilmPixel& a, const FilmPixel& b) {
-        return a.sample_count < b.sample_count;
-    });
+    const auto fewest = std::min_element(
+        pixels.begin(), pixels.end(),
+        [](const FilmPixel& a, const FilmPixel& b) { return a.sample_count < b.sample_count; });
     return fewest == pixels.end() ? 0 : fewest->sample_count;
+}
+
+bool FilmImage::has_equal_sample_counts() const {
+    const uint32_t samples = min_samples();
+    return std::all_of(pixels.begin(), pixels.end(),
+                       [&](const FilmPixel& pixel) { return pixel.sample_count == samples; });
 }
 
 uint64_t FilmImage::invalid_samples() const {

@@ -1,4 +1,5 @@
-// The film collects the samples of all pixels on the device and keeps them exactly enough for 10^7 samples a pixel.
+// The film collects the samples of all pixels on the device and keeps them exactly enough for 10^7 samples a
+// pixel.
 #pragma once
 #include <vector>
 
@@ -14,9 +15,10 @@ struct FilmImage {
     uint32_t height = 0;
     std::vector<FilmPixel> pixels;
 
-    uint32_t min_samples() const;       // samples that every pixel has
-    uint64_t invalid_samples() const;   // samples that were infinite or not a number
-    Image mean() const;                 // mean radiance of a pixel; 0 where there are no samples
+    bool has_equal_sample_counts() const;
+    uint32_t min_samples() const;                 // samples that every pixel has
+    uint64_t invalid_samples() const;             // samples that were infinite or not a number
+    Image mean() const;                           // mean radiance of a pixel; 0 where there are no samples
     std::array<double, 3> mean_radiance() const;  // of the whole image
 };
 

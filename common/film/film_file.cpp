@@ -33,10 +33,10 @@ std::string to_text(double value) {
     return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
-// Channel with one count a pixel; `otherwise` for every pixel if it is absent.
-std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, uint32_t otherwise, size_t pixels,
+// Channel with one count a pixel, zeros if it is absent.
+std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t pixels,
                              const std::filesystem::path& file) {
-    std::vector<uint32_t> result(pixels, otherwise);
+    std::vector<uint32_t> result(pixels, 0);
     const auto found = exr.channels.find(name);
     if (found == exr.channels.end()) return result;
     for (size_t i = 0; i < pixels; ++i) {
@@ -62,6 +62,7 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
     exr.attributes = {{"chapter", record.chapter},
                       {"scene", record.scene},
                       {"scene_hash", record.scene_hash},
+                      {"estimator_hash", record.estimator_hash},
                       {"settings", record.settings},
                       {"backend", record.backend},
                       {"device", record.device},
@@ -71,14 +72,13 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
                       {"invalid_samples", std::to_string(image.invalid_samples())},
                       {"rays", std::to_string(record.rays)},
                       {"seconds", to_text(record.seconds)}};
-    const auto add_channel = [&](const std::string& name, uint32_t FilmPixel::* member) {
-        auto& channel = exr.channels[name];
-        for (const auto& pixel : image.pixels) channel.push_back(static_cast<float>(pixel.*member));
-    };
-    const auto differs = [&](const FilmPixel& pixel) { return pixel.sample_count != samples; };
-    if (std::any_of(image.pixels.begin(), image.pixels.end(), differs))
-        add_channel("samples", &FilmPixel::sample_count);
-    if (image.invalid_samples() > 0) add_channel("invalid_samples", &FilmPixel::invalid_count);
+    // Relative to the fewest, since floats hold whole numbers only up to 2^24.
+    if (!image.has_equal_sample_counts())
+        for (const auto& pixel : image.pixels)
+            exr.channels["further_samples"].push_back(static_cast<float>(pixel.sample_count - samples));
+    if (image.invalid_samples() > 0)
+        for (const auto& pixel : image.pixels)
+            exr.channels["invalid_samples"].push_back(static_cast<float>(pixel.invalid_count));
     write_exr(file, exr);
 }
 
@@ -88,6 +88,7 @@ FilmFile read_film(const std::filesystem::path& file) {
     film.record = {.chapter = text(exr, "chapter"),
                    .scene = text(exr, "scene"),
                    .scene_hash = text(exr, "scene_hash"),
+                   .estimator_hash = text(exr, "estimator_hash"),
                    .settings = text(exr, "settings"),
                    .backend = text(exr, "backend"),
                    .device = text(exr, "device"),
@@ -96,24 +97,27 @@ FilmFile read_film(const std::filesystem::path& file) {
                    .rays = number<uint64_t>(exr, "rays", file),
                    .seconds = number<double>(exr, "seconds", file)};
     const size_t count = size_t{exr.image.width} * exr.image.height;
-    const auto samples = counts(exr, "samples", number<uint32_t>(exr, "samples", file), count, file);
-    const auto invalid = counts(exr, "invalid_samples", 0, count, file);
+    const auto samples = number<uint32_t>(exr, "samples", file);
+    const auto further_samples = counts(exr, "further_samples", count, file);
+    const auto invalid = counts(exr, "invalid_samples", count, file);
     film.image = {exr.image.width, exr.image.height, std::vector<FilmPixel>(count)};
     for (size_t i = 0; i < count; ++i) {
         FilmPixel& pixel = film.image.pixels[i];
-        pixel.sample_count = samples[i];
+        pixel.sample_count = samples + further_samples[i];
         pixel.invalid_count = invalid[i];
         for (int channel = 0; channel < 3; ++channel) {
             const double mean = exr.image.pixels[3 * i + static_cast<size_t>(channel)];
             if (!std::isfinite(mean)) throw UserError(file.string() + ": has infinite pixels: render again");
-            set_sum(pixel, channel, mean * samples[i]);
+            set_sum(pixel, channel, mean * pixel.sample_count);
         }
     }
     return film;
 }
 
-void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a, const std::string& name_b) {
-    const auto require = [&](const std::string& what, const std::string& value_a, const std::string& value_b) {
+void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a,
+                         const std::string& name_b) {
+    const auto require = [&](const std::string& what, const std::string& value_a,
+                             const std::string& value_b) {
         if (value_a != value_b)
             throw UserError(name_a + " and " + name_b + " do not belong together: " + what + " '" + value_a +
                             "' against '" + value_b + "'");
@@ -126,6 +130,7 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
     require("seed", std::to_string(a.record.seed), std::to_string(b.record.seed));
     require("settings", a.record.settings, b.record.settings);
     require("scene hash", a.record.scene_hash, b.record.scene_hash);
+    require("shader hash", a.record.estimator_hash, b.record.estimator_hash);
 }
 
 FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
@@ -139,9 +144,8 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
         parts.push_back({file.string(), read_film(file), 0});
         auto& [name, film, end] = parts.back();
         const uint32_t samples = film.image.min_samples();
-        for (const auto& pixel : film.image.pixels)
-            if (pixel.sample_count != samples)
-                throw UserError(name + " is an unfinished render: finish it with --resume first");
+        if (!film.image.has_equal_sample_counts())
+            throw UserError(name + " is an unfinished render: finish it with --resume first");
         end = uint64_t{film.record.first_sample} + samples;
     }
     if (parts.empty()) throw UserError("nothing to merge: name at least one .exr");
@@ -153,16 +157,16 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
         const auto& [name, film, end] = parts[i];
         require_same_render(parts.front().film, film, parts.front().name, name);
         if (film.record.first_sample != parts[i - 1].end)
-            throw UserError(parts[i - 1].name + " ends before sample " + std::to_string(parts[i - 1].end) + " and " +
-                            name + " starts at " + std::to_string(film.record.first_sample) +
+            throw UserError(parts[i - 1].name + " ends before sample " + std::to_string(parts[i - 1].end) +
+                            " and " + name + " starts at " + std::to_string(film.record.first_sample) +
                             ": the ranges must join without overlap or gap");
         for (size_t p = 0; p < merged.image.pixels.size(); ++p) {
             FilmPixel& sum = merged.image.pixels[p];
             const FilmPixel& added = film.image.pixels[p];
             for (int channel = 0; channel < 3; ++channel)
                 set_sum(sum, channel,
-                        double{sum.sum[channel]} + double{sum.compensation[channel]} + double{added.sum[channel]} +
-                            double{added.compensation[channel]});
+                        double{sum.sum[channel]} + double{sum.compensation[channel]} +
+                            double{added.sum[channel]} + double{added.compensation[channel]});
             sum.sample_count += added.sample_count;
             sum.invalid_count += added.invalid_count;
         }

@@ -11,9 +11,10 @@ namespace lab {
 // How a film came about; written as string attributes of the EXR.
 struct FilmRecord {
     std::string chapter;
-    std::string scene;       // file name
-    std::string scene_hash;  // of all its files
-    std::string settings;    // the options that change the expected image, in a fixed order
+    std::string scene;           // file name
+    std::string scene_hash;      // of all its files
+    std::string estimator_hash;  // of the shader's text
+    std::string settings;        // the options that change the expected image, in a fixed order
     std::string backend;
     std::string device;
     uint32_t seed = 0;
@@ -22,8 +23,9 @@ struct FilmRecord {
     double seconds = 0;  // of rendering
 };
 
-// Pixels may have different numbers of samples (an interrupted render): the channel `samples` then holds them.
-// Where samples were invalid, the channel `invalid_samples` holds their number.
+// Pixels may have different numbers of samples (an interrupted render): the attribute `samples` is the
+// smallest, the channel `further_samples` what each pixel has beyond it. Where samples were invalid, the
+// channel `invalid_samples` holds their number.
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record);
 
 struct FilmFile {
@@ -34,12 +36,14 @@ struct FilmFile {
 // Throws UserError if the file is not one that write_film() wrote.
 FilmFile read_film(const std::filesystem::path& file);
 
-// Throws UserError if the two do not show the same: size, chapter, scene, settings or seed differ. The names are for
-// the message.
-void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a, const std::string& name_b);
+// Throws UserError if the two do not show the same: size, chapter, scene, settings or seed differ. The names
+// are for the message.
+void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a,
+                         const std::string& name_b);
 
 // Joins renders of adjacent ranges of samples, in any order, into the render of the whole range.
-// Throws UserError if ranges overlap, leave a gap or are unfinished, or if the renders do not belong together.
+// Throws UserError if ranges overlap, leave a gap or are unfinished, or if the renders do not belong
+// together.
 FilmFile merge_films(const std::vector<std::filesystem::path>& files);
 
 }  // namespace lab

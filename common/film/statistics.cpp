@@ -40,7 +40,8 @@ double normal_p_value(double z) { return std::erfc(std::abs(z) / std::numbers::s
 
 double normal_quantile(double probability) {
     if (probability > 0.5) return -normal_quantile(1 - probability);
-    // The lower tail is convex, so Newton's method started below the solution approaches it from there.
+    // Newton's method. The lower tail is convex, so from the second step on it approaches the solution from
+    // above.
     double z = -std::sqrt(-2 * std::log(probability));
     for (int step = 0; step < 60; ++step) {
         const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);

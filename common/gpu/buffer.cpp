@@ -8,7 +8,8 @@
 namespace lab {
 namespace {
 
-constexpr auto host_visible = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
+constexpr auto host_visible =
+    vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
 
 struct Allocation {
     vk::raii::DeviceMemory memory;
@@ -51,8 +52,8 @@ Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Lo
     else if (usage & vk::BufferUsageFlagBits::eStorageBuffer)
         limit = device.limits().maxStorageBufferRange;
     if (size_ > limit)
-        throw DeviceFailure("the scene or image needs a buffer of " + mebibytes(size_) + ", the device allows " +
-                            mebibytes(limit) + ": use a smaller one");
+        throw DeviceFailure("the scene or image needs a buffer of " + mebibytes(size_) +
+                            ", the device allows " + mebibytes(limit) + ": use a smaller one");
     usage |= vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     buffer_ = {device.handle(), vk::BufferCreateInfo({}, size_, usage)};
     const auto required = location == Location::host ? host_visible : vk::MemoryPropertyFlags();
@@ -121,14 +122,15 @@ SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height
         move_to(vk::ImageLayout::eUndefined, vk::ImageLayout::eTransferDstOptimal, {},
                 vk::AccessFlagBits::eTransferWrite, vk::PipelineStageFlagBits::eTopOfPipe,
                 vk::PipelineStageFlagBits::eTransfer);
-        commands.copyBufferToImage(staging.handle(), *image_, vk::ImageLayout::eTransferDstOptimal,
-                                   vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {},
-                                                       {width, height, 1}));
+        commands.copyBufferToImage(
+            staging.handle(), *image_, vk::ImageLayout::eTransferDstOptimal,
+            vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {width, height, 1}));
         move_to(vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::eShaderReadOnlyOptimal,
                 vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eShaderRead,
                 vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eComputeShader);
     });
-    view_ = {device.handle(), vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole)};
+    view_ = {device.handle(),
+             vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole)};
     sampler_ = {device.handle(), vk::SamplerCreateInfo()};
 }
 

@@ -12,8 +12,10 @@ class Buffer {
         device,  // fast for shaders
         host,    // visible to the CPU at any time
     };
-    // `size` in bytes (0 makes a buffer of the smallest size). Throws DeviceFailure if it does not fit the device.
-    Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location = Location::device);
+    // `size` in bytes (0 makes a buffer of the smallest size). Throws DeviceFailure if it does not fit the
+    // device.
+    Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage,
+           Location location = Location::device);
 
     // Device buffer that holds a copy of `data`.
     template <typename T>
@@ -51,7 +53,9 @@ class SampledImage {
     SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
                  std::span<const std::byte> pixels);
 
-    vk::DescriptorImageInfo info() const { return {*sampler_, *view_, vk::ImageLayout::eShaderReadOnlyOptimal}; }
+    vk::DescriptorImageInfo info() const {
+        return {*sampler_, *view_, vk::ImageLayout::eShaderReadOnlyOptimal};
+    }
 
   private:
     vk::raii::Image image_ = nullptr;

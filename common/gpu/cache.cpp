@@ -49,11 +49,14 @@ void write_cache(const std::string& name, const std::vector<uint8_t>& contents) 
     const auto temporary = folder / (name + "." + std::to_string(getpid()));
     const uint64_t sum = checksum(contents.data(), contents.size());
     std::ofstream stream(temporary, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(contents.data()), static_cast<std::streamsize>(contents.size()));
+    stream.write(reinterpret_cast<const char*>(contents.data()),
+                 static_cast<std::streamsize>(contents.size()));
     stream.write(reinterpret_cast<const char*>(&sum), sizeof sum);
     stream.close();
-    if (stream) std::filesystem::rename(temporary, folder / name, ignored);
-    else std::filesystem::remove(temporary, ignored);
+    if (stream)
+        std::filesystem::rename(temporary, folder / name, ignored);
+    else
+        std::filesystem::remove(temporary, ignored);
 }
 
 }  // namespace lab

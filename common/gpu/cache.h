@@ -1,5 +1,5 @@
-// Files that save time on the next start: compiled shaders and pipelines. Losing them costs nothing else, so every
-// failure to read or write one is silent, and a damaged one counts as absent.
+// Files that save time on the next start: compiled shaders and pipelines. Losing them costs nothing else, so
+// every failure to read or write one is silent, and a damaged one counts as absent.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -16,7 +16,8 @@ Binding uniform_binding(uint32_t index, const Buffer& buffer) {
             .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}}};
 }
 
-DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bindings, vk::ShaderStageFlags stages) {
+DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bindings,
+                             vk::ShaderStageFlags stages) {
     std::vector<vk::DescriptorSetLayoutBinding> layout_bindings;
     std::vector<vk::DescriptorPoolSize> sizes;
     const auto count = [](const Binding& binding) {
@@ -45,16 +46,19 @@ DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bind
     device.handle().updateDescriptorSets(writes, {});
 }
 
-ComputeKernel::ComputeKernel(const Device& device, const ShaderSource& source, std::span<const Binding> bindings,
-                             uint32_t push_constant_size)
-    : descriptors_(device, bindings, vk::ShaderStageFlagBits::eCompute), push_constant_size_(push_constant_size) {
+ComputeKernel::ComputeKernel(const Device& device, const ShaderSource& source,
+                             std::span<const Binding> bindings, uint32_t push_constant_size)
+    : descriptors_(device, bindings, vk::ShaderStageFlagBits::eCompute),
+      push_constant_size_(push_constant_size) {
     const auto words = compile_shader(source);
     const vk::raii::ShaderModule module(device.handle(), vk::ShaderModuleCreateInfo({}, words));
     const auto set_layout = descriptors_.layout();
     const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_size);
-    layout_ = {device.handle(), vk::PipelineLayoutCreateInfo({}, 1, &set_layout, push_constant_size > 0, &range)};
+    layout_ = {device.handle(),
+               vk::PipelineLayoutCreateInfo({}, 1, &set_layout, push_constant_size > 0, &range)};
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
-    pipeline_ = {device.handle(), device.pipeline_cache(), vk::ComputePipelineCreateInfo({}, stage, *layout_)};
+    pipeline_ = {device.handle(), device.pipeline_cache(),
+                 vk::ComputePipelineCreateInfo({}, stage, *layout_)};
 }
 
 void ComputeKernel::record(const vk::raii::CommandBuffer& commands, const void* push_constants,
@@ -62,8 +66,8 @@ void ComputeKernel::record(const vk::raii::CommandBuffer& commands, const void* 
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
     commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, descriptors_.handle(), {});
     if (push_constant_size_ > 0)
-        (*commands).pushConstants(*layout_, vk::ShaderStageFlagBits::eCompute, 0, push_constant_size_, push_constants,
-                                  *commands.getDispatcher());
+        (*commands).pushConstants(*layout_, vk::ShaderStageFlagBits::eCompute, 0, push_constant_size_,
+                                  push_constants, *commands.getDispatcher());
     commands.dispatch(group_count, 1, 1);
 }
 

@@ -40,7 +40,8 @@ class ComputeKernel {
                   uint32_t push_constant_size);
 
     // Starts `group_count` workgroups in a row.
-    void record(const vk::raii::CommandBuffer& commands, const void* push_constants, uint32_t group_count) const;
+    void record(const vk::raii::CommandBuffer& commands, const void* push_constants,
+                uint32_t group_count) const;
 
   private:
     DescriptorSet descriptors_;

@@ -13,17 +13,23 @@ namespace {
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 
 std::string version_text(uint32_t version) {
-    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) +
-           "." + std::to_string(VK_API_VERSION_PATCH(version));
+    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
+           std::to_string(VK_API_VERSION_MINOR(version)) + "." +
+           std::to_string(VK_API_VERSION_PATCH(version));
 }
 
 std::string kind_text(vk::PhysicalDeviceType type) {
     switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu: return "discrete GPU";
-        case vk::PhysicalDeviceType::eIntegratedGpu: return "integrated GPU";
-        case vk::PhysicalDeviceType::eVirtualGpu: return "virtual GPU";
-        case vk::PhysicalDeviceType::eCpu: return "CPU";
-        default: return "other";
+        case vk::PhysicalDeviceType::eDiscreteGpu:
+            return "discrete GPU";
+        case vk::PhysicalDeviceType::eIntegratedGpu:
+            return "integrated GPU";
+        case vk::PhysicalDeviceType::eVirtualGpu:
+            return "virtual GPU";
+        case vk::PhysicalDeviceType::eCpu:
+            return "CPU";
+        default:
+            return "other";
     }
 }
 
@@ -41,7 +47,8 @@ std::vector<const char*> extensions_for(Backend backend) {
 }
 
 // What the device lacks for every backend.
-std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device, const Features& features) {
+std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device,
+                                            const Features& features) {
     std::vector<std::string> missing;
     const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     if (!vulkan12.scalarBlockLayout) missing.emplace_back("scalarBlockLayout");
@@ -79,11 +86,13 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         auto& missing = description.missing[backend];
         missing = missing_everywhere(device, features);
         for (const char* wanted : extensions_for(backend))
-            if (std::none_of(extensions.begin(), extensions.end(), [&](const vk::ExtensionProperties& extension) {
-                    return std::strcmp(extension.extensionName, wanted) == 0;
-                }))
+            if (std::none_of(extensions.begin(), extensions.end(),
+                             [&](const vk::ExtensionProperties& extension) {
+                                 return std::strcmp(extension.extensionName, wanted) == 0;
+                             }))
                 missing.emplace_back(wanted);
-        if (backend != Backend::compute && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
+        if (backend != Backend::compute &&
+            !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
             missing.emplace_back("bufferDeviceAddress");
     }
     return description;
@@ -97,7 +106,8 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
         if (std::none_of(available.begin(), available.end(), [](const vk::LayerProperties& layer) {
                 return std::strcmp(layer.layerName, validation_layer) == 0;
             }))
-            throw DeviceError("the Vulkan validation layer is not installed: install vulkan-validationlayers");
+            throw DeviceError(
+                "the Vulkan validation layer is not installed: install vulkan-validationlayers");
         layers.push_back(validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
@@ -108,7 +118,8 @@ vk::raii::Context load_vulkan() {
     try {
         return {};
     } catch (const std::exception&) {
-        throw DeviceError("the Vulkan loader is missing: install libvulkan1 and a driver such as mesa-vulkan-drivers");
+        throw DeviceError(
+            "the Vulkan loader is missing: install libvulkan1 and a driver such as mesa-vulkan-drivers");
     }
 }
 
@@ -142,17 +153,20 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
                 if (devices[i].kind == kind && devices[i].supports(Backend::compute)) return i;
         return 0;
     }
-    throw DeviceError("no device '" + choice + "': --list-devices shows the " + std::to_string(devices.size()) +
-                      " there are");
+    throw DeviceError("no device '" + choice + "': --list-devices shows the " +
+                      std::to_string(devices.size()) + " there are");
 }
 
 }  // namespace
 
 std::string to_string(Backend backend) {
     switch (backend) {
-        case Backend::pipeline: return "pipeline";
-        case Backend::query: return "query";
-        case Backend::compute: return "compute";
+        case Backend::pipeline:
+            return "pipeline";
+        case Backend::query:
+            return "query";
+        case Backend::compute:
+            return "compute";
     }
     return "compute";
 }
@@ -161,7 +175,8 @@ Device::Device(const DeviceOptions& options) : context_(load_vulkan()) {
     try {
         instance_ = create_instance(context_, options.validation);
     } catch (const vk::SystemError&) {
-        throw DeviceError("no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
+        throw DeviceError(
+            "no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
     }
     if (options.validation) {
         // The C structure: Vulkan-Hpp changed the callback's parameter types between releases.
@@ -196,6 +211,8 @@ void Device::create_device() {
     while (!(families[queue_family_].queueFlags & vk::QueueFlagBits::eCompute) ||
            families[queue_family_].timestampValidBits == 0)
         ++queue_family_;
+    const uint32_t timestamp_bits = families[queue_family_].timestampValidBits;
+    timestamp_mask_ = timestamp_bits < 64 ? (uint64_t{1} << timestamp_bits) - 1 : ~uint64_t{0};
     const float priority = 1;
     const vk::DeviceQueueCreateInfo queue({}, queue_family_, 1, &priority);
     Features features;
@@ -214,9 +231,12 @@ void Device::create_device() {
     }
     if (description_.supports(Backend::pipeline))
         features.get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>().rayTracingPipeline = true;
-    else features.unlink<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
-    if (description_.supports(Backend::query)) features.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery = true;
-    else features.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
+    else
+        features.unlink<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
+    if (description_.supports(Backend::query))
+        features.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery = true;
+    else
+        features.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
 
     std::vector<const char*> names;
     for (const auto& extension : extensions) names.push_back(extension.c_str());
@@ -225,8 +245,8 @@ void Device::create_device() {
     device_ = {physical_, info};
     queue_ = device_.getQueue(queue_family_, 0);
     command_pool_ = {device_, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_}};
-    command_buffer_ =
-        std::move(vk::raii::CommandBuffers(device_, {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
+    command_buffer_ = std::move(
+        vk::raii::CommandBuffers(device_, {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
     fence_ = {device_, vk::FenceCreateInfo()};
     timestamps_ = {device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)};
 }
@@ -239,7 +259,8 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
     const auto written = vk::AccessFlagBits::eMemoryWrite;
     command_buffer_.pipelineBarrier(
         all, all, {},
-        vk::MemoryBarrier(written, vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite), {}, {});
+        vk::MemoryBarrier(written, vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite), {},
+        {});
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eTopOfPipe, *timestamps_, 0);
     record(command_buffer_);
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, 1);
@@ -250,15 +271,18 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
     if (device_.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
         throw DeviceFailure("the device did not finish its work");
     device_.resetFences(*fence_);
-    const auto [result, ticks] = timestamps_.getResults<uint64_t>(
-        0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
-    return static_cast<double>(ticks[1] - ticks[0]) * static_cast<double>(limits_.timestampPeriod) * 1e-9;
+    const auto [result, ticks] =
+        timestamps_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t),
+                                         vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    return static_cast<double>((ticks[1] - ticks[0]) & timestamp_mask_) *
+           static_cast<double>(limits_.timestampPeriod) * 1e-9;
 }
 
 VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT type,
                                  const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages) {
     auto& received = *static_cast<Messages*>(messages);
-    // Loader and driver report as 'general'; the layers check our use of Vulkan as 'validation' and 'performance'.
+    // Loader and driver report as 'general'; the layers check our use of Vulkan as 'validation' and
+    // 'performance'.
     auto& list = type == VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT ? received.driver : received.validation;
     list.emplace_back(data->pMessage);
     return VK_FALSE;
@@ -267,7 +291,8 @@ VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebug
 // The driver checks that a pipeline cache is its own; the name only keeps several devices apart.
 static std::string pipeline_cache_name(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties();
-    const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()), VK_UUID_SIZE);
+    const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()),
+                                VK_UUID_SIZE);
     return "pipelines-" + std::to_string(hash_text(uuid));
 }
 
@@ -293,7 +318,8 @@ std::vector<DeviceDescription> list_devices() {
         const vk::raii::Instance instance = create_instance(context, false);
         for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device));
     } catch (const vk::SystemError&) {
-        throw DeviceError("no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
+        throw DeviceError(
+            "no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
     }
     return descriptions;
 }

@@ -21,7 +21,7 @@ inline constexpr Backend all_backends[] = {Backend::pipeline, Backend::query, Ba
 std::string to_string(Backend backend);
 
 struct DeviceOptions {
-    std::string choice;       // index or part of the name (any case) as in --list-devices; empty: the fastest kind
+    std::string choice;  // index or part of the name (any case) as in --list-devices; empty: the fastest kind
     bool validation = false;  // switches the validation layer on; an error if it is not installed
 };
 
@@ -56,7 +56,8 @@ class Device {
     // Records commands, submits them, waits, and returns the seconds they took on the device.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
-    // Errors and warnings of the validation layers so far, and the driver's own messages. Empty without validation.
+    // Errors and warnings of the validation layers so far, and the driver's own messages. Empty without
+    // validation.
     const std::vector<std::string>& validation_messages() const { return messages_.validation; }
     const std::vector<std::string>& driver_messages() const { return messages_.driver; }
 
@@ -79,6 +80,7 @@ class Device {
     DeviceDescription description_;
     vk::PhysicalDeviceLimits limits_;
     uint32_t queue_family_ = 0;
+    uint64_t timestamp_mask_ = 0;  // the counter's valid bits
     vk::raii::Device device_ = nullptr;
     vk::raii::Queue queue_ = nullptr;
     vk::raii::CommandPool command_pool_ = nullptr;

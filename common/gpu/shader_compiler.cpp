@@ -18,8 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Puts the text of included files in place of their #include "…" lines, each file once. #line directives keep the
-// names and lines of messages right. One text then serves as input of the compiler and as key of the cache.
+// Puts the text of included files in place of their #include "…" lines, each file once. #line directives keep
+// the names and lines of messages right. One text then serves as input of the compiler and as key of the
+// cache.
 class Includer {
   public:
     explicit Includer(const ShaderSource& source) : named_(source.named_includes) {}
@@ -47,8 +48,8 @@ class Includer {
         if (const auto named = named_.find(name); named != named_.end()) return named->second;
         if (const auto beside = includer.parent_path() / name; fs::exists(beside)) return beside;
         if (const auto shared = project_folder() / "shaders" / name; fs::exists(shared)) return shared;
-        throw UserError(includer.string() + ":" + std::to_string(line) + ": cannot find the include file \"" + name +
-                        "\"");
+        throw UserError(includer.string() + ":" + std::to_string(line) + ": cannot find the include file \"" +
+                        name + "\"");
     }
 
     const std::map<std::string, fs::path>& named_;
@@ -58,10 +59,14 @@ class Includer {
 
 EShLanguage language(ShaderStage stage) {
     switch (stage) {
-        case ShaderStage::compute: return EShLangCompute;
-        case ShaderStage::ray_generation: return EShLangRayGen;
-        case ShaderStage::miss: return EShLangMiss;
-        case ShaderStage::closest_hit: return EShLangClosestHit;
+        case ShaderStage::compute:
+            return EShLangCompute;
+        case ShaderStage::ray_generation:
+            return EShLangRayGen;
+        case ShaderStage::miss:
+            return EShLangMiss;
+        case ShaderStage::closest_hit:
+            return EShLangClosestHit;
     }
     return EShLangCompute;
 }
@@ -77,7 +82,8 @@ std::string readable(const std::string& log) {
     return text.empty() ? log : text;
 }
 
-std::vector<uint32_t> compile(const ShaderSource& source, const std::string& text, const std::string& preamble) {
+std::vector<uint32_t> compile(const ShaderSource& source, const std::string& text,
+                              const std::string& preamble) {
     static const bool initialised = glslang::InitializeProcess();
     if (!initialised) throw UserError("glslang could not be initialised");
     const EShLanguage stage = language(source.stage);
@@ -92,7 +98,8 @@ std::vector<uint32_t> compile(const ShaderSource& source, const std::string& tex
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-    if (!shader.parse(GetDefaultResources(), 460, false, messages)) throw UserError(readable(shader.getInfoLog()));
+    if (!shader.parse(GetDefaultResources(), 460, false, messages))
+        throw UserError(readable(shader.getInfoLog()));
     glslang::TProgram program;
     program.addShader(&shader);
     if (!program.link(messages)) throw UserError(name + ": " + readable(program.getInfoLog()));
@@ -107,11 +114,13 @@ fs::path project_folder() {
     static const fs::path found = [] {
         std::error_code ignored;
         const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-        for (fs::path folder = program.parent_path(); folder != folder.root_path(); folder = folder.parent_path())
+        for (fs::path folder = program.parent_path(); folder != folder.root_path();
+             folder = folder.parent_path())
             if (fs::exists(folder / "shaders" / "interface.h")) return folder;
         return fs::path();
     }();
-    if (found.empty()) throw UserError("cannot find the folder shaders/ above the program: keep build/ in the project");
+    if (found.empty())
+        throw UserError("cannot find the folder shaders/ above the program: keep build/ in the project");
     return found;
 }
 

@@ -14,8 +14,8 @@ struct ShaderSource {
     std::filesystem::path file;
     ShaderStage stage = ShaderStage::compute;
     std::vector<std::string> defines;  // "NAME" or "NAME value"
-    // What #include "name" stands for. Other names are looked up beside the includer and in shaders/. A file's text is
-    // included once, even where an #if skips it.
+    // What #include "name" stands for. Other names are looked up beside the includer and in shaders/. A
+    // file's text is included once, even where an #if skips it.
     std::map<std::string, std::filesystem::path> named_includes;
 };
 

@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Beside the target, because renaming is atomic only within a file system; the process id keeps two renders
-// apart.
+// Beside the target, because renaming is atomic only within a file system. The process id keeps two programs
+// that write the same file apart.
 fs::path temporary_name(const fs::path& file) {
     fs::path name = ".";
     name += file.filename();
@@ -28,8 +28,7 @@ fs::path temporary_name(const fs::path& file) {
     return file.parent_path() / name;
 }
 
-// Whether all bytes reached the file: a full disk may show only when buffers are flushed and the file is
-// closed.
+// Whether all bytes reached the file: a full disk may show only when it is flushed and closed.
 bool write_bytes(const fs::path& file, std::string_view bytes) {
     std::FILE* stream = std::fopen(file.c_str(), "wb");
     if (!stream) return false;

@@ -1,5 +1,4 @@
-// Images in memory, and the files they come from and go to. Every reader refuses damaged files with a
-// UserError.
+// Images in memory, and the files they come from and go to. Readers refuse damaged files: UserError.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -36,8 +35,7 @@ struct ExrFile {
 // Largest width and height of any image read or written.
 inline constexpr uint32_t max_image_extent = 16384;
 
-// Reads single-part scan line files, uncompressed or with RLE, ZIP or PIZ compression; 16-bit floats are
-// widened.
+// Reads single-part scan line files, uncompressed or RLE, ZIP or PIZ; 16-bit floats are widened.
 ExrFile read_exr(const std::filesystem::path& file);
 
 // Radiance from .hdr or .exr. Negative, infinite and NaN pixels are an error.

@@ -31,7 +31,8 @@ Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
     // Looking along `up` leaves the camera's roll open: then -Z (or +Y) is up in the image.
     dvec3 up(pose.up);
     const double up_length = glm::length(up);
-    if (!std::isfinite(up_length)) throw UserError("camera: up must be finite");
+    if (!(up_length > 0) || !std::isfinite(up_length))
+        throw UserError("camera: up must be finite and not zero");
     if (glm::length(glm::cross(forward, up)) <= 1e-6 * up_length)
         up = std::abs(forward.y) > 0.5 ? dvec3(0, 0, -1) : dvec3(0, 1, 0);
     const dvec3 right = glm::normalize(glm::cross(forward, up));

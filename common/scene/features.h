@@ -1,5 +1,4 @@
-// What a scene needs. Each feature becomes a #define; what is absent costs no instruction, no buffer and no
-// binding.
+// What a scene needs. Each feature becomes a #define; what is absent costs no instruction, buffer or binding.
 #pragma once
 #include <string>
 #include <vector>

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "image/file.h"
+#include "scene/text_lines.h"
 
 namespace lab {
 
@@ -35,7 +36,7 @@ json parse_json(const std::string& file, const std::string& text) {
         // The part of the library's message that says what is wrong follows the position.
         std::string reason = error.what();
         if (const size_t start = reason.find(": "); start != std::string::npos) reason.erase(0, start + 2);
-        throw UserError(file + ":" + std::to_string(line) + ": not valid JSON: " + reason.substr(0, 200));
+        fail_at_line(file, static_cast<size_t>(line), "not valid JSON: " + reason.substr(0, 200));
     } catch (const json::exception& error) {
         throw UserError(file + ": not valid JSON: " + std::string(error.what()).substr(0, 200));
     }

@@ -35,8 +35,7 @@ struct Stated {
     bool transmittance = false;
 };
 
-// Checks all numbers, which tinyobjloader reads as 0 where they are missing or nonsense. One element a
-// material.
+// Checks all numbers: tinyobjloader reads 0 where they are missing or nonsense. An element a material.
 std::vector<Stated> check_lines(const std::string& file, std::string_view text,
                                 std::vector<std::string>& warnings) {
     std::vector<Stated> materials;
@@ -44,9 +43,7 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
     for (size_t line_number = 1; !text.empty(); ++line_number) {
         const std::vector<std::string_view> words = words_of(take_line(text));
         if (words.empty()) continue;
-        const auto fail = [&](const std::string& reason) {
-            throw UserError(file + ":" + std::to_string(line_number) + ": " + reason);
-        };
+        const auto fail = [&](const std::string& reason) { fail_at_line(file, line_number, reason); };
         const std::string keyword(words[0]);
         if (keyword == "newmtl") {
             if (words.size() < 2) fail("newmtl needs a name");

@@ -17,8 +17,7 @@ namespace {
 
 constexpr uint64_t max_obj_bytes = uint64_t{1} << 30;
 constexpr int max_polygon_corners = 256;
-constexpr size_t max_triangles = size_t{1}
-                                 << 28;  // what the leaves of the bounding volume hierarchy can refer to
+constexpr size_t max_triangles = 1u << 28;  // what a leaf of the bounding volume hierarchy can refer to
 
 // Lets tinyobjloader read text in memory, and knows the line that it read last.
 class TextBuffer : public std::streambuf {
@@ -85,8 +84,8 @@ class ObjReader : public tinyobj::MaterialReader {
         return std::move(obj_);
     }
 
-    // Called for each word after mtllib until one is found. Exporters do not escape spaces: first try them
-    // all as one.
+    // Called for each word after mtllib until one is a file. Exporters do not escape spaces, so that first
+    // all words together are tried.
     bool operator()(const std::string& word, std::vector<tinyobj::material_t>*, std::map<std::string, int>*,
                     std::string*, std::string*) override {
         std::string all(buffer_.last_line());
@@ -107,7 +106,7 @@ class ObjReader : public tinyobj::MaterialReader {
 
   private:
     [[noreturn]] void fail(const std::string& reason) const {
-        throw UserError(obj_.file + ":" + std::to_string(buffer_.last_line_number()) + ": " + reason);
+        fail_at_line(obj_.file, buffer_.last_line_number(), reason);
     }
 
     // tinyobjloader reads 0 where there is no finite number.
@@ -132,8 +131,7 @@ class ObjReader : public tinyobj::MaterialReader {
         }
     }
 
-    // Indices in a file count from 1, negative ones from the end; 0 is what tinyobjloader reports for an
-    // absent one.
+    // Indices count from 1, negative ones from the end; tinyobjloader reports 0 for absent ones.
     uint32_t resolve(int index, size_t count, const char* what) const {
         const int64_t resolved = index > 0 ? int64_t{index} - 1 : static_cast<int64_t>(count) + index;
         if (index == 0 || resolved < 0 || resolved >= static_cast<int64_t>(count))

@@ -12,15 +12,14 @@
 namespace lab {
 namespace {
 
-Instance make_instance(const std::string& file, const MeshPlacement& placement) {
+Instance make_instance(const MeshPlacement& placement) {
     Instance instance;
     instance.object_to_world = mat4x3(placement.object_to_world);
     instance.normal_to_world = mat3(glm::inverse(glm::transpose(glm::dmat3(placement.object_to_world))));
     for (int column = 0; column < 3; ++column)
         if (glm::any(glm::isinf(instance.normal_to_world[column])) ||
             glm::any(glm::isnan(instance.normal_to_world[column])))
-            throw UserError(file + ": the scale of " + placement.file.string() +
-                            " is too small or too large");
+            throw UserError("the scale of " + placement.file.string() + " is too small or too large");
     return instance;
 }
 
@@ -36,7 +35,7 @@ void load_meshes(const SceneDescription& description, bool specular, SourceFiles
     }
     assemble_meshes(files, specular, sources, scene);
     for (const MeshPlacement& placement : description.meshes)
-        scene.instances.push_back(make_instance(scene.file.string(), placement));
+        scene.instances.push_back(make_instance(placement));
 }
 
 }  // namespace
@@ -89,12 +88,20 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     scene.file = file;
     scene.description = description.description;
     scene.defaults = description.defaults;
-    load_meshes(description, specular || description.specular, sources, scene);
+    // A mistake in a file that the scene names may be a mistake of the scene.
+    const auto load = [&](const auto& load_part) {
+        try {
+            load_part();
+        } catch (const UserError& error) {
+            throw is_bare_mesh ? error : UserError(name + ": " + error.what());
+        }
+    };
+    load([&] { load_meshes(description, specular || description.specular, sources, scene); });
 
     scene.background = description.background.value_or(vec3(0));
     scene.probe_rotation = description.probe_rotation;
     if (!description.light_probe.empty()) {
-        scene.light_probe = read_radiance(description.light_probe);
+        load([&] { scene.light_probe = read_radiance(description.light_probe); });
         sources.read(description.light_probe, max_image_file_bytes);  // for the hash
     }
     if (is_bare_mesh && !features_of(scene).area_lights) {

@@ -29,6 +29,9 @@ struct MaterialClassRange {
 std::vector<MaterialClassRange> material_class_ranges(
     const Mesh& mesh);  // diffuse before dielectric; none is empty
 
+// Longest path that a scene or a flag may ask for: a sample must end in bounded time.
+inline constexpr uint32_t path_length_limit = 1000000;
+
 // What a scene asks for where neither a flag nor a key says otherwise.
 struct RenderDefaults {
     uint32_t width = 512;
@@ -76,8 +79,7 @@ struct Bounds {
     void grow(const vec3& point) { low = glm::min(low, point), high = glm::max(high, point); }
     void grow(const Bounds& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
 };
-// Contains all instances in world space; tight unless a mesh is rotated. Empty (low > high) without
-// instances.
+// Contains all instances in world space; tight unless a mesh is rotated. Without instances low > high.
 Bounds world_bounds(const Scene& scene);
 
 // Reads a .json scene or a bare .obj. `specular` switches the Phong lobe on, as the scene's key of that name
@@ -88,8 +90,8 @@ Scene load_scene(const std::filesystem::path& file, bool specular = false);
 // Shows everything inside the bounds, from the side of +Z and slightly above, in images that are not upright.
 CameraPose framing_pose(const Bounds& bounds);
 
-// Camera for a pose and image size in pixels. An `up` that is zero or along the line of sight is replaced.
-// Throws UserError for a pose without a direction or with a field of view outside (0,180) degrees.
+// Camera for a pose and image size in pixels. An `up` along the line of sight is replaced.
+// Throws UserError for a pose without a direction or `up`, or with a field of view outside (0,180) degrees.
 Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height);
 
 }  // namespace lab

@@ -16,8 +16,7 @@ struct MeshPlacement {
     glm::dmat4x3 object_to_world{1};  // translation * rotation * scale
 };
 
-// What a scene file states. The files that it names are not read yet; relative ones are relative to its
-// folder.
+// What a scene file states. The files that it names are not read yet; their paths start in its folder.
 struct SceneDescription {
     std::string description;
     std::vector<MeshPlacement> meshes;

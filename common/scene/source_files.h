@@ -9,8 +9,7 @@
 
 namespace lab {
 
-// Reads files and hashes their contents in reading order (FNV-1a, 64 bits), to recognise a scene that was
-// changed.
+// Reads files and hashes their contents in reading order (FNV-1a, 64 bits), to recognise changed scenes.
 class SourceFiles {
   public:
     // As read_file().

@@ -5,7 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "error.h"
+
 namespace lab {
+
+void fail_at_line(const std::string& file, size_t line, const std::string& reason) {
+    throw UserError(file + ":" + std::to_string(line) + ": " + reason);
+}
 
 std::string_view take_line(std::string_view& text) {
     const size_t length = std::min(text.find_first_of("\r\n"), text.size());
@@ -18,6 +24,7 @@ std::string_view take_line(std::string_view& text) {
 std::vector<std::string_view> words_of(std::string_view line) {
     line = line.substr(0, line.find('#'));
     std::vector<std::string_view> words;
+    words.reserve(8);
     for (;;) {
         line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
         if (line.empty()) return words;

@@ -1,10 +1,14 @@
 // Text files line by line, for the checks that tinyobjloader leaves out: it reads what is not a number as 0.
 #pragma once
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace lab {
+
+// Throws the UserError "<file>:<line>: <reason>"; lines count from 1.
+[[noreturn]] void fail_at_line(const std::string& file, size_t line, const std::string& reason);
 
 // Takes the first line off the text; ends of line are \n, \r\n or \r.
 std::string_view take_line(std::string_view& text);

@@ -9,7 +9,8 @@ void GpuScene::add_buffer(const Device& device, uint32_t binding, const std::vec
     bindings_.push_back(storage_binding(binding, buffers_.back()));
 }
 
-GpuScene::GpuScene(const Device& device, const Scene& scene) : scene_(&scene), defines_(features_of(scene).defines()) {
+GpuScene::GpuScene(const Device& device, const Scene& scene)
+    : scene_(&scene), defines_(features_of(scene).defines()) {
     const SceneFeatures features = features_of(scene);
     buffers_.reserve(8);  // the bindings refer to the buffers
     // The driver builds its acceleration structure from these two.
@@ -30,7 +31,8 @@ GpuScene::GpuScene(const Device& device, const Scene& scene) : scene_(&scene), d
 void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
     const auto bind = [&](uint32_t binding, size_t first_image) {
         bindings_.push_back({.index = binding, .type = vk::DescriptorType::eCombinedImageSampler});
-        for (size_t i = first_image; i < images_.size(); ++i) bindings_.back().images.push_back(images_[i].info());
+        for (size_t i = first_image; i < images_.size(); ++i)
+            bindings_.back().images.push_back(images_[i].info());
     };
     if (features.textures) {
         for (const auto& texture : scene_->textures)
@@ -40,7 +42,8 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
         defines_.push_back("TEXTURE_COUNT " + std::to_string(scene_->textures.size()));
     }
     if (features.light_probe) {
-        // Four channels: few devices have images of three floats. 32 bits, since a sun is brighter than 16 bits hold.
+        // Four channels: few devices have images of three floats. 32 bits, since a sun is brighter than 16
+        // bits hold.
         const Image& probe = *scene_->light_probe;
         std::vector<float> rgba;
         rgba.reserve(probe.pixels.size() / 3 * 4);

@@ -20,8 +20,9 @@ uint32_t hit_record_offset(const Scene& scene, const Mesh& mesh) {
                                  classes.begin());
 }
 
-// The scene's instance for the driver. With one geometry per material class in a mesh and one hit record per class, the
-// driver finds the record of a hit as instance offset + geometry index · stride, with stride 1 (the blog's equation).
+// The scene's instance for the driver. With one geometry per material class in a mesh and one hit record per
+// class, the driver finds the record of a hit as instance offset + geometry index · stride, with stride 1
+// (the blog's equation).
 vk::AccelerationStructureInstanceKHR describe_instance(const Scene& scene, uint32_t index,
                                                        vk::DeviceAddress mesh_address) {
     const Mesh& mesh = scene.meshes[scene.instance_meshes[index]];
@@ -29,7 +30,8 @@ vk::AccelerationStructureInstanceKHR describe_instance(const Scene& scene, uint3
     const mat4x3& matrix = scene.instances[index].object_to_world;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column)
-            instance.transform.matrix[static_cast<size_t>(row)][static_cast<size_t>(column)] = matrix[column][row];
+            instance.transform.matrix[static_cast<size_t>(row)][static_cast<size_t>(column)] =
+                matrix[column][row];
     instance.instanceCustomIndex = index & 0xffffffu;
     instance.mask = 0xffu;
     instance.instanceShaderBindingTableRecordOffset = hit_record_offset(scene, mesh) & 0xffffffu;
@@ -73,18 +75,19 @@ std::vector<Binding> HardwareBvh::bindings() const {
 }
 
 HardwareBvh::Level HardwareBvh::make_level(LevelType type, vk::DeviceSize size) const {
-    Level level{
-        .buffer = Buffer(*device_, size, vk::BufferUsageFlagBits::eAccelerationStructureStorageKHR | addressable)};
+    Level level{.buffer = Buffer(*device_, size,
+                                 vk::BufferUsageFlagBits::eAccelerationStructureStorageKHR | addressable)};
     level.handle = {device_->handle(),
                     vk::AccelerationStructureCreateInfoKHR({}, level.buffer.handle(), 0, size, type)};
     level.address = device_->handle().getAccelerationStructureAddressKHR({*level.handle});
     return level;
 }
 
-HardwareBvh::Level HardwareBvh::build_level(LevelType type,
-                                            const std::vector<vk::AccelerationStructureGeometryKHR>& geometries,
-                                            const std::vector<vk::AccelerationStructureBuildRangeInfoKHR>& ranges) {
-    auto flags = vk::BuildAccelerationStructureFlagsKHR(vk::BuildAccelerationStructureFlagBitsKHR::ePreferFastTrace);
+HardwareBvh::Level HardwareBvh::build_level(
+    LevelType type, const std::vector<vk::AccelerationStructureGeometryKHR>& geometries,
+    const std::vector<vk::AccelerationStructureBuildRangeInfoKHR>& ranges) {
+    auto flags =
+        vk::BuildAccelerationStructureFlagsKHR(vk::BuildAccelerationStructureFlagBitsKHR::ePreferFastTrace);
     if (type == LevelType::eBottomLevel) flags |= vk::BuildAccelerationStructureFlagBitsKHR::eAllowCompaction;
     vk::AccelerationStructureBuildGeometryInfoKHR info(type, flags);
     info.setGeometries(geometries);
@@ -96,7 +99,8 @@ HardwareBvh::Level HardwareBvh::build_level(LevelType type,
 
     const vk::DeviceSize alignment =
         device_->physical()
-            .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
+            .getProperties2<vk::PhysicalDeviceProperties2,
+                            vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
             .get<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
             .minAccelerationStructureScratchOffsetAlignment;
     const Buffer scratch(*device_, sizes.buildScratchSize + alignment,
@@ -140,7 +144,8 @@ HardwareBvh::Level HardwareBvh::build_mesh(const GpuScene& scene, const Mesh& me
     std::vector<vk::AccelerationStructureBuildRangeInfoKHR> ranges;
     for (const auto& range : material_class_ranges(mesh)) {
         geometries.emplace_back(GeometryType::eTriangles, triangles, vk::GeometryFlagBitsKHR::eOpaque);
-        ranges.emplace_back(range.triangle_count, static_cast<uint32_t>(range.first_triangle * sizeof(uvec3)));
+        ranges.emplace_back(range.triangle_count,
+                            static_cast<uint32_t>(range.first_triangle * sizeof(uvec3)));
     }
     return compact(build_level(LevelType::eBottomLevel, geometries, ranges));
 }

@@ -1,5 +1,5 @@
-// The driver's acceleration structure: a bottom level (BLAS) of triangles for every mesh file and a top level (TLAS) of
-// instances. The backends `pipeline` and `query` trace rays through it.
+// The driver's acceleration structure: a bottom level (BLAS) of triangles for every mesh file and a top level
+// (TLAS) of instances. The backends `pipeline` and `query` trace rays through it.
 #pragma once
 #include "tracing/gpu_scene.h"
 
@@ -10,14 +10,15 @@ std::vector<uint32_t> material_classes(const Scene& scene);
 
 class HardwareBvh {
   public:
-    // Builds and compacts. The device must have acceleration structures. Throws DeviceFailure if memory runs out.
+    // Builds and compacts. The device must have acceleration structures. Throws DeviceFailure if memory runs
+    // out.
     HardwareBvh(const Device& device, const GpuScene& scene);
 
     // The top level, and for every instance the first triangle of each of its mesh's geometries.
     std::vector<Binding> bindings() const;
 
-    size_t bytes() const { return bytes_; }                    // of device memory, after compaction
-    double build_seconds() const { return build_seconds_; }    // on the device
+    size_t bytes() const { return bytes_; }                  // of device memory, after compaction
+    double build_seconds() const { return build_seconds_; }  // on the device
 
   private:
     // An acceleration structure and the buffer that it lives in.
@@ -38,7 +39,7 @@ class HardwareBvh {
     size_t bytes_ = 0;
     double build_seconds_ = 0;
     std::vector<Level> meshes_;
-    std::vector<Level> top_;  // exactly one
+    std::vector<Level> top_;               // exactly one
     std::vector<Buffer> first_triangles_;  // exactly one
 };
 

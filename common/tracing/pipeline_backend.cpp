@@ -14,7 +14,8 @@ vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) {
     return (size + alignment - 1) / alignment * alignment;
 }
 
-// The shaders in the order of their records: ray generation, two miss shaders, a hit group for each material class.
+// The shaders in the order of their records: ray generation, two miss shaders, a hit group for each material
+// class.
 constexpr uint32_t first_miss_group = 1;
 constexpr uint32_t first_hit_group = 3;
 
@@ -33,8 +34,10 @@ class PipelineTracer : public Tracer {
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
                 uint32_t block_count) const override {
         commands.bindPipeline(vk::PipelineBindPoint::eRayTracingKHR, *pipeline_);
-        commands.bindDescriptorSets(vk::PipelineBindPoint::eRayTracingKHR, *layout_, 0, descriptors_.handle(), {});
-        (*commands).pushConstants(*layout_, all_stages, 0, sizeof dispatch, &dispatch, *commands.getDispatcher());
+        commands.bindDescriptorSets(vk::PipelineBindPoint::eRayTracingKHR, *layout_, 0, descriptors_.handle(),
+                                    {});
+        (*commands).pushConstants(*layout_, all_stages, 0, sizeof dispatch, &dispatch,
+                                  *commands.getDispatcher());
         commands.traceRaysKHR(ray_generation_records_, miss_records_, hit_records_, {},
                               block_count * BLOCK_WIDTH * BLOCK_HEIGHT, 1, 1);
     }
@@ -68,18 +71,20 @@ class PipelineTracer : public Tracer {
         }
         // Rays are traced from the ray generation shader alone: the loop over a path needs no recursion.
         constexpr uint32_t max_recursion_depth = 1;
-        const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {}, *layout_);
+        const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {},
+                                                       *layout_);
         pipeline_ = {device.handle(), nullptr, device.pipeline_cache(), info};
         return static_cast<uint32_t>(groups.size());
     }
 
-    // The table of shader handles that the driver reads. A record is a handle padded to the device's alignment, and
-    // every section starts at a multiple of a second, larger one: mixing the two up reads handles of other shaders.
+    // The table of shader handles that the driver reads. A record is a handle padded to the device's
+    // alignment, and every section starts at a multiple of a second, larger one: mixing the two up reads
+    // handles of other shaders.
     void fill_shader_binding_table(const Device& device, uint32_t group_count) {
-        const auto properties =
-            device.physical()
-                .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>()
-                .get<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
+        const auto properties = device.physical()
+                                    .getProperties2<vk::PhysicalDeviceProperties2,
+                                                    vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>()
+                                    .get<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
         const vk::DeviceSize handle_size = properties.shaderGroupHandleSize;
         const vk::DeviceSize base_alignment = properties.shaderGroupBaseAlignment;
         const vk::DeviceSize stride = align(handle_size, properties.shaderGroupHandleAlignment);
@@ -100,15 +105,16 @@ class PipelineTracer : public Tracer {
         std::vector<uint8_t> table(size);
         for (uint32_t group = 0; group < group_count; ++group) {
             vk::DeviceSize offset = ray_generation_records_.deviceAddress;
-            if (group >= first_hit_group) offset = hit_records_.deviceAddress + (group - first_hit_group) * stride;
+            if (group >= first_hit_group)
+                offset = hit_records_.deviceAddress + (group - first_hit_group) * stride;
             else if (group >= first_miss_group)
                 offset = miss_records_.deviceAddress + (group - first_miss_group) * stride;
             std::memcpy(&table[offset], &handles[group * handle_size], handle_size);
         }
         // Buffers start at an address of their own, so the table is moved to the next aligned one.
-        table_.emplace_back(device, size + base_alignment,
-                            vk::BufferUsageFlagBits::eShaderBindingTableKHR |
-                                vk::BufferUsageFlagBits::eShaderDeviceAddress);
+        table_.emplace_back(
+            device, size + base_alignment,
+            vk::BufferUsageFlagBits::eShaderBindingTableKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress);
         const vk::DeviceAddress start = align(table_.front().address(), base_alignment);
         table.insert(table.begin(), start - table_.front().address(), 0);
         table_.front().write(table.data(), table.size());

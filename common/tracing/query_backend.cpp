@@ -7,7 +7,8 @@ namespace {
 
 class QueryBackend : public AccelerationStructure {
   public:
-    QueryBackend(const Device& device, const GpuScene& scene) : device_(&device), scene_(&scene), bvh_(device, scene) {}
+    QueryBackend(const Device& device, const GpuScene& scene)
+        : device_(&device), scene_(&scene), bvh_(device, scene) {}
 
     std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                         std::span<const Binding> bindings) const override {

@@ -56,9 +56,12 @@ std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend back
                                                                     const GpuScene& scene) {
     require_support(backend, device.description());
     switch (backend) {
-        case Backend::pipeline: return build_pipeline_backend(device, scene);
-        case Backend::query: return build_query_backend(device, scene);
-        case Backend::compute: return build_compute_backend(device, scene);
+        case Backend::pipeline:
+            return build_pipeline_backend(device, scene);
+        case Backend::query:
+            return build_query_backend(device, scene);
+        case Backend::compute:
+            return build_compute_backend(device, scene);
     }
     return nullptr;
 }

@@ -1,4 +1,5 @@
-// Runs an estimator on a scene. The backends differ in their acceleration structure and in how rays are traced.
+// Runs an estimator on a scene. The backends differ in their acceleration structure and in how rays are
+// traced.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -29,11 +30,12 @@ class Tracer {
 class AccelerationStructure {
   public:
     virtual ~AccelerationStructure() = default;
-    // `bindings`: render parameters, film and ray counters. Throws UserError if the estimator does not compile.
+    // `bindings`: render parameters, film and ray counters. Throws UserError if the estimator does not
+    // compile.
     virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                                 std::span<const Binding> bindings) const = 0;
-    virtual size_t bytes() const = 0;           // of device memory
-    virtual double build_seconds() const = 0;   // by the CPU or the device, whichever built it
+    virtual size_t bytes() const = 0;          // of device memory
+    virtual double build_seconds() const = 0;  // by the CPU or the device, whichever built it
 };
 
 // Device and scene must outlive the result. Throws DeviceError if the device does not support the backend.

@@ -1,4 +1,4 @@
-// trace_ray() for any device: a bounding volume hierarchy (BVH) that common/tracing/bvh.cpp built, and no extensions.
+// trace_ray() for any device: a bounding volume hierarchy (BVH) that common/tracing/bvh.cpp has built.
 #extension GL_EXT_samplerless_texture_functions : require
 
 // A node is eight texels: low x, high x, low y, high y, low z, high z of its four children, and references to them.
@@ -6,24 +6,19 @@ layout(set = 0, binding = BINDING_BVH_NODES) uniform utextureBuffer bvh_nodes;
 // A triangle is three texels: x, y and z of its vertices. The fourth components are instance, triangle and nothing.
 layout(set = 0, binding = BINDING_BVH_TRIANGLES) uniform utextureBuffer bvh_triangles;
 
-// A reference is the index of an inner node, or (number of triangles << 28) | first triangle for a leaf.
-const uint FIRST_LEAF = 1u << 28u;
-const uint NONE = 0xffffffffu;
+// References are below END for inner nodes: their index, and above for leaves: (triangle count << 28) | first triangle.
+const uint END = 0x0fffffffu;
+const uint MISS = 0xffffffffu;
 
-#ifdef COUNT_TRAVERSAL_STEPS
-uint traversal_steps = 0u;  // nodes and triangles visited by this invocation
-#define COUNT_TRAVERSAL_STEP() ++traversal_steps
-#else
-#define COUNT_TRAVERSAL_STEP()
-#endif
+uint traversal_steps = 0u;  // nodes and triangles that this invocation has visited
 
 vec4 fetch_node_row(int row) { return uintBitsToFloat(texelFetch(bvh_nodes, row)); }
 vec3 fetch_triangle_row(int row) { return uintBitsToFloat(texelFetch(bvh_triangles, row).xyz); }
 
 // The closest hit nearer than t_max, or with `any_hit` the first that turns up.
 bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
-    // Boxes: the ray meets the plane x = p at p * inverse.x + offset.x. The direction's sign tells which side of a box
-    // comes first. Zeros in the direction would give NaN on the sides of a box.
+    // Boxes: the ray meets the plane x = p at p * inverse.x + offset.x, and its sign tells which side of a box comes
+    // first. Zeros in the direction would give NaN on the sides of a box.
     vec3 direction = mix(ray.direction, vec3(1e-18), lessThan(abs(ray.direction), vec3(1e-18)));
     precise vec3 inverse = 1.0 / direction;
     ivec3 near = ivec3(0, 2, 4) + ivec3(lessThan(direction, vec3(0.0)));
@@ -42,20 +37,20 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
     vec3 shear = vec3(ray.direction[axes.x], ray.direction[axes.y], 1.0) / ray.direction[axes.z];
 
     uint stack[BVH_STACK_SIZE];
-    stack[0] = NONE;
+    stack[0] = END;
     int top = 0;
     uint reference = 0u;
     int hit_triangle = -1;
     hit.distance = t_max;
-    while (reference != NONE) {
-        if (reference < FIRST_LEAF) {
-            COUNT_TRAVERSAL_STEP();
+    while (reference != END) {
+        if (reference < END) {
+            ++traversal_steps;
             int node = 8 * int(reference);
             vec4 near_x = fetch_node_row(node + near.x), far_x = fetch_node_row(node + far.x);
             vec4 near_y = fetch_node_row(node + near.y), far_y = fetch_node_row(node + far.y);
             vec4 near_z = fetch_node_row(node + near.z), far_z = fetch_node_row(node + far.z);
             uvec4 children = texelFetch(bvh_nodes, node + 6);
-            // The bits of positive floats are ordered like the floats, negative ones are negative as integers, too.
+            // As integers, the bits of positive floats are ordered like the floats and negative ones stay negative.
             ivec4 enter_x = floatBitsToInt(near_x * inverse.x + near_offset.x);
             ivec4 enter_y = floatBitsToInt(near_y * inverse.y + near_offset.y);
             ivec4 enter_z = floatBitsToInt(near_z * inverse.z + near_offset.z);
@@ -64,24 +59,24 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
             ivec4 leave_z = floatBitsToInt(far_z * inverse.z + far_offset.z);
             ivec4 enter = max(enter_x, max(enter_y, max(enter_z, 0)));
             ivec4 leave = min(leave_x, min(leave_y, min(leave_z, floatBitsToInt(hit.distance))));
-            // The two lowest bits tell which child it is. Missed children sort last.
+            // Sort the children by distance, with those that are missed last. The two lowest bits tell which it is.
             uvec4 key = uvec4((enter & ~3) | ivec4(0, 1, 2, 3));
-            key = mix(uvec4(NONE), key, lessThanEqual(enter, leave));
+            key = mix(uvec4(MISS), key, lessThanEqual(enter, leave));
             key = uvec4(min(key.xz, key.yw), max(key.xz, key.yw)).xzyw;
             key = uvec4(min(key.xy, key.zw), max(key.xy, key.zw));
             key.yz = uvec2(min(key.y, key.z), max(key.y, key.z));
-            if (key.w != NONE) stack[++top] = children[key.w & 3u];
-            if (key.z != NONE) stack[++top] = children[key.z & 3u];
-            if (key.y != NONE) stack[++top] = children[key.y & 3u];
-            if (key.x != NONE)
-                reference = children[key.x & 3u];
-            else
-                reference = stack[top--];
-        } else {
-            int triangle = 3 * int(reference & (FIRST_LEAF - 1u));
+            // The nearest comes next, the others wait on the stack.
+            if (key.w != MISS) stack[++top] = children[key.w & 3u];
+            if (key.z != MISS) stack[++top] = children[key.z & 3u];
+            if (key.y != MISS) stack[++top] = children[key.y & 3u];
+            reference = key.x != MISS ? children[key.x & 3u] : stack[top--];
+        }
+        // No else: where the node led to a leaf, its triangles are tested in the same turn.
+        if (reference > END) {
+            int triangle = 3 * int(reference & END);
             int end = triangle + 3 * int(reference >> 28u);
-            for (; triangle < end; triangle += 3) {
-                COUNT_TRAVERSAL_STEP();
+            do {
+                ++traversal_steps;
                 vec3 x = fetch_triangle_row(triangle + axes.x);
                 vec3 y = fetch_triangle_row(triangle + axes.y);
                 vec3 z = fetch_triangle_row(triangle + axes.z) - origin.z;
@@ -92,17 +87,16 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
                 precise vec3 area = sheared_x.zxy * sheared_y.yzx - sheared_y.zxy * sheared_x.yzx;
                 float sum = area.x + area.y + area.z;
                 bool is_inside = all(greaterThanEqual(area, vec3(0.0))) || all(lessThanEqual(area, vec3(0.0)));
-                if (is_inside && sum != 0.0) {
-                    vec3 weights = area / sum;
-                    float distance = dot(weights, shear.z * z);
-                    if (distance > 0.0 && distance < hit.distance) {
-                        hit.distance = distance;
-                        hit.barycentrics = weights.yz;
-                        hit_triangle = triangle;
-                    }
+                vec3 weights = area / sum;
+                float distance = dot(weights, shear.z * z);
+                if (is_inside && sum != 0.0 && distance > 0.0 && distance < hit.distance) {
+                    hit.distance = distance;
+                    hit.barycentrics = weights.yz;
+                    hit_triangle = triangle;
                 }
-            }
-            reference = any_hit && hit_triangle >= 0 ? NONE : stack[top--];
+                triangle += 3;
+            } while (triangle < end);
+            reference = any_hit && hit_triangle >= 0 ? END : stack[top--];
         }
     }
     if (hit_triangle < 0) return false;

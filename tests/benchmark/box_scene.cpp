@@ -51,7 +51,10 @@ void add_bumpy_sphere(Scene& scene, uint32_t segments, uint32_t rings) {
 Scene make_box_scene(uint32_t segments, uint32_t rings) {
     Scene scene;
     scene.file = "benchmark";
-    scene.materials.resize(4, Material{.diffuse_albedo = vec3(0.75f), .albedo_texture = -1});
+    Material white_paint{};
+    white_paint.diffuse_albedo = vec3(0.75f);
+    white_paint.albedo_texture = -1;
+    scene.materials.resize(4, white_paint);
     scene.materials[red].diffuse_albedo = {0.7f, 0.1f, 0.1f};
     scene.materials[green].diffuse_albedo = {0.15f, 0.5f, 0.15f};
     scene.materials[light].emission = LIGHT_RADIANCE;

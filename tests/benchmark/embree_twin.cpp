@@ -154,7 +154,7 @@ struct EmbreeTwin::Implementation {
         const vec3 position = w.x * x_0 + w.y * x_1 + w.z * x_2;
         const vec3 magnitude = w.x * glm::abs(x_0) + w.y * glm::abs(x_1) + w.z * glm::abs(x_2);
         const vec3 normal = glm::normalize(glm::cross(x_1 - x_0, x_2 - x_0));
-        const float offset = 8 * 5.9604645e-8f * glm::dot(magnitude, glm::abs(normal));
+        const float offset = 8 * 5.9604645e-8f * (magnitude.x + magnitude.y + magnitude.z);
         const Material& material = scene.materials[scene.triangle_materials[hit.primID]];
         const bool is_front = glm::dot(normal, ray_direction) < 0;
         return {position, is_front ? normal : -normal, offset, is_front ? material.emission : vec3(0),

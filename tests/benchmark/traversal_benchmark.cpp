@@ -39,12 +39,12 @@ void print(const char* name, const Runs& runs, const glm::dvec3& mean) {
 void compare(const Device& device, const Options& options, uint32_t segments, uint32_t rings) {
     const Scene scene = make_box_scene(segments, rings);
     std::printf("%zu triangles\n", scene.triangles.size());
-    const RenderParameters parameters{.camera = make_camera(scene.camera, options.size, options.size),
-                                      .image_size = uvec2(options.size),
-                                      .seed_key = seed_key(1),
-                                      .first_sample = 0,
-                                      .max_path_length = 8,
-                                      .only_path_length = -1};
+    RenderParameters parameters{};
+    parameters.camera = make_camera(scene.camera, options.size, options.size);
+    parameters.image_size = uvec2(options.size);
+    parameters.seed_key = seed_key(1);
+    parameters.max_path_length = 8;
+    parameters.only_path_length = -1;
     const auto timed = [&](const auto& render) {
         const auto start = std::chrono::steady_clock::now();
         render();

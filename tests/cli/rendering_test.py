@@ -119,8 +119,9 @@ class Sky(RenderTest):
 class Views(RenderTest):
     def test_normals(self):
         picture = self.picture("view", "--samples=1", "--view=normals", scene="furnace")
-        for normal in zip(*(picture.channels[name] for name in "RGB")):
-            self.assertTrue(all(-1 <= number <= 1 for number in normal))
+        for colour in zip(*(picture.channels[name] for name in "RGB")):
+            normal = [2 * number - 1 for number in colour]
+            self.assertAlmostEqual(sum(number * number for number in normal), 1, places=5)
         self.assertGreater(len(set(picture.pixels())), 1)
 
     def test_depth(self):

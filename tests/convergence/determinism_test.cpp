@@ -26,7 +26,7 @@ class Determinism : public testing::TestWithParam<std::string> {
         settings.estimator = chapter_estimator(GetParam());
         return settings;
     }
-    const Scene scene_ = lit_box();
+    const Scene scene = lit_box();
 };
 INSTANTIATE_TEST_SUITE_P(Chapters, Determinism, testing::ValuesIn(all_chapters), chapter_name);
 
@@ -48,22 +48,22 @@ std::filesystem::path temporary_file(const std::string& name) {
 }
 
 TEST_P(Determinism, SameCommandGivesTheSameImage) {
-    EXPECT_TRUE(are_identical(render(scene_, settings()), render(scene_, settings())));
+    EXPECT_TRUE(are_identical(render(scene, settings()), render(scene, settings())));
 }
 
 TEST_P(Determinism, DispatchesOfAnyLengthGiveTheSameImage) {
     RenderSettings cut = settings(), whole = settings();
     cut.dispatch_seconds = 1e-9;  // every dispatch has one block and one sample a pixel
     whole.dispatch_seconds = 10;
-    EXPECT_TRUE(are_identical(render(scene_, cut), render(scene_, whole)));
+    EXPECT_TRUE(are_identical(render(scene, cut), render(scene, whole)));
 }
 
 TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
     RenderSettings other_seed = settings(), later_samples = settings();
     other_seed.seed = 2;
     later_samples.first_sample = later_samples.samples;
-    const FilmImage film = render(scene_, settings()), film_of_other_seed = render(scene_, other_seed),
-                    later_film = render(scene_, later_samples);
+    const FilmImage film = render(scene, settings()), film_of_other_seed = render(scene, other_seed),
+                    later_film = render(scene, later_samples);
     for (size_t i = 0; i < film.pixels.size(); ++i) {
         ASSERT_NE(film.pixels[i].sum, film_of_other_seed.pixels[i].sum);
         ASSERT_NE(film.pixels[i].sum, later_film.pixels[i].sum);
@@ -79,22 +79,22 @@ TEST_P(Determinism, PartsMergeToTheWhole) {
         files.push_back(temporary_file("part" + std::to_string(first) + ".exr"));
         FilmRecord record{};
         record.first_sample = first;
-        write_film(files.back(), render(scene_, part), record);
+        write_film(files.back(), render(scene, part), record);
     }
     const FilmFile merged = merge_films(files);
     EXPECT_EQ(merged.image.min_samples(), settings().samples);
     EXPECT_EQ(merged.record.first_sample, 0u);
-    expect_within_2_ulp(merged.image.mean(), render(scene_, settings()).mean());
+    expect_within_2_ulp(merged.image.mean(), render(scene, settings()).mean());
     for (const auto& file : files) std::filesystem::remove(file);
 }
 
 TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
-    const GpuScene gpu_scene(test_device(), scene_);
+    const GpuScene gpu_scene(test_device(), scene);
     const auto acceleration_structure =
         build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
     const auto make_renderer = [&] {
         return Renderer(test_device(), *acceleration_structure, settings().estimator,
-                        make_parameters(scene_, settings()));
+                        make_parameters(scene, settings()));
     };
     // Interrupted within a pass, when some pixels have one sample more than others.
     Renderer interrupted = make_renderer();
@@ -111,16 +111,16 @@ TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
     while (resumed.advance(settings().samples)) {
     }
     EXPECT_EQ(resumed.film().read().min_samples(), settings().samples);
-    expect_within_2_ulp(resumed.film().read().mean(), render(scene_, settings()).mean());
+    expect_within_2_ulp(resumed.film().read().mean(), render(scene, settings()).mean());
 }
 
 TEST_P(Determinism, PathLengthsAddUpToTheImage) {
-    const FilmImage whole = render(scene_, settings());
+    const FilmImage whole = render(scene, settings());
     std::vector<glm::dvec3> sums(whole.pixels.size());
     for (uint32_t length = 0; length <= settings().max_path_length; ++length) {
         RenderSettings part = settings();
         part.only_path_length = static_cast<int>(length);
-        const FilmImage film = render(scene_, part);
+        const FilmImage film = render(scene, part);
         for (size_t i = 0; i < sums.size(); ++i)
             sums[i] += glm::dvec3(film.pixels[i].sum) + glm::dvec3(film.pixels[i].compensation);
     }

@@ -89,7 +89,7 @@ TEST_P(Textures, AreDecodedFromSrgb) {
     std::vector<vec2> coordinates;
     for (int value = 0; value < 256; ++value) {
         for (int channel = 0; channel < 4; ++channel) texture.pixels.push_back(static_cast<uint8_t>(value));
-        coordinates.push_back({(static_cast<float>(value) + 0.5f) / 256, 0.5f});
+        coordinates.emplace_back((static_cast<float>(value) + 0.5f) / 256, 0.5f);
     }
     const auto albedos = albedo_at(texture, coordinates);
     for (size_t value = 0; value < albedos.size(); ++value)
@@ -99,13 +99,13 @@ TEST_P(Textures, AreDecodedFromSrgb) {
 
 TEST_P(Textures, AreFilteredLinearlyAcrossTheirBorders) {
     const Texture texture = colourful_texture();
-    // Between two columns, a quarter of the way between two rows, and between the last column and the first.
+    // Between two columns, a quarter of the way between two rows, and between the first and the last ones.
     const auto albedos =
-        albedo_at(texture, {{0.25f, 0.25f}, {0.125f, 0.375f}, {0, 0.25f}, {1, 0.25f}, {0.125f, 0}});
+        albedo_at(texture, {{0.25f, 0.25f}, {0.125f, 0.375f}, {0, 0.25f}, {0.9375f, 0.25f}, {0.125f, 0}});
     const std::array<dvec3, 5> expected{0.5 * (texel(texture, 0, 0) + texel(texture, 1, 0)),
                                         0.75 * texel(texture, 0, 0) + 0.25 * texel(texture, 0, 1),
                                         0.5 * (texel(texture, 3, 0) + texel(texture, 0, 0)),
-                                        0.5 * (texel(texture, 3, 0) + texel(texture, 0, 0)),
+                                        0.75 * texel(texture, 3, 0) + 0.25 * texel(texture, 0, 0),
                                         0.5 * (texel(texture, 0, 1) + texel(texture, 0, 0))};
     for (size_t i = 0; i < albedos.size(); ++i)
         EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error) << i;
@@ -137,7 +137,7 @@ class LightProbe : public OnEachBackend {
     // A probe whose texels have different colours, over an empty scene.
     static constexpr uint32_t width = 9, height = 5;
     static vec3 texel_radiance(uint32_t column, uint32_t row) {
-        return {static_cast<float>(column), static_cast<float>(row) * 100,
+        return {static_cast<float>(column * column), static_cast<float>(row) * 100,
                 static_cast<float>(column + row) + 0.5f};
     }
     static Scene probe_scene() {

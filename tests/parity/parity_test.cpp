@@ -1,5 +1,5 @@
-// The backends give the same picture: same random numbers, same paths. Each chapter renders each scene with `compute`
-// and with the backends of the driver, one sample a pixel, and the pixels are compared one by one.
+// The backends give the same picture: same random numbers, same paths. Each chapter renders each scene with
+// `compute` and with the backends of the driver, one sample a pixel, and the pixels are compared one by one.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -37,10 +37,10 @@ Rendering render(Backend backend, const Scene& scene, const fs::path& estimator,
     return {renderer.film().read().mean(), renderer.rays()};
 }
 
-// Paths are different where their radiance differs by more than 10^-3 relatively. Their number for each path segment is
-// at most `limit`, and the means differ by no more than the different paths explain.
-void expect_parity(const std::string& what, Backend backend, const Rendering& expected, const Rendering& actual,
-                   double limit) {
+// Paths are different where their radiance differs by more than 10^-3 relatively. Their number for each path
+// segment is at most `limit`, and the means differ by no more than the different paths explain.
+void expect_parity(const std::string& what, Backend backend, const Rendering& expected,
+                   const Rendering& actual, double limit) {
     size_t different = 0, pixels = expected.image.pixels.size() / 3;
     double difference_sum = 0, difference_square_sum = 0, sum = 0;
     for (size_t pixel = 0; pixel < pixels; ++pixel) {
@@ -56,15 +56,18 @@ void expect_parity(const std::string& what, Backend backend, const Rendering& ex
         difference_sum += total;
         difference_square_sum += total * total;
     }
-    const double fraction = static_cast<double>(different) / static_cast<double>(std::max<uint64_t>(expected.rays, 1));
-    std::printf("[  PARITY  ] %-28s %-8s %zu of %zu paths differ, %.1e a segment, mean differs by %.1e relatively\n",
-                what.c_str(), to_string(backend).c_str(), different, pixels, fraction,
-                sum > 0 ? difference_sum / sum : 0.0);
+    const double fraction =
+        static_cast<double>(different) / static_cast<double>(std::max<uint64_t>(expected.rays, 1));
+    std::printf(
+        "[  PARITY  ] %-28s %-8s %zu of %zu paths differ, %.1e a segment, mean differs by %.1e relatively\n",
+        what.c_str(), to_string(backend).c_str(), different, pixels, fraction,
+        sum > 0 ? difference_sum / sum : 0.0);
     EXPECT_LE(fraction, limit) << what;
     // Rays that are counted differently would be traced differently.
     EXPECT_NEAR(static_cast<double>(actual.rays), static_cast<double>(expected.rays),
                 10 * limit * static_cast<double>(expected.rays) + 1);
-    // A path that takes another way is as likely to gain as to lose: five standard deviations of the sum, and roundings.
+    // A path that takes another way is as likely to gain as to lose: five standard deviations of the sum, and
+    // roundings.
     EXPECT_LE(std::abs(difference_sum), 5 * std::sqrt(difference_square_sum) + 1e-6 * sum) << what;
 }
 
@@ -77,13 +80,13 @@ bool must_have_all_backends() {
 
 // Largest fraction of different paths for each path segment.
 double path_difference_limit(const Scene& scene) {
-    // Hit points on textures at uv ~ 20 are rounded to 1/1000 of a texel: at sharp edges that is more than 10^-3 in
-    // radiance, while the path stays the same.
+    // Hit points on textures at uv ~ 20 are rounded to 1/1000 of a texel: at sharp edges that is more than
+    // 10^-3 in radiance, while the path stays the same.
     if (!scene.textures.empty()) return 1e-2;
     size_t triangles = 0;
     for (const uint32_t mesh : scene.instance_meshes) triangles += scene.meshes[mesh].triangle_count;
-    // Triangles that are a thousandth of their distance from the origin leave many edges to be grazed, and `compute`
-    // knows their vertices in world space where the driver transforms the ray.
+    // Triangles that are a thousandth of their distance from the origin leave many edges to be grazed, and
+    // `compute` knows their vertices in world space where the driver transforms the ray.
     return triangles > 1000000 ? 5e-4 : 1e-4;
 }
 
@@ -96,7 +99,8 @@ class Parity : public testing::TestWithParam<Backend> {
     }
 
     void expect_same(const std::string& what, const Scene& scene, uint32_t size, double limit,
-                     const fs::path& estimator = project_folder() / "chapters/01_uniform_sampling/path_trace.glsl") {
+                     const fs::path& estimator = project_folder() /
+                                                 "chapters/01_uniform_sampling/path_trace.glsl") {
         expect_parity(what, GetParam(), render(Backend::compute, scene, estimator, size),
                       render(GetParam(), scene, estimator, size), limit);
     }
@@ -125,7 +129,9 @@ TEST_P(Parity, ManyInstances) {
         const int columns = static_cast<int>(std::ceil(std::sqrt(count)));
         for (int i = 0; i < count; ++i) {
             const float scale = 4.0f / static_cast<float>(columns);
-            place(scene, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale},
+            place(scene, {{scale, 0, 0},
+                          {0, scale, 0},
+                          {0, 0, scale},
                           {scale * static_cast<float>(i % columns - columns / 2),
                            scale * static_cast<float>(i / columns - columns / 2), 0}});
         }

@@ -15,7 +15,8 @@ struct TriangleMesh {
 // A closed sphere of about unit radius with 2 * rings * (rings - 1) triangles whose surface is not smooth.
 TriangleMesh bumpy_sphere(uint32_t rings);
 
-// A scene of that mesh under a white sky, seen from +Z, with no instance yet; of no mesh if it has no triangles.
+// A scene of that mesh under a white sky, seen from +Z, with no instance yet; of no mesh if it has no
+// triangles.
 Scene lit_scene(const TriangleMesh& mesh);
 
 // Adds an instance of the scene's mesh.

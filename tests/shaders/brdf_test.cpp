@@ -49,7 +49,7 @@ double pi_brdf(const BrdfInput& input, int channel) {
 
 // Direction about the z-axis.
 vec3 direction(double theta, double phi) {
-    return vec3(dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
+    return {dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta))};
 }
 
 TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {

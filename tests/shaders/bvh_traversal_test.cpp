@@ -131,7 +131,14 @@ std::vector<TestRay> random_rays(size_t count, float scale, const vec3& centre, 
             ray.direction = vec3(0);
             ray.direction[axis] = sign;
         }
-        if (i % 3 == 0) ray.t_max = scale * random.uniform(0, 1);
+        // From afar the origin's rounding errors are the larger ones.
+        if (i % 5 == 1) {
+            ray.direction = ray.origin - centre;
+            ray.origin = centre - 1e4f * ray.direction + 0.5f * scale * random.point();
+            ray.direction /= scale;
+        } else if (i % 3 == 0) {
+            ray.t_max = scale * random.uniform(0, 1);
+        }
         rays.push_back(ray);
     }
     return rays;
@@ -142,7 +149,7 @@ Mesh random_mesh(size_t count, float scale, const vec3& centre) {
     Random random(2);
     Mesh mesh;
     while (mesh.triangles.size() < count) {
-        const vec3 a = random.point(), u = 0.3f * random.point(), v = 0.3f * random.point();
+        const vec3 a = random.point(), u = 0.5f * random.point(), v = 0.5f * random.point();
         const auto add = [&](const vec3& b, const vec3& c) {
             mesh.add(centre + scale * a, centre + scale * b, centre + scale * c);
         };
@@ -157,12 +164,12 @@ Mesh random_mesh(size_t count, float scale, const vec3& centre) {
 }
 
 TEST(BvhTraversal, FindsTheHitsOfBruteForce) {
-    for (const float scale : {1e-12f, 1e-3f, 1.0f, 1e4f, 1e12f})
+    for (const float scale : {1e-12f, 1.0f, 1e12f})
         for (const float offset : {0.0f, 1.0f, 1000.0f}) {
             SCOPED_TRACE(testing::Message() << "scale " << scale << ", offset " << offset);
             const vec3 centre = scale * offset * vec3(1, -0.7f, 0.4f);
             const Bvh bvh = build_bvh(random_mesh(3000, scale, centre).triangles);
-            expect_same_hits(bvh, random_rays(5000, 2 * scale, centre, 3), 0.2);
+            expect_same_hits(bvh, random_rays(5000, scale, centre, 3), 0.2);
         }
 }
 
@@ -181,11 +188,15 @@ TEST(BvhTraversal, HitsBoxesAlongTheirFaces) {
     for (int axis = 0; axis < 3; ++axis)
         for (const float direction : {-1.0f, 1.0f})
             for (const float zero : {-0.0f, 0.0f})
-                for (int i = 0; i < 2000; ++i) {
+                for (int i = 0; i < 500; ++i) {
                     TestRay ray{glm::round(9.0f * random.point()), vec3(zero), no_limit};
                     ray.direction[axis] = direction;
                     // Half of the rays run along a face, the others along an edge of the grid.
                     if (i % 2) ray.origin[(axis + 1) % 3] += random.uniform(0, 1);
+                    rays.push_back(ray);
+                    // From afar to the same places: there the rounding errors of the origin are the largest.
+                    ray.direction = random.point();
+                    ray.origin -= 1e4f * ray.direction;
                     rays.push_back(ray);
                 }
     const Bvh bvh = build_bvh(mesh.triangles);
@@ -258,7 +269,7 @@ TEST(BvhTraversal, HitsWhatDoublePrecisionHits) {
         SCOPED_TRACE(testing::Message() << "offset " << offset);
         const vec3 centre = offset * vec3(1, -0.7f, 0.4f);
         const Mesh mesh = random_mesh(3000, 1, centre);
-        const auto rays = random_rays(3000, 2, centre, 5);
+        const auto rays = random_rays(3000, 1, centre, 5);
         const auto hits = trace(build_bvh(mesh.triangles), rays);
         size_t wrong = 0, certain_hits = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
@@ -283,7 +294,8 @@ TEST(BvhTraversal, HitsWhatDoublePrecisionHits) {
                                      glm::dot(weights, dvec3(triangle.y)),
                                      glm::dot(weights, dvec3(triangle.z)));
                 const dvec3 on_ray = dvec3(rays[i].origin) + t * dvec3(rays[i].direction);
-                is_right &= glm::distance(position, on_ray) <= 1e-5 * (1 + 2 * offset);
+                is_right &= glm::distance(position, on_ray) <=
+                            2 * (exact.farthest - exact.nearest) * glm::length(dvec3(rays[i].direction));
             }
             if (!is_right && wrong++ == 0)
                 ADD_FAILURE() << "first wrong ray " << i << ": hit " << hits[i].is_hit << " triangle "
@@ -377,7 +389,7 @@ TEST(BvhTraversal, LetsNoRayOutOfClosedMeshes) {
     expect_closed("bumpy sphere", surface_of_revolution(200, 100, vec3(0), bumpy(1)), vec3(0), 0.4f);
     expect_closed("tiny sphere", surface_of_revolution(200, 100, vec3(0), bumpy(1e-10f)), vec3(0), 4e-11f);
     expect_closed("far sphere", surface_of_revolution(200, 100, far, bumpy(1000)), far, 400);
-    expect_closed("slivers", surface_of_revolution(20'000, 3, vec3(0), bumpy(1)), vec3(0), 0.2f);
+    expect_closed("slivers", surface_of_revolution(1000, 3, vec3(0), bumpy(1)), vec3(0), 0.2f);
 }
 
 }  // namespace

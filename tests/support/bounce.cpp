@@ -21,7 +21,7 @@ std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surfa
     TestShader shader{.name = "bounce.comp"};
     shader.named_includes = {
         {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
-    if (surface.material.specular_albedo != vec3(0)) shader.defines.push_back("FEATURE_SPECULAR");
+    if (surface.material.specular_albedo != vec3(0)) shader.defines.emplace_back("FEATURE_SPECULAR");
     std::vector<Bounce> bounces(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs);
     return bounces;

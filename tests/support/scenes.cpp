@@ -33,8 +33,8 @@ Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>
         scene.positions.insert(scene.positions.end(),
                                {quad.corner, quad.corner + quad.edge_u,
                                 quad.corner + quad.edge_u + quad.edge_v, quad.corner + quad.edge_v});
-        scene.triangles.push_back({first, first + 1, first + 2});
-        scene.triangles.push_back({first, first + 2, first + 3});
+        scene.triangles.emplace_back(first, first + 1, first + 2);
+        scene.triangles.emplace_back(first, first + 2, first + 3);
         scene.triangle_materials.insert(scene.triangle_materials.end(), 2, quad.material);
     }
     finish(scene);
@@ -77,7 +77,7 @@ Scene make_sphere(const Material& material, Facing facing) {
         if (is_outwards != (facing == Facing::outwards)) std::swap(b, c);
         const auto first = static_cast<uint32_t>(scene.positions.size());
         for (const vec3& corner : {a, b, c}) scene.positions.push_back(glm::normalize(corner));
-        scene.triangles.push_back({first, first + 1, first + 2});
+        scene.triangles.emplace_back(first, first + 1, first + 2);
     };
     // Three corners at a distance of one edge, 2, from each other are a face.
     const auto are_neighbours = [&](size_t i, size_t j) {

@@ -174,7 +174,7 @@ TEST_F(SceneFile, WrongValuesNameTheirKey) {
         {R"([])", "the scene must be an object"},
         {R"(7)", "the scene must be an object"},
         {R"({"meshes": ["a.obj"]})", "an entry of \"meshes\" must be an object"},
-        {R"({"meshes": [{}]})", "\"file\" in an entry of \"meshes\" is missing"},
+        {R"({"meshes": [{}]})", R"("file" in an entry of "meshes" is missing)"},
         {R"({"meshes": [{"file": 3}]})", "\"file\""},
         {R"({"meshes": [{"file": ""}]})", "not a regular file"},
         {R"({"meshes": [{"file": "missing.obj"}]})", "missing.obj: no such file"},
@@ -322,7 +322,6 @@ TEST(Camera, UpNeedNotBePerpendicularButIsReplacedAlongTheLineOfSight) {
     expect_near(make_camera({{0, 0, 0}, {0, -1, -1}, {0, 1, 0}, 90}, 1, 1).up,
                 glm::normalize(vec3(0, 1, -1)));
     expect_near(make_camera({{0, 5, 0}, {0, 0, 0}, {0, 1, 0}, 90}, 1, 1).up, {0, 0, -1});
-    expect_near(make_camera({{0, 0, 5}, {0, 0, 0}, {0, 0, 0}, 90}, 1, 1).up, {0, 1, 0});
     expect_near(make_camera({{0, 0, 5}, {0, 0, 0}, {0, 0, 3}, 90}, 1, 1).up, {0, 1, 0});
 }
 
@@ -331,7 +330,7 @@ TEST(Camera, RefusesPosesWithoutADirection) {
     for (const CameraPose& pose :
          {CameraPose{{1, 1, 1}, {1, 1, 1}, {0, 1, 0}, 45}, CameraPose{{nan, 0, 0}, {1, 1, 1}, {0, 1, 0}, 45},
           CameraPose{{0, 0, 0}, {0, INFINITY, 0}, {0, 1, 0}, 45},
-          CameraPose{{0, 0, 0}, {1, 1, 1}, {0, nan, 0}, 45},
+          CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, 45}, CameraPose{{0, 0, 0}, {1, 1, 1}, {0, nan, 0}, 45},
           CameraPose{{0, 0, 0}, {1, 1, 1}, {0, INFINITY, 0}, 45},
           CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 1, 0}, 0}, CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 1, 0}, 180},
           CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 1, 0}, nan}})
