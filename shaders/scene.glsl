@@ -26,3 +26,10 @@ layout(scalar, set = 0, binding = BINDING_INSTANCES) readonly buffer Instances {
 #ifdef FEATURE_LIGHT_PROBE
 layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform sampler2D light_probe;
 #endif
+
+#ifdef FEATURE_DIELECTRICS
+uint get_material_class(uint triangle) {
+    bool is_dielectric = materials[triangle_materials[triangle]].refractive_index > 0.0;
+    return is_dielectric ? MATERIAL_CLASS_DIELECTRIC : MATERIAL_CLASS_DIFFUSE;
+}
+#endif

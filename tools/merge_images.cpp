@@ -24,7 +24,7 @@ int main(int argument_count, char** arguments) {
         std::cout << app.help();
         return 0;
     } catch (const CLI::ParseError& error) {
-        std::cerr << "error: " << error.what() << " (--help shows how it is used)\n";
+        std::cerr << "error: merge_images: " << error.what() << " (--help shows how it is used)\n";
         return 1;
     } catch (const std::exception& error) {
         std::cerr << "error: " << error.what() << "\n";

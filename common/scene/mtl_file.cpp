@@ -29,8 +29,10 @@ const std::map<std::string_view, Numbers> number_keywords = {
 };
 const std::set<std::string_view> other_keywords = {"newmtl", "map_Kd", "Ka", "illum"};
 
-// What tinyobjloader does not tell: whether a material states its Kd and Tf at all.
+// What tinyobjloader does not tell: the whole name (its releases differ after a space), and whether a
+// material states its Kd and Tf at all.
 struct Stated {
+    std::string name;
     bool diffuse = false;
     bool transmittance = false;
 };
@@ -47,7 +49,7 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
         const std::string keyword(words[0]);
         if (keyword == "newmtl") {
             if (words.size() < 2) fail("newmtl needs a name");
-            materials.emplace_back();
+            materials.emplace_back().name = {words[1].data(), words.back().data() + words.back().size()};
         } else if (materials.empty()) {
             fail("not a material file: it must start with newmtl");
         }
@@ -89,7 +91,7 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
 void make_dielectric(const std::string& file, const tinyobj::material_t& source, const Stated& stated,
                      Material& material) {
     const auto fail = [&](const std::string& reason) {
-        throw UserError(file + ": material " + in_quotes(source.name) + ": " + reason);
+        throw UserError(file + ": material " + in_quotes(stated.name) + ": " + reason);
     };
     if (!(source.ior > 0)) fail("is transparent (d < 1) and needs a refractive index Ni above 0");
     material.refractive_index = source.ior;
@@ -138,7 +140,7 @@ std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file,
             if (!stated[i].diffuse) material.diffuse_albedo = vec3(1);
         }
         if (source.dissolve < 1) make_dielectric(name, source, stated[i], material);
-        materials.push_back({source.name, material, texture});
+        materials.push_back({stated[i].name, material, texture});
     }
     return materials;
 }

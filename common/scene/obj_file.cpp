@@ -55,6 +55,7 @@ class ObjReader : public tinyobj::MaterialReader {
     ObjFile read() {
         if (text_.find('\0') != std::string::npos)
             throw UserError(obj_.file + ": not an .obj file: it is binary");
+        check_faces_without_corners();
         tinyobj::callback_t callbacks;
         callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
             static_cast<ObjReader*>(self)->check_numbers(3);
@@ -166,6 +167,16 @@ class ObjReader : public tinyobj::MaterialReader {
             std::vector<vec3> polygon;
             for (const ObjCorner& corner : face_) polygon.push_back(obj_.positions[corner.position]);
             for (const auto& [a, b, c] : triangulate(polygon)) add_triangle(a, b, c);
+        }
+    }
+
+    // tinyobjloader passes over them in silence.
+    void check_faces_without_corners() const {
+        for (size_t end = text_.find("\nf"); end != std::string::npos; end = text_.find("\nf", end + 1)) {
+            const size_t next = end + 2;
+            if (next == text_.size() || text_[next] == '\n' || text_[next] == '\r')
+                fail_at_line(obj_.file, 2 + std::count(text_.begin(), text_.begin() + end, '\n'),
+                             "a face needs at least three corners");
         }
     }
 

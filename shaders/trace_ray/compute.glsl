@@ -17,14 +17,12 @@ vec3 fetch_triangle_row(int row) { return uintBitsToFloat(texelFetch(bvh_triangl
 
 // The closest hit nearer than t_max, or with `any_hit` the first that turns up.
 bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
-    // Boxes: the ray meets the plane x = p at p * inverse.x + offset.x, and its sign tells which side of a box comes
-    // first. Zeros in the direction would give NaN on the sides of a box.
+    // Boxes: the ray meets the plane x = p at p * inverse.x + offset.x. Zeros in the direction would give NaN.
     vec3 direction = mix(ray.direction, vec3(1e-18), lessThan(abs(ray.direction), vec3(1e-18)));
     precise vec3 inverse = 1.0 / direction;
     ivec3 near = ivec3(0, 2, 4) + ivec3(lessThan(direction, vec3(0.0)));
     ivec3 far = near ^ 1;
-    // Rounding must not make a ray miss a box. The builder has grown the boxes by 2^-20 of their coordinates, here the
-    // ray grows by 2^-20 of its origin's.
+    // Rounding must not lose a box: the builder has grown it by 2^-20 of its coordinates, this does so for the ray's.
     float radius = max(abs(ray.origin.x), max(abs(ray.origin.y), abs(ray.origin.z))) / 1048576.0;
     precise vec3 near_offset = -ray.origin * inverse - radius * abs(inverse);
     precise vec3 far_offset = -ray.origin * inverse + radius * abs(inverse);
@@ -103,9 +101,7 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
     hit.instance = texelFetch(bvh_triangles, hit_triangle).w;
     hit.triangle = texelFetch(bvh_triangles, hit_triangle + 1).w;
 #ifdef FEATURE_DIELECTRICS
-    hit.material_class = materials[triangle_materials[hit.triangle]].refractive_index > 0.0
-                             ? MATERIAL_CLASS_DIELECTRIC
-                             : MATERIAL_CLASS_DIFFUSE;
+    hit.material_class = get_material_class(hit.triangle);
 #endif
     return true;
 }

@@ -21,9 +21,7 @@ bool trace_ray(Ray ray, float t_max, out Hit hit) {
     hit.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, true);
     hit.distance = rayQueryGetIntersectionTEXT(query, true);
 #ifdef FEATURE_DIELECTRICS
-    hit.material_class = materials[triangle_materials[hit.triangle]].refractive_index > 0.0
-                             ? MATERIAL_CLASS_DIELECTRIC
-                             : MATERIAL_CLASS_DIFFUSE;
+    hit.material_class = get_material_class(hit.triangle);
 #endif
     return true;
 }

@@ -57,6 +57,7 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
     const auto acceleration_structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
     Renderer renderer(device, *acceleration_structure, {project_folder() / "tests/benchmark/path_trace.glsl"},
                       parameters);
+    renderer.set_dispatch_seconds(1);
 #ifdef EMBREE_VERSION
     EmbreeTwin twin(scene, parameters);
 #endif
