@@ -30,13 +30,21 @@ vec3 mix_texels(vec4 upper_left, vec4 upper_right, vec4 lower_left, vec4 lower_r
 }
 
 #ifdef FEATURE_TEXTURES
-// Colour of a texture, decoded from sRGB.
+// Linear colour of a texel that is encoded as sRGB (IEC 61966-2-1). Samplers decode, too, but one of the devices that we
+// measured only to 8 bits.
+vec4 fetch_colour(int index, ivec2 texel) {
+    vec3 encoded = texelFetch(textures[nonuniformEXT(index)], texel, 0).rgb;
+    vec3 curved = pow((encoded + 0.055) / 1.055, vec3(2.4));
+    return vec4(mix(curved, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045))), 1.0);
+}
+
+// Linear colour of a texture.
 vec3 get_texture_colour(int index, vec2 uv) {
     TexelNeighbours t = get_texel_neighbours(uv, textureSize(textures[nonuniformEXT(index)], 0), true);
-    return mix_texels(texelFetch(textures[nonuniformEXT(index)], t.upper_left, 0),
-                      texelFetch(textures[nonuniformEXT(index)], ivec2(t.lower_right.x, t.upper_left.y), 0),
-                      texelFetch(textures[nonuniformEXT(index)], ivec2(t.upper_left.x, t.lower_right.y), 0),
-                      texelFetch(textures[nonuniformEXT(index)], t.lower_right, 0), t.weights);
+    return mix_texels(fetch_colour(index, t.upper_left),
+                      fetch_colour(index, ivec2(t.lower_right.x, t.upper_left.y)),
+                      fetch_colour(index, ivec2(t.upper_left.x, t.lower_right.y)),
+                      fetch_colour(index, t.lower_right), t.weights);
 }
 #endif
 

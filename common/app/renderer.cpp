@@ -15,16 +15,17 @@ uvec2 seed_key(uint32_t seed) {
 }
 
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
-                   const Estimator& estimator, const RenderParameters& parameters)
+                   const Estimator& estimator, const RenderParameters& parameters,
+                   std::span<const Binding> further_bindings)
     : device_(&device),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1),
                   vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y) {
-    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_),
-                                        film_.binding(),
-                                        storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
+    std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
+                                  storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
+    bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
     tracer_ = acceleration_structure.make_tracer(estimator, bindings);
 }
 

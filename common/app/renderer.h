@@ -10,9 +10,11 @@ uvec2 seed_key(uint32_t seed);
 
 class Renderer {
   public:
-    // The device and the acceleration structure must outlive the renderer.
+    // The device and the acceleration structure must outlive the renderer. An estimator may have bindings of
+    // its own.
     Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
-             const Estimator& estimator, const RenderParameters& parameters);
+             const Estimator& estimator, const RenderParameters& parameters,
+             std::span<const Binding> further_bindings = {});
 
     // One dispatch of about `dispatch_seconds` on the way to `target_samples` samples in every pixel; true
     // while more are needed. Short dispatches keep driver watchdogs quiet and the program responsive: one

@@ -8,18 +8,19 @@
 #include <future>
 #include <optional>
 #include <span>
+#include <tuple>
 
 namespace lab {
 namespace {
 
 constexpr size_t max_bin_count = 32;
 constexpr size_t max_leaf_triangles = 4;
-// Only triangles whose sizes fall geometrically need more splits above each other. From this depth on, ranges
-// are halved, which bounds the depth of the tree and with it the stack of the traversal.
+// Where this many splits might come to lie above each other, ranges are halved instead: that bounds the stack
+// of the traversal. Only triangles whose sizes fall geometrically need so many.
 constexpr size_t max_depth = 64;
 // Subtrees of fewer triangles are not worth a thread of their own.
 constexpr size_t smallest_task = 32'768;
-constexpr size_t smallest_share_of_task = 64;  // as a divisor of all triangles: bounds the number of threads
+constexpr size_t max_tasks = 64;  // of equal size; a few more if they are not
 
 // What the build moves around: the bounds of a triangle and where to find it.
 struct Primitive {
@@ -56,12 +57,10 @@ struct Binning {
 
     Binning(const Bounds& centroids, size_t primitive_count)
         : bin_count(static_cast<int>(std::min(max_bin_count, primitive_count))), low(centroids.low) {
-        // An axis along which bins have no width, or one that is no normal number, keeps all centroids in bin
-        // 0.
+        // An axis along which the bins have no width, or hardly any, keeps all centroids in bin 0.
         for (int axis = 0; axis < 3; ++axis) {
-            const float quotient =
-                static_cast<float>(bin_count) / (centroids.high[axis] - centroids.low[axis]);
-            if (std::isfinite(quotient)) bins_per_length[axis] = quotient;
+            const float scale = static_cast<float>(bin_count) / (centroids.high[axis] - low[axis]);
+            if (std::isfinite(scale)) bins_per_length[axis] = scale;
         }
     }
     int bin(const Primitive& primitive, int axis) const {
@@ -73,8 +72,7 @@ struct Binning {
 struct Plane {
     int axis = 0;
     int first_right_bin = 0;
-    double cost =
-        std::numeric_limits<double>::infinity();  // surface area times triangles, added over both sides
+    double cost = std::numeric_limits<double>::infinity();  // area times triangles, added over both sides
 };
 
 // The plane between two bins with the least surface area cost.
@@ -112,17 +110,15 @@ Plane cheapest_plane(std::span<const Primitive> primitives, const Binning& binni
     return best;
 }
 
-// The two halves of a range, or nothing where a leaf is cheaper. Visiting a node costs as much as testing a
-// triangle.
+// The two halves of a range, or nothing where a leaf is cheaper. A node costs as much as a triangle.
 std::optional<std::array<Range, 2>> split(const Range& range) {
     const auto primitives = range.primitives;
     if (primitives.size() < 2) return {};
     Bounds centroids;
     for (const auto& primitive : primitives) centroids.grow(primitive.centroid());
-    const Binning binning(centroids, primitives.size());
+    const Binning bins(centroids, primitives.size());
     Plane plane;
-    if (range.depth + std::bit_width(primitives.size()) < max_depth)
-        plane = cheapest_plane(primitives, binning);
+    if (range.depth + std::bit_width(primitives.size()) < max_depth) plane = cheapest_plane(primitives, bins);
     const double area = half_area(range.bounds);
     const double leaf_cost = area * static_cast<double>(primitives.size());
     if (primitives.size() <= max_leaf_triangles && !(area + plane.cost < leaf_cost)) return {};
@@ -130,15 +126,14 @@ std::optional<std::array<Range, 2>> split(const Range& range) {
     auto middle = primitives.begin() + primitives.size() / 2;
     if (std::isfinite(plane.cost)) {
         middle = std::partition(primitives.begin(), primitives.end(), [&](const Primitive& primitive) {
-            return binning.bin(primitive, plane.axis) < plane.first_right_bin;
+            return bins.bin(primitive, plane.axis) < plane.first_right_bin;
         });
     } else {
         // All centroids coincide, or the tree is too deep: halves along the longest axis.
         const vec3 size = centroids.high - centroids.low;
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-        std::nth_element(
-            primitives.begin(), middle, primitives.end(),
-            [&](const Primitive& a, const Primitive& b) { return a.centroid()[axis] < b.centroid()[axis]; });
+        std::ranges::nth_element(primitives, middle, {},
+                                 [&](const Primitive& p) { return p.centroid()[axis]; });
     }
     const std::span<Primitive> left(primitives.begin(), middle), right(middle, primitives.end());
     return {{Range{left, bounds_of(left), range.depth + 1}, Range{right, bounds_of(right), range.depth + 1}}};
@@ -146,15 +141,13 @@ std::optional<std::array<Range, 2>> split(const Range& range) {
 
 // The children of a node that covers `range`: the largest is split until there are four or all are leaves.
 std::vector<Range> open(const Range& range) {
-    const auto is_smaller = [](const Range& a, const Range& b) {
-        if (a.is_leaf != b.is_leaf) return a.is_leaf;
-        return std::pair(half_area(a.bounds), a.primitives.size()) <
-               std::pair(half_area(b.bounds), b.primitives.size());
+    const auto rank = [](const Range& child) {
+        return std::tuple(!child.is_leaf, half_area(child.bounds), child.primitives.size());
     };
     std::vector<Range> children{range};
     children.reserve(4);
     while (children.size() < 4) {
-        auto& largest = *std::max_element(children.begin(), children.end(), is_smaller);
+        Range& largest = *std::ranges::max_element(children, {}, rank);
         if (largest.is_leaf) break;
         if (const auto halves = split(largest)) {
             largest = (*halves)[0];
@@ -178,29 +171,29 @@ struct Part::Link {
     std::future<Part> part;
 };
 
-BvhNode empty_node() {
+// A node with the children's bounds, but without references to them.
+BvhNode make_node(const std::vector<Range>& children) {
     BvhNode node{};
-    for (auto& axis : node.bounds) {
-        axis[0].fill(std::numeric_limits<float>::max());
-        axis[1].fill(std::numeric_limits<float>::lowest());
+    for (size_t slot = 0; slot < 4; ++slot) {
+        Bounds bounds{vec3(std::numeric_limits<float>::max()), vec3(std::numeric_limits<float>::lowest())};
+        if (slot < children.size() && !children[slot].primitives.empty()) {
+            bounds = children[slot].bounds;
+            const vec3 largest = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+            const float padding = bvh_padding * std::max({largest.x, largest.y, largest.z});
+            bounds = {bounds.low - padding, bounds.high + padding};
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            node.bounds[axis][0][slot] = bounds.low[axis];
+            node.bounds[axis][1][slot] = bounds.high[axis];
+        }
     }
     return node;
-}
-
-void set_child_bounds(BvhNode& node, size_t child, const Bounds& bounds) {
-    const vec3 largest = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
-    const float padding = bvh_padding * std::max({largest.x, largest.y, largest.z});
-    for (int axis = 0; axis < 3; ++axis) {
-        node.bounds[axis][0][child] = bounds.low[axis] - padding;
-        node.bounds[axis][1][child] = bounds.high[axis] + padding;
-    }
 }
 
 class Builder {
   public:
     explicit Builder(std::span<const Primitive> primitives)
-        : primitives_(primitives),
-          task_size_(std::max(smallest_task, primitives.size() / smallest_share_of_task)) {}
+        : primitives_(primitives), task_size_(std::max(smallest_task, primitives.size() / max_tasks)) {}
 
     Part build(const Range& range) const {
         Part part;
@@ -211,16 +204,14 @@ class Builder {
   private:
     uint32_t add_node(Part& part, const std::vector<Range>& children) const {
         const size_t index = part.nodes.size();
-        part.nodes.push_back(empty_node());
+        part.nodes.push_back(make_node(children));
         for (size_t slot = 0; slot < children.size(); ++slot) {
             const Range& child = children[slot];
-            if (child.primitives.empty()) continue;
-            set_child_bounds(part.nodes[index], slot, child.bounds);
             if (child.primitives.size() > task_size_) {
                 part.links.push_back(
                     {index, slot, std::async(std::launch::async, &Builder::build, this, child)});
             } else {
-                const uint32_t reference = add_child(part, child);
+                const uint32_t reference = add_child(part, child);  // may move part.nodes
                 part.nodes[index].children[slot] = reference;
             }
         }
@@ -282,15 +273,6 @@ double surface_area_cost(const std::vector<BvhNode>& nodes) {
 
 }  // namespace
 
-Bounds BvhNode::child_bounds(size_t child) const {
-    Bounds result;
-    for (int axis = 0; axis < 3; ++axis) {
-        result.low[axis] = bounds[axis][0][child];
-        result.high[axis] = bounds[axis][1][child];
-    }
-    return result;
-}
-
 Bvh build_bvh(const std::vector<BvhTriangle>& triangles) {
     const auto start = std::chrono::steady_clock::now();
     std::vector<Primitive> primitives(triangles.size());
@@ -301,7 +283,8 @@ Bvh build_bvh(const std::vector<BvhTriangle>& triangles) {
         primitives[i].triangle = static_cast<uint32_t>(i);
     }
     Bvh bvh;
-    append(bvh.nodes, Builder(primitives).build({primitives, bounds_of(primitives)}));
+    const Builder builder(primitives);
+    append(bvh.nodes, builder.build({primitives, bounds_of(primitives)}));
     bvh.triangles.reserve(triangles.size());
     for (const auto& primitive : primitives) bvh.triangles.push_back(triangles[primitive.triangle]);
     bvh.max_stack_entries = max_stack_entries(bvh.nodes);

@@ -12,14 +12,15 @@ namespace lab {
 // A reference is the index of an inner node, or (number of triangles << 28) | first triangle for a leaf, or 0
 // where there is no child (no child is the root).
 struct BvhNode {
-    std::array<std::array<std::array<float, 4>, 2>, 3>
-        bounds;  // [axis][low, high][child]; no child: low > high
+    std::array<std::array<std::array<float, 4>, 2>, 3> bounds;  // [axis][low, high][child]; none: low > high
     std::array<uint32_t, 4> children;
     std::array<uint32_t, 4> padding;
 
-    // The bounds of a child. They exceed those of its triangles by bvh_padding times their largest
-    // coordinate.
-    Bounds child_bounds(size_t child) const;
+    // The bounds of a child: those of its triangles, grown by bvh_padding times their largest coordinate.
+    Bounds child_bounds(size_t child) const {
+        const auto& [x, y, z] = bounds;
+        return {{x[0][child], y[0][child], z[0][child]}, {x[1][child], y[1][child], z[1][child]}};
+    }
 };
 static_assert(sizeof(BvhNode) == 128);
 
@@ -31,8 +32,7 @@ inline constexpr uint32_t bvh_leaf_shift = 28;
 inline bool is_bvh_leaf(uint32_t reference) { return reference >> bvh_leaf_shift != 0; }
 
 // World-space coordinates of a triangle's vertices, one axis after the other, with its ids in the fourth
-// components: 48 bytes = 3 texels. The traversal permutes the axes, which so comes down to the order of
-// reading texels.
+// components: 48 bytes = 3 texels. So the traversal permutes the axes by the order in which it reads them.
 struct BvhTriangle {
     vec3 x;
     uint32_t instance;
@@ -57,8 +57,7 @@ std::vector<BvhTriangle> world_triangles(const Scene& scene);
 
 // Binned surface area heuristic (32 bins, 3 axes, at most 4 triangles a leaf), collapsed to four children.
 // Takes any number of triangles below 2^28, also none. Large inputs are built by several threads; the result
-// does not depend on how many. Source: Wald, "On fast construction of SAH-based bounding volume hierarchies",
-// 2007.
+// does not depend on how many. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007.
 Bvh build_bvh(const std::vector<BvhTriangle>& triangles);
 
 }  // namespace lab

@@ -36,7 +36,7 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
     };
     if (features.textures) {
         for (const auto& texture : scene_->textures)
-            images_.emplace_back(device, texture.width, texture.height, vk::Format::eR8G8B8A8Srgb,
+            images_.emplace_back(device, texture.width, texture.height, vk::Format::eR8G8B8A8Unorm,
                                  std::as_bytes(std::span(texture.pixels)));
         bind(BINDING_TEXTURES, 0);
         defines_.push_back("TEXTURE_COUNT " + std::to_string(scene_->textures.size()));

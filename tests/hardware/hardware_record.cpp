@@ -1,0 +1,143 @@
+// Measures the backends of a device and writes a JSON record for docs/results.md: paths and rays per second
+// of the benchmark's estimator on three sizes of scene, and the bare rate at which each backend traces the
+// very same rays.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/renderer.h"
+#include "benchmark/box_scene.h"
+#include "hardware/recorded_ray.h"
+#include "image/file.h"
+
+namespace lab {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// Index of the path in the order of the film's blocks, as each backend's main program knows it. The n-th rays
+// of neighbouring paths are neighbours in memory.
+std::vector<std::string> path_defines(Backend backend, size_t path_count) {
+    const std::string index = backend == Backend::pipeline
+                                  ? "gl_LaunchIDEXT.x"
+                                  : "gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex";
+    return {"PATH_INDEX (dispatch.first_block * 64u + " + index + ")",
+            "PATH_COUNT " + std::to_string(path_count) + "u"};
+}
+
+struct Rates {
+    double paths_per_second;
+    double rays_per_second;
+};
+
+// Busy time of the device, the median of five stretches of about half a second each.
+Rates measure(Renderer& renderer, double pixels) {
+    constexpr int stretches = 5;
+    constexpr double seconds = 0.5;
+    std::vector<Rates> rates;
+    for (int i = 0; i <= stretches; ++i) {
+        const double start = renderer.device_seconds(), first_samples = renderer.samples();
+        const uint64_t first_rays = renderer.rays();
+        while (renderer.device_seconds() < start + seconds) renderer.advance(UINT32_MAX);
+        const double time = renderer.device_seconds() - start;
+        // The first stretch warms up.
+        if (i > 0)
+            rates.push_back({pixels * (renderer.samples() - first_samples) / time,
+                             static_cast<double>(renderer.rays() - first_rays) / time});
+    }
+    std::sort(rates.begin(), rates.end(),
+              [](const Rates& a, const Rates& b) { return a.rays_per_second < b.rays_per_second; });
+    return rates[stretches / 2];
+}
+
+json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
+    const auto tests = project_folder() / "tests";
+    const RenderParameters parameters{.camera = make_camera(scene.camera, size, size),
+                                      .image_size = uvec2(size),
+                                      .seed_key = seed_key(1),
+                                      .first_sample = 0,
+                                      .max_path_length = 8,
+                                      .only_path_length = -1,
+                                      .background = vec3(0),
+                                      .probe_rotation = 0};
+    const GpuScene gpu_scene(device, scene);
+    const size_t path_count =
+        size_t{(size + 7) / 8 * 8} * ((size + 7) / 8 * 8);  // blocks at the border are whole
+    const Buffer rays(device, path_count * MAX_RECORDED_RAYS * sizeof(RecordedRay),
+                      vk::BufferUsageFlagBits::eStorageBuffer);
+    device.submit([&](const vk::raii::CommandBuffer& commands) {
+        commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, NO_RAY);
+    });
+    const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
+    {
+        const auto structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
+        const Estimator record{tests / "hardware/record_rays.glsl",
+                               path_defines(Backend::compute, path_count)};
+        Renderer recorder(device, *structure, record, parameters, {&ray_binding, 1});
+        while (recorder.advance(1)) {
+        }
+    }
+
+    json result{{"triangles", scene.triangles.size()}, {"backends", json::object()}};
+    for (const Backend backend : all_backends) {
+        if (!device.description().supports(backend)) continue;
+        const auto structure = build_acceleration_structure(backend, device, gpu_scene);
+        const double pixels = static_cast<double>(size) * size;
+        Renderer path_tracer(device, *structure, {tests / "benchmark/path_trace.glsl"}, parameters);
+        const Rates rates = measure(path_tracer, pixels);
+        const Estimator replay{tests / "hardware/replay_rays.glsl", path_defines(backend, path_count)};
+        Renderer replayer(device, *structure, replay, parameters, {&ray_binding, 1});
+        const Rates bare = measure(replayer, pixels);
+        result["backends"][to_string(backend)] = {{"paths_per_second", rates.paths_per_second},
+                                                  {"rays_per_second", rates.rays_per_second},
+                                                  {"bare_rays_per_second", bare.rays_per_second},
+                                                  {"structure_bytes", structure->bytes()},
+                                                  {"structure_seconds", structure->build_seconds()}};
+        std::printf(
+            "%8zu triangles  %-8s %8.1f million paths/s  %8.1f million rays/s, bare %8.1f (%.2f of it)\n",
+            scene.triangles.size(), to_string(backend).c_str(), 1e-6 * rates.paths_per_second,
+            1e-6 * rates.rays_per_second, 1e-6 * bare.rays_per_second,
+            rates.rays_per_second / bare.rays_per_second);
+        std::fflush(stdout);
+    }
+    return result;
+}
+
+void run(const std::string& choice, uint32_t size, const std::filesystem::path& output) {
+    const Device device({choice});
+    const auto& description = device.description();
+    std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), size, size);
+    json record{{"device", description.name},
+                {"driver", description.driver},
+                {"api_version", description.api_version},
+                {"size", size},
+                {"scenes", json::array()}};
+    constexpr std::pair<uint32_t, uint32_t> spheres[] = {{5, 3}, {200, 100}, {1400, 700}};
+    for (const auto& [segments, rings] : spheres)
+        record["scenes"].push_back(measure_scene(device, make_box_scene(segments, rings), size));
+    write_file(output, record.dump(2) + "\n");
+}
+
+}  // namespace
+}  // namespace lab
+
+int main(int argument_count, char** arguments) {
+    CLI::App app("Measures the backends of a device and writes a JSON record");
+    std::string device;
+    uint32_t size = 1024;
+    std::filesystem::path output = "hardware.json";
+    app.add_option("--device", device, "Number or part of the name of a device");
+    app.add_option("--size", size, "Width and height of the image")
+        ->check(CLI::Range(8, 4096))
+        ->capture_default_str();
+    app.add_option("--output", output, "JSON file to write")->capture_default_str();
+    CLI11_PARSE(app, argument_count, arguments);
+    try {
+        lab::run(device, size, output);
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "error: %s\n", error.what());
+        return 1;
+    }
+}
