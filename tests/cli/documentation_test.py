@@ -1,6 +1,8 @@
 """The pages name files and code: what they name must exist."""
 
 import re
+import subprocess
+import sys
 import unittest
 from pathlib import Path
 
@@ -36,6 +38,10 @@ class DocumentationTest(unittest.TestCase):
                     if last.startswith("VK_") or last in KNOWN_ELSEWHERE:
                         continue
                     self.assertIn(last, text, f"{page.name}: `{code}` names {last}, which no source has")
+
+
+    def test_results_are_what_the_records_say(self):
+        subprocess.run([sys.executable, "-B", ROOT / "tools" / "make_results.py", "--check"], check=True)
 
 
 # What the pages quote from the slides, the blog and GLSL.

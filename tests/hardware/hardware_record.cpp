@@ -67,7 +67,7 @@ json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
     const Buffer rays(device, path_count * MAX_RECORDED_RAYS * sizeof(RecordedRay),
                       vk::BufferUsageFlagBits::eStorageBuffer);
     device.submit([&](const vk::raii::CommandBuffer& commands) {
-        commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, NO_RAY);
+        commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, 0);
     });
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
     {

@@ -2,20 +2,19 @@
 #include "recorded_ray.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) buffer RecordedRays { RecordedRay recorded_rays[]; };
-uint recorded_count = 0u;
+uint next_segment = 0u;
 
-void record(Ray ray, float t_max, uint kind) {
-    uint slot = PATH_COUNT * recorded_count++ + PATH_INDEX;
-    recorded_rays[slot] = RecordedRay(ray.origin, t_max, ray.direction, kind);
+void record(Ray ray, float t_max, uint slot) {
+    recorded_rays[PATH_COUNT * slot + PATH_INDEX] = RecordedRay(ray.origin, t_max, ray.direction, 1u);
 }
 
 bool record_and_trace_ray(Ray ray, float t_max, out Hit hit) {
-    record(ray, t_max, CLOSEST_HIT);
+    record(ray, t_max, 2u * next_segment++);
     return trace_ray(ray, t_max, hit);
 }
 
 bool record_and_ask_is_occluded(Ray ray, float t_max) {
-    record(ray, t_max, OCCLUSION);
+    record(ray, t_max, 2u * next_segment - 1u);
     return is_occluded(ray, t_max);
 }
 

@@ -5,17 +5,16 @@ namespace lab {
 #endif
 
 const uint BINDING_RECORDED_RAYS = 40u;
-const uint MAX_RECORDED_RAYS = 17u;  // of a path of length 8: one a hit and one to the light
+// Two slots for each segment of a path of length 8: the ray to the hit, and the one from there to the light. Threads then
+// replay rays of one kind together, as they traced them.
+const uint MAX_RECORDED_RAYS = 18u;
 
 struct RecordedRay {
     vec3 origin;
     float t_max;
     vec3 direction;
-    uint kind;  // NO_RAY, CLOSEST_HIT or OCCLUSION
+    uint is_recorded;  // 0 or 1
 };
-const uint NO_RAY = 0u;
-const uint CLOSEST_HIT = 1u;
-const uint OCCLUSION = 2u;
 
 #ifdef __cplusplus
 }  // namespace lab

@@ -4,17 +4,18 @@
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) buffer RecordedRays { RecordedRay recorded_rays[]; };
 
+RecordedRay get_recorded_ray(uint slot) { return recorded_rays[PATH_COUNT * slot + PATH_INDEX]; }
+
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     uint hash = 0u;
-    for (uint i = 0u; i < MAX_RECORDED_RAYS; ++i) {
-        RecordedRay recorded = recorded_rays[PATH_COUNT * i + PATH_INDEX];
-        if (recorded.kind == NO_RAY) break;
+    for (uint slot = 0u; slot < MAX_RECORDED_RAYS; slot += 2u) {
+        RecordedRay segment = get_recorded_ray(slot);
+        if (segment.is_recorded == 0u) break;
         Hit hit;
-        hit.triangle = 0u;
-        bool is_hit = recorded.kind == OCCLUSION
-                          ? is_occluded(Ray(recorded.origin, recorded.direction), recorded.t_max)
-                          : trace_ray(Ray(recorded.origin, recorded.direction), recorded.t_max, hit);
+        bool is_hit = trace_ray(Ray(segment.origin, segment.direction), segment.t_max, hit);
         hash = hash * 31u + (is_hit ? hit.triangle + 1u : 0u);
+        RecordedRay shadow = get_recorded_ray(slot + 1u);
+        if (shadow.is_recorded != 0u && is_occluded(Ray(shadow.origin, shadow.direction), shadow.t_max)) hash += 7u;
     }
     return vec3(hash & 0xffffu);
 }
