@@ -35,6 +35,7 @@ SHARED_CONSTANT BINDING_BVH_NODES = 12u;
 SHARED_CONSTANT BINDING_BVH_TRIANGLES = 13u;
 SHARED_CONSTANT BINDING_ACCELERATION_STRUCTURE = 14u;
 SHARED_CONSTANT BINDING_GEOMETRY_FIRST_TRIANGLES = 15u;
+SHARED_CONSTANT BINDING_LIGHT_TRIANGLES = 16u;
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -46,6 +47,9 @@ SHARED_CONSTANT BLOCK_HEIGHT = 8u;
 
 // Rays are counted into this many counters, so that pixels rarely wait for each other.
 SHARED_CONSTANT RAY_COUNTER_COUNT = 64u;
+
+// Longest path that may split at every hit: each hit on it waits on a stack of this size.
+SHARED_CONSTANT MAX_SPLIT_PATH_LENGTH = 8u;
 
 // What a triangle is made of, from MTL. Reflectances are linear, in [0,1]; diffuse + specular is at most 1.
 struct Material {
@@ -62,6 +66,15 @@ struct Material {
 struct Instance {
     mat4x3 object_to_world;  // columns: images of the axes, then the translation
     mat3 normal_to_world;    // inverse transpose of the linear part: keeps the front side, mirrored or not
+};
+
+// An emissive triangle in the alias table of all of them, see common/scene/light_table.h.
+struct LightTriangle {
+    uint instance;
+    uint triangle;          // index into the scene's triangles
+    uint threshold;         // this entry stands for itself if a random 32-bit word is below, else for `alias`
+    uint alias;             // index into the table
+    float inverse_density;  // A/P: area in the world over the probability of being chosen
 };
 
 // A pinhole camera: the ray through image position (s, t) in [-1,1]^2 (t down) is forward + s right - t up.
@@ -82,6 +95,9 @@ struct RenderParameters {
     int only_path_length;  // counts light only after exactly this many bounces; -1 counts all
     vec3 background;       // radiance of the sky; with a light probe its factor
     float probe_rotation;  // radians about +Y, counter-clockwise seen from above
+    uint splitting_factor;  // number of branches in which a path goes on, from chapter 4
+    uint roulette_start;    // Russian roulette begins at this bounce, from chapter 5
+    float survival_cap;     // largest survival probability, in (0,1], from chapter 5
 };
 
 // Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from

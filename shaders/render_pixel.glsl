@@ -7,6 +7,7 @@
 #include "background.glsl"
 #include "shading_data.glsl"
 #include "materials.glsl"
+#include "lights.glsl"
 #include "film.glsl"
 
 layout(scalar, set = 0, binding = BINDING_FILM) buffer Film { FilmPixel film[]; };

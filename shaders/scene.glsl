@@ -23,6 +23,11 @@ layout(set = 0, binding = BINDING_TEXTURES) uniform sampler2D textures[TEXTURE_C
 #ifdef FEATURE_TRANSFORMS
 layout(scalar, set = 0, binding = BINDING_INSTANCES) readonly buffer Instances { Instance instances[]; };
 #endif
+#ifdef FEATURE_LIGHT_SAMPLING
+layout(scalar, set = 0, binding = BINDING_LIGHT_TRIANGLES) readonly buffer LightTriangles {
+    LightTriangle light_triangles[];
+};
+#endif
 #ifdef FEATURE_LIGHT_PROBE
 layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform sampler2D light_probe;
 #endif

@@ -12,6 +12,16 @@ struct ShadingData {
     float specular_exponent;
 #endif
     vec2 texture_coordinates;  // (0,0) on scenes without textures
+    bool is_dielectric;
+    float relative_index;  // of a dielectric: refractive index beyond the surface over that on the ray's side
+    vec3 transmittance;    // of what the ray has passed through since its origin, per colour
+};
+
+// Where a triangle is hit, whoever asks.
+struct SurfacePoint {
+    vec3 position;
+    vec3 geometric_normal;  // unit length
+    float offset;           // as in ShadingData
 };
 
 vec3 interpolate(vec3 a, vec3 b, vec3 c, vec3 weights) { return weights.x * a + weights.y * b + weights.z * c; }
@@ -21,40 +31,54 @@ float max_component(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 // Unit vector along v. Scaled first, since the square of a tiny or huge vector's length is no float.
 vec3 normalize_scaled(vec3 v) { return normalize(v / max_component(v)); }
 
-// Loads the vertices of the hit triangle and interpolates them with the barycentric coordinates w_0, w_1, w_2.
-ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
-    ShadingData s;
-    vec3 w = vec3(1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
+// The weights w_0, w_1, w_2 of a triangle's vertices at a hit.
+vec3 get_vertex_weights(Hit hit) { return vec3(1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics); }
+
+// Loads the vertices of the hit triangle and interpolates them. The normal is on the front.
+SurfacePoint get_surface_point(Hit hit) {
+    SurfacePoint point;
+    vec3 w = get_vertex_weights(hit);
     uvec3 corners = triangles[hit.triangle];
     vec3 x_0 = positions[corners.x], x_1 = positions[corners.y], x_2 = positions[corners.z];
-    s.position = interpolate(x_0, x_1, x_2, w);
+    point.position = interpolate(x_0, x_1, x_2, w);
     vec3 magnitude = interpolate(abs(x_0), abs(x_1), abs(x_2), w);
     // Counter-clockwise seen from the front: the scene's loader takes care of it.
     float size = max(max_component(x_1 - x_0), max_component(x_2 - x_0));
-    s.geometric_normal = cross((x_1 - x_0) / size, (x_2 - x_0) / size);
-#ifdef FEATURE_VERTEX_NORMALS
-    s.normal = interpolate(normals[corners.x], normals[corners.y], normals[corners.z], w);
-#endif
+    point.geometric_normal = cross((x_1 - x_0) / size, (x_2 - x_0) / size);
 #ifdef FEATURE_TRANSFORMS
     Instance instance = instances[hit.instance];
     mat3 linear = mat3(instance.object_to_world);
-    s.position = linear * s.position + instance.object_to_world[3];
+    point.position = linear * point.position + instance.object_to_world[3];
     magnitude = mat3(abs(linear[0]), abs(linear[1]), abs(linear[2])) * magnitude + abs(instance.object_to_world[3]);
-    s.geometric_normal = instance.normal_to_world * s.geometric_normal;
-#ifdef FEATURE_VERTEX_NORMALS
-    s.normal = instance.normal_to_world * s.normal;
+    point.geometric_normal = instance.normal_to_world * point.geometric_normal;
 #endif
-#endif
-    s.geometric_normal = normalize_scaled(s.geometric_normal);
-#ifdef FEATURE_VERTEX_NORMALS
-    // Vertex normals that cancel each other leave only the triangle's own.
-    s.normal = s.normal == vec3(0.0) ? s.geometric_normal : normalize_scaled(s.normal);
-#else
-    s.normal = s.geometric_normal;
-#endif
+    point.geometric_normal = normalize_scaled(point.geometric_normal);
     // Roundings of relative size 2^-24 in the position and in the next ray's intersection with the same triangle, also
     // where the surface itself is at coordinate 0. Measured: self-intersections end at a factor of 4.
-    s.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z);
+    point.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z);
+    return point;
+}
+
+// What a ray of the given unit direction finds at its hit.
+ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
+    SurfacePoint point = get_surface_point(hit);
+    ShadingData s;
+    s.position = point.position;
+    s.geometric_normal = point.geometric_normal;
+    s.offset = point.offset;
+    s.normal = s.geometric_normal;
+#if defined(FEATURE_VERTEX_NORMALS) || defined(FEATURE_TEXTURES)
+    vec3 w = get_vertex_weights(hit);
+    uvec3 corners = triangles[hit.triangle];
+#endif
+#ifdef FEATURE_VERTEX_NORMALS
+    vec3 normal = interpolate(normals[corners.x], normals[corners.y], normals[corners.z], w);
+#ifdef FEATURE_TRANSFORMS
+    normal = instances[hit.instance].normal_to_world * normal;
+#endif
+    // Vertex normals that cancel each other leave only the triangle's own.
+    if (normal != vec3(0.0)) s.normal = normalize_scaled(normal);
+#endif
 
     Material material = materials[triangle_materials[hit.triangle]];
     s.diffuse_albedo = material.diffuse_albedo;
@@ -76,6 +100,16 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
         s.geometric_normal = -s.geometric_normal;
         s.normal = -s.normal;
     }
+    s.is_dielectric = false;
+    s.transmittance = vec3(1.0);
+#ifdef FEATURE_DIELECTRICS
+    s.is_dielectric = hit.material_class == MATERIAL_CLASS_DIELECTRIC;
+    s.relative_index = is_front ? material.refractive_index : 1.0 / material.refractive_index;
+#endif
+#ifdef FEATURE_ABSORPTION
+    // Beer's law: a ray that arrives at the back of a dielectric has passed through it.
+    if (s.is_dielectric && !is_front) s.transmittance = exp(-material.absorption * hit.distance);
+#endif
     return s;
 }
 
@@ -84,4 +118,11 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
 Ray get_ray_from_surface(ShadingData s, vec3 direction) {
     float side = dot(s.geometric_normal, direction) < 0.0 ? -1.0 : 1.0;
     return Ray(s.position + side * s.offset * s.geometric_normal, direction);
+}
+
+// Ray from a surface point that reaches another point after one length of its direction.
+Ray get_ray_to_point(ShadingData s, vec3 point) {
+    Ray ray = get_ray_from_surface(s, point - s.position);
+    ray.direction = point - ray.origin;
+    return ray;
 }

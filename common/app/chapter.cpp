@@ -7,6 +7,7 @@
 
 #include "app/backend_choice.h"
 #include "app/headless.h"
+#include "app/settings.h"
 #include "error.h"
 #include "gpu/cache.h"
 #include "image/file.h"
@@ -28,62 +29,6 @@ void print_devices() {
                         missing.empty() ? "works" : ("lacks " + missing).c_str());
         }
     }
-}
-
-vec3 to_vector(const std::array<float, 3>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
-
-// Flags win over what the scene file says.
-void override_scene(Scene& scene, const Options& options) {
-    if (options.camera_position) scene.camera.position = to_vector(*options.camera_position);
-    if (options.camera_target) scene.camera.target = to_vector(*options.camera_target);
-    if (options.camera_up) scene.camera.up = to_vector(*options.camera_up);
-    if (options.vertical_fov) scene.camera.vertical_fov = *options.vertical_fov;
-    if (options.background) scene.background = to_vector(*options.background);
-}
-
-RenderParameters make_parameters(const Scene& scene, const Options& options) {
-    const uint32_t width = options.width.value_or(scene.defaults.width);
-    const uint32_t height = options.height.value_or(scene.defaults.height);
-    const uint32_t only = options.only_path_length.value_or(0);
-    if (options.max_path_length && only > *options.max_path_length)
-        throw UserError("--only-path-length " + std::to_string(only) + " is above --max-path-length " +
-                        std::to_string(*options.max_path_length) + ": the picture would be black");
-    return {
-        .camera = make_camera(scene.camera, width, height),
-        .image_size = {width, height},
-        .seed_key = seed_key(options.seed),
-        .first_sample = options.first_sample,
-        .max_path_length = std::max(options.max_path_length.value_or(scene.defaults.max_path_length), only),
-        .only_path_length = options.only_path_length ? static_cast<int>(*options.only_path_length) : -1,
-        .background = scene.background,
-        .probe_rotation = scene.probe_rotation};
-}
-
-// The options that decide the expected image, in a fixed order: renders with equal settings can be joined.
-std::string settings_text(const RenderParameters& parameters, const Scene& scene, const Options& options) {
-    std::ostringstream text;
-    const auto vector = [](const vec3& v) {
-        std::ostringstream numbers;
-        numbers.precision(9);
-        numbers << v.x << ',' << v.y << ',' << v.z;
-        return numbers.str();
-    };
-    text.precision(9);
-    text << "--max-path-length " << parameters.max_path_length;
-    if (parameters.only_path_length >= 0) text << " --only-path-length " << parameters.only_path_length;
-    if (options.view) text << " --view " << options.view->name;
-    if (options.specular) text << " --specular";
-    text << " --camera-position " << vector(scene.camera.position) << " --camera-target "
-         << vector(scene.camera.target) << " --camera-up " << vector(scene.camera.up) << " --vertical-fov "
-         << scene.camera.vertical_fov << " --background " << vector(scene.background);
-    return text.str();
-}
-
-Estimator make_estimator(const Chapter& chapter, const Options& options) {
-    if (!options.view) return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
-    Estimator estimator{project_folder() / "shaders" / "view.glsl", {options.view->define}};
-    if (options.view->name == "bvh-steps") estimator.defines.emplace_back("COUNT_TRAVERSAL_STEPS");
-    return estimator;
 }
 
 std::string hexadecimal(uint64_t number) {
@@ -132,7 +77,7 @@ FilmFile load_earlier_run(const RenderJob& job, const Options& options) {
 RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& estimator,
                    const Options& options) {
     RenderJob job{.options = &options,
-                  .parameters = make_parameters(scene, options),
+                  .parameters = make_parameters(chapter, scene, options),
                   .samples = options.samples.value_or(scene.defaults.samples),
                   .record = {},
                   .resumed = std::nullopt,
@@ -141,7 +86,7 @@ RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& 
                   .scene = scene.file.filename().string(),
                   .scene_hash = hexadecimal(scene.hash),
                   .estimator_hash = hexadecimal(hash_text(read_file(estimator.file, 1 << 24))),
-                  .settings = settings_text(job.parameters, scene, options),
+                  .settings = settings_text(chapter, job.parameters, scene, options),
                   .backend = "",
                   .device = "",
                   .seed = options.seed,
@@ -181,7 +126,8 @@ void run(const Chapter& chapter, const Options& options) {
     RenderJob job = make_job(chapter, scene, estimator, options);
 
     const Device device({options.device, options.validation});
-    const GpuScene gpu_scene(device, scene);
+    const bool samples_lights = chapter.light_sampling && options.light_sampling;
+    const GpuScene gpu_scene(device, scene, samples_lights ? LightSampling::on : LightSampling::off);
     const Backend backend = choose_backend(options, device, gpu_scene, estimator, job.parameters);
     const auto acceleration_structure = build_acceleration_structure(backend, device, gpu_scene);
     job.acceleration = {acceleration_structure->bytes(), acceleration_structure->build_seconds()};
@@ -191,6 +137,9 @@ void run(const Chapter& chapter, const Options& options) {
         std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
                   << job.parameters.image_size.y << ", " << job.samples << " samples, " << job.record.device
                   << ", backend " << job.record.backend << std::endl;
+    if (!options.quiet && chapter.unlimited_path_length && !options.max_path_length &&
+        !options.split_every_hit)
+        std::cout << "path length    " << safety_limit_text(scene) << std::endl;
     if (job.resumed && job.resumed->record.device != job.record.device) job.record.device = "several";
     if (job.resumed && job.resumed->record.backend != job.record.backend) job.record.backend = "several";
     render_headless(device, *acceleration_structure, estimator, job);

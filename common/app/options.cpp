@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <iostream>
+#include <sstream>
 
 #include "error.h"
 #include "gpu/shader_compiler.h"
@@ -100,6 +101,31 @@ void add_device_options(CLI::App& app, Options& options) {
     app.add_flag("--quiet", options.quiet, "Print errors only");
 }
 
+// What only some chapters have.
+void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options) {
+    if (chapter.light_sampling)
+        app.add_option("--light-sampling", options.light_sampling,
+                       "on: sample points on lights; off: count emission where paths find it")
+            ->transform(CLI::Transformer({{"on", "true"}, {"off", "false"}}))
+            ->type_name("on|off");
+    if (chapter.split_every_hit)
+        app.add_flag("--split-every-hit", options.split_every_hit,
+                     "Split at every hit, not only at the first");
+    options.chapter_values.resize(chapter.options.size());
+    for (size_t i = 0; i < chapter.options.size(); ++i) {
+        const ChapterOption& option = chapter.options[i];
+        options.chapter_values[i] = option.default_value;
+        const bool is_whole = std::holds_alternative<uint32_t RenderParameters::*>(option.parameter);
+        std::ostringstream range;
+        range << "a number from " << option.low << " to " << option.high;
+        app.add_option(option.name, options.chapter_values[i], option.help)
+            ->capture_default_str()
+            ->check(is_whole
+                        ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
+                        : within(option.low, option.high, range.str()));
+    }
+}
+
 // A scene is a file or the name of one in assets/scenes.
 std::filesystem::path find_scene(const std::string& name) {
     std::error_code ignored;  // a name that the file system refuses is reported when it is read
@@ -134,6 +160,7 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
     add_scene_options(app, options);
     add_output_options(app, options, view);
     add_device_options(app, options);
+    add_chapter_options(app, chapter, options);
     try {
         app.parse(argument_count, arguments);
     } catch (const CLI::CallForHelp&) {

@@ -37,7 +37,10 @@ struct Options {
     std::optional<std::array<float, 3>> camera_position, camera_target, camera_up, background;
     std::optional<float> vertical_fov;  // degrees
     bool specular = false;
-    float exposure = 0;  // stops
+    bool light_sampling = true;
+    bool split_every_hit = false;
+    std::vector<double> chapter_values;  // one for each of the chapter's options
+    float exposure = 0;                  // stops
     std::filesystem::path resume;
     std::optional<double> save_every;  // seconds
     bool validation = false;

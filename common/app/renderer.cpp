@@ -14,6 +14,20 @@ uvec2 seed_key(uint32_t seed) {
     return {static_cast<uint32_t>(z), static_cast<uint32_t>(z >> 32)};
 }
 
+RenderParameters default_parameters(const Scene& scene, uvec2 image_size) {
+    return {.camera = make_camera(scene.camera, image_size.x, image_size.y),
+            .image_size = image_size,
+            .seed_key = seed_key(1),
+            .first_sample = 0,
+            .max_path_length = scene.defaults.max_path_length,
+            .only_path_length = -1,
+            .background = scene.background,
+            .probe_rotation = scene.probe_rotation,
+            .splitting_factor = 1,
+            .roulette_start = 1,
+            .survival_cap = 0.95f};
+}
+
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
                    const Estimator& estimator, const RenderParameters& parameters,
                    std::span<const Binding> further_bindings)

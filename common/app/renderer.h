@@ -8,6 +8,9 @@ namespace lab {
 // Key of the random start states for a seed.
 uvec2 seed_key(uint32_t seed);
 
+// To render a scene as its file asks, with seed 1, no splitting and a survival cap of 0.95.
+RenderParameters default_parameters(const Scene& scene, uvec2 image_size);
+
 class Renderer {
   public:
     // The device and the acceleration structure must outlive the renderer. An estimator may have bindings of

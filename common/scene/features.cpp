@@ -33,7 +33,6 @@ std::vector<std::string> SceneFeatures::defines() const {
         {textures, "FEATURE_TEXTURES"},
         {sky, "FEATURE_SKY"},
         {light_probe, "FEATURE_LIGHT_PROBE"},
-        {area_lights, "FEATURE_AREA_LIGHTS"},
         {specular, "FEATURE_SPECULAR"},
         {dielectrics, "FEATURE_DIELECTRICS"},
         {absorption, "FEATURE_ABSORPTION"},

@@ -12,7 +12,7 @@ struct SceneFeatures {
     bool textures = false;
     bool sky = false;  // constant background other than black
     bool light_probe = false;
-    bool area_lights = false;  // some triangle emits
+    bool area_lights = false;  // some triangle emits; the define depends on the estimator, see GpuScene
     bool specular = false;     // some material has a Phong lobe
     bool dielectrics = false;
     bool absorption = false;

@@ -1,5 +1,7 @@
 #include "tracing/gpu_scene.h"
 
+#include "scene/light_table.h"
+
 namespace lab {
 
 template <typename T>
@@ -9,7 +11,7 @@ void GpuScene::add_buffer(const Device& device, uint32_t binding, const std::vec
     bindings_.push_back(storage_binding(binding, buffers_.back()));
 }
 
-GpuScene::GpuScene(const Device& device, const Scene& scene)
+GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling)
     : scene_(&scene), defines_(features_of(scene).defines()) {
     const SceneFeatures features = features_of(scene);
     buffers_.reserve(8);  // the bindings refer to the buffers
@@ -25,6 +27,10 @@ GpuScene::GpuScene(const Device& device, const Scene& scene)
     if (features.vertex_normals) add_buffer(device, BINDING_NORMALS, scene.normals);
     if (features.textures) add_buffer(device, BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
     if (features.transforms) add_buffer(device, BINDING_INSTANCES, scene.instances);
+    if (features.area_lights && light_sampling == LightSampling::on) {
+        add_buffer(device, BINDING_LIGHT_TRIANGLES, build_light_table(scene));
+        defines_.emplace_back("FEATURE_LIGHT_SAMPLING");
+    }
     add_images(device, features);
 }
 

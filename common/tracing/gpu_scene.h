@@ -8,9 +8,12 @@
 
 namespace lab {
 
+// Whether estimators sample the emissive triangles, which takes a table of them.
+enum class LightSampling { off, on };
+
 class GpuScene {
   public:
-    GpuScene(const Device& device, const Scene& scene);
+    GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling = LightSampling::on);
 
     const Scene& scene() const { return *scene_; }
     const Buffer& positions() const { return buffers_[0]; }

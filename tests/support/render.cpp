@@ -18,19 +18,20 @@ Estimator view_estimator(const std::string& view) {
 }
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings) {
-    return {.camera = make_camera(scene.camera, settings.width, settings.height),
-            .image_size = {settings.width, settings.height},
-            .seed_key = seed_key(settings.seed),
-            .first_sample = settings.first_sample,
-            .max_path_length = settings.max_path_length,
-            .only_path_length = settings.only_path_length,
-            .background = scene.background,
-            .probe_rotation = scene.probe_rotation};
+    RenderParameters parameters = default_parameters(scene, {settings.width, settings.height});
+    parameters.seed_key = seed_key(settings.seed);
+    parameters.first_sample = settings.first_sample;
+    parameters.max_path_length = settings.max_path_length;
+    parameters.only_path_length = settings.only_path_length;
+    parameters.splitting_factor = settings.splitting_factor;
+    parameters.roulette_start = settings.roulette_start;
+    parameters.survival_cap = settings.survival_cap;
+    return parameters;
 }
 
 FilmImage render(const Scene& scene, const RenderSettings& settings) {
     const Device& device = test_device();
-    const GpuScene gpu_scene(device, scene);
+    const GpuScene gpu_scene(device, scene, settings.light_sampling);
     const auto acceleration_structure = build_acceleration_structure(settings.backend, device, gpu_scene);
     Renderer renderer(device, *acceleration_structure, settings.estimator, make_parameters(scene, settings));
     renderer.set_dispatch_seconds(settings.dispatch_seconds);

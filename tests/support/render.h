@@ -10,7 +10,9 @@
 namespace lab {
 
 // The chapters whose estimators are tested.
-inline const std::vector<std::string> all_chapters{"01_uniform_sampling"};
+inline const std::vector<std::string> all_chapters{"01_uniform_sampling",      "02_cosine_sampling",
+                                                   "03_next_event_estimation", "04_splitting",
+                                                   "05_russian_roulette",      "06_dielectrics"};
 
 Estimator chapter_estimator(const std::string& chapter);
 Estimator view_estimator(const std::string& view);
@@ -23,6 +25,10 @@ struct RenderSettings {
     int only_path_length = -1;
     uint32_t seed = 1;
     uint32_t first_sample = 0;
+    uint32_t splitting_factor = 1;
+    uint32_t roulette_start = 1;
+    float survival_cap = 0.95f;
+    LightSampling light_sampling = LightSampling::on;
     Estimator estimator = chapter_estimator(all_chapters.front());
     Backend backend = Backend::compute;
     double dispatch_seconds = 0.1;

@@ -290,7 +290,8 @@ TEST_F(SceneFile, BareMeshWithLightsHasABlackSky) {
     const Scene scene = load_scene(folder.write("b.obj", "mtllib b.mtl\nusemtl light\n" + triangle_obj));
     EXPECT_EQ(scene.background, vec3(0));
     EXPECT_TRUE(scene.warnings.empty());
-    EXPECT_EQ(features_of(scene).defines(), std::vector<std::string>{"FEATURE_AREA_LIGHTS"});
+    EXPECT_EQ(features_of(scene).defines(), std::vector<std::string>{});
+    EXPECT_TRUE(features_of(scene).area_lights);
 }
 
 TEST_F(SceneFile, FeaturesAreWhatTheSceneNeeds) {

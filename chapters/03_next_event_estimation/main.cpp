@@ -1,0 +1,10 @@
+// Chapter 3: next event estimation: a point on the lights at every hit. The path tracer itself is
+// path_trace.glsl.
+#include "app/chapter.h"
+
+int main(int argument_count, char** arguments) {
+    return lab::run_chapter({.name = "03_next_event_estimation",
+                             .title = "Next event estimation: a point on the lights at every hit",
+                             .light_sampling = true},
+                            argument_count, arguments);
+}

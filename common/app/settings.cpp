@@ -1,0 +1,131 @@
+#include "app/settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "error.h"
+#include "gpu/shader_compiler.h"
+
+namespace lab {
+namespace {
+
+// Where paths have no limit they still end here: a sample must end in bounded time.
+constexpr uint32_t safety_limit = 10000;
+
+// More branches would keep a device busy with one sample for longer than drivers allow.
+constexpr double max_branches = 1 << 20;
+
+vec3 to_vector(const std::array<float, 3>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+std::string to_text(const vec3& v) {
+    std::ostringstream text;
+    text.precision(9);
+    text << v.x << ',' << v.y << ',' << v.z;
+    return text.str();
+}
+
+uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Options& options) {
+    const uint32_t only = options.only_path_length.value_or(0);
+    if (options.max_path_length && only > *options.max_path_length)
+        throw UserError("--only-path-length " + std::to_string(only) + " is above --max-path-length " +
+                        std::to_string(*options.max_path_length) + ": the picture would be black");
+    const bool is_unlimited = chapter.unlimited_path_length && !options.split_every_hit;
+    return std::max(
+        options.max_path_length.value_or(is_unlimited ? safety_limit : scene.defaults.max_path_length), only);
+}
+
+void check_split_every_hit(const RenderParameters& parameters) {
+    if (parameters.max_path_length > MAX_SPLIT_PATH_LENGTH)
+        throw UserError("--split-every-hit keeps each hit of a path: use --max-path-length " +
+                        std::to_string(MAX_SPLIT_PATH_LENGTH) + " or less");
+    if (std::pow(parameters.splitting_factor, parameters.max_path_length) > max_branches)
+        throw UserError("--splitting-factor " + std::to_string(parameters.splitting_factor) +
+                        " at every hit of paths of length " + std::to_string(parameters.max_path_length) +
+                        " makes more than 2^20 branches a sample: lower --splitting-factor or "
+                        "--max-path-length");
+}
+
+// Of an opaque material: no direction loses less light.
+double largest_albedo(const Scene& scene) {
+    float largest = 0;
+    for (const Material& material : scene.materials) {
+        const vec3 albedo =
+            material.refractive_index > 0 ? vec3(1) : material.diffuse_albedo + material.specular_albedo;
+        largest = std::max({largest, albedo.r, albedo.g, albedo.b});
+    }
+    return largest;
+}
+
+}  // namespace
+
+void override_scene(Scene& scene, const Options& options) {
+    if (options.camera_position) scene.camera.position = to_vector(*options.camera_position);
+    if (options.camera_target) scene.camera.target = to_vector(*options.camera_target);
+    if (options.camera_up) scene.camera.up = to_vector(*options.camera_up);
+    if (options.vertical_fov) scene.camera.vertical_fov = *options.vertical_fov;
+    if (options.background) scene.background = to_vector(*options.background);
+}
+
+RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
+    RenderParameters parameters = default_parameters(scene, {options.width.value_or(scene.defaults.width),
+                                                             options.height.value_or(scene.defaults.height)});
+    parameters.seed_key = seed_key(options.seed);
+    parameters.first_sample = options.first_sample;
+    parameters.max_path_length = max_path_length(chapter, scene, options);
+    if (options.only_path_length) parameters.only_path_length = static_cast<int>(*options.only_path_length);
+    for (size_t i = 0; i < chapter.options.size(); ++i)
+        std::visit(
+            [&](auto member) {
+                using Number = std::remove_reference_t<decltype(parameters.*member)>;
+                parameters.*member = static_cast<Number>(options.chapter_values[i]);
+            },
+            chapter.options[i].parameter);
+    if (options.split_every_hit) check_split_every_hit(parameters);
+    return parameters;
+}
+
+std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
+                          const Options& options) {
+    std::ostringstream text;
+    text.precision(9);
+    text << "--max-path-length " << parameters.max_path_length;
+    if (parameters.only_path_length >= 0) text << " --only-path-length " << parameters.only_path_length;
+    for (size_t i = 0; i < chapter.options.size(); ++i)
+        text << ' ' << chapter.options[i].name << ' ' << options.chapter_values[i];
+    if (!options.light_sampling) text << " --light-sampling off";
+    if (options.split_every_hit) text << " --split-every-hit";
+    if (options.view) text << " --view " << options.view->name;
+    if (options.specular) text << " --specular";
+    text << " --camera-position " << to_text(scene.camera.position) << " --camera-target "
+         << to_text(scene.camera.target) << " --camera-up " << to_text(scene.camera.up) << " --vertical-fov "
+         << scene.camera.vertical_fov << " --background " << to_text(scene.background);
+    return text.str();
+}
+
+Estimator make_estimator(const Chapter& chapter, const Options& options) {
+    const auto folder = project_folder() / "chapters" / chapter.name;
+    if (!options.view)
+        return {folder / (options.split_every_hit ? "path_trace_every_hit.glsl" : "path_trace.glsl")};
+    Estimator estimator{project_folder() / "shaders" / "view.glsl", {options.view->define}};
+    if (options.view->name == "bvh-steps") estimator.defines.emplace_back("COUNT_TRAVERSAL_STEPS");
+    return estimator;
+}
+
+std::string safety_limit_text(const Scene& scene) {
+    const double albedo = largest_albedo(scene);
+    char text[160];
+    if (albedo < 1)
+        std::snprintf(text, sizeof text,
+                      "unlimited; beyond %u bounces there is at most %.0e of the brightest emission",
+                      safety_limit, std::max(std::pow(albedo, safety_limit + 1) / (1 - albedo), 1e-300));
+    else
+        std::snprintf(
+            text, sizeof text,
+            "unlimited but for %u bounces; surfaces that absorb nothing leave no bound for the rest",
+            safety_limit);
+    return text;
+}
+
+}  // namespace lab

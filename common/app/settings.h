@@ -1,0 +1,27 @@
+// From a scene and the command line to what is rendered. Flags win over the scene file.
+#pragma once
+#include "app/options.h"
+#include "app/renderer.h"
+#include "tracing/gpu_scene.h"
+
+namespace lab {
+
+// Puts the flags in place of what the scene file says about camera and background.
+void override_scene(Scene& scene, const Options& options);
+
+// Throws UserError for options that contradict each other.
+RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options);
+
+// The options that decide what is estimated and how, in a fixed order: renders with equal settings can be
+// joined.
+std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
+                          const Options& options);
+
+// The chapter's estimator, or what --view and --split-every-hit put in its place.
+Estimator make_estimator(const Chapter& chapter, const Options& options);
+
+// What a chapter without a limit of the path length leaves out beyond its safety limit, in one line. The
+// radiance that arrives after m bounces is at most a^m times the brightest emission, a the largest albedo.
+std::string safety_limit_text(const Scene& scene);
+
+}  // namespace lab

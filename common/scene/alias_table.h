@@ -1,0 +1,27 @@
+// Chooses one of many items in constant time, each with a probability of its own.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lab {
+
+// Walker's alias table, built by Vose's method (IEEE Transactions on Software Engineering 17(9), 1991) in
+// double. To choose an item take two random 32-bit words: entry i is the high word of word_1 * n; the item is
+// i itself if word_2 < threshold of i, else alias of i.
+struct AliasTable {
+    struct Entry {
+        uint32_t threshold = 0;
+        uint32_t alias = 0;
+    };
+    std::vector<Entry> entries;
+    // With which the two words choose each item, to the last bit of the table's integers. Weights are met up
+    // to 2^-32; estimators that divide by these probabilities are not biased by that.
+    std::vector<double> probabilities;
+};
+
+// Probabilities are proportional to the weights, which must be finite and not negative, at least one
+// positive. An item of weight 0 is never chosen, one of positive weight always has a positive probability.
+AliasTable build_alias_table(std::span<const double> weights);
+
+}  // namespace lab

@@ -1,0 +1,41 @@
+// The scene's emissive triangles, for next event estimation.
+
+struct LightPoint {
+    vec3 position;           // y
+    vec3 position_in_front;  // y, moved off the light to its front by a bound of the rounding errors
+    vec3 normal;             // of the triangle, unit length, on the front
+    vec3 emission;           // L_e towards the front
+};
+
+#ifdef FEATURE_LIGHT_SAMPLING
+const bool LIGHT_SAMPLING = true;
+
+// One of all emissive triangles, with probability proportional to area times luminance: in constant time, however many
+// there are, by an alias table. Two 32-bit words choose it; 24-bit numbers would give a million triangles unequal
+// chances.
+LightTriangle choose_light_triangle(inout uvec2 seed) {
+    advance_random_state(seed);
+    uint index, unused;
+    umulExtended(seed.x, uint(light_triangles.length()), index, unused);
+    if (seed.y >= light_triangles[index].threshold) index = light_triangles[index].alias;
+    return light_triangles[index];
+}
+
+// The point of a light with the barycentric coordinates w_1 and w_2.
+LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
+    Hit hit;
+    hit.instance = light.instance;
+    hit.triangle = light.triangle;
+    hit.barycentrics = barycentrics;
+    SurfacePoint point = get_surface_point(hit);
+    return LightPoint(point.position, point.position + point.offset * point.geometric_normal, point.geometric_normal,
+                      materials[triangle_materials[light.triangle]].emission);
+}
+#else
+// Nothing emits, or --light-sampling off: the estimators leave out what these would be called for.
+const bool LIGHT_SAMPLING = false;
+LightTriangle choose_light_triangle(inout uvec2 seed) { return LightTriangle(0u, 0u, 0u, 0u, 0.0); }
+LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
+    return LightPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+}
+#endif
