@@ -79,9 +79,9 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
                 vec3 y = fetch_triangle_row(triangle + axes.y);
                 vec3 z = fetch_triangle_row(triangle + axes.z) - origin.z;
                 // Triangles that share a vertex get the same numbers for it, and a difference of two rounded products
-                // never has the wrong sign: so no ray slips through between them. `precise` forbids to fuse.
-                precise vec3 sheared_x = (x - origin.x) - shear.x * z;
-                precise vec3 sheared_y = (y - origin.y) - shear.y * z;
+                // never has the wrong sign: so no ray slips through between them. `precise` forbids to fuse them.
+                precise vec3 sheared_x = fma(vec3(-shear.x), z, x - origin.x);
+                precise vec3 sheared_y = fma(vec3(-shear.y), z, y - origin.y);
                 precise vec3 area = sheared_x.zxy * sheared_y.yzx - sheared_y.zxy * sheared_x.yzx;
                 float sum = area.x + area.y + area.z;
                 bool is_inside = all(greaterThanEqual(area, vec3(0.0))) || all(lessThanEqual(area, vec3(0.0)));

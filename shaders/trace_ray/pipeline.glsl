@@ -4,7 +4,6 @@
 
 layout(set = 0, binding = BINDING_ACCELERATION_STRUCTURE) uniform accelerationStructureEXT acceleration_structure;
 layout(location = HIT_PAYLOAD) rayPayloadEXT Hit hit_payload;
-layout(location = SHADOW_PAYLOAD) rayPayloadEXT bool shadow_payload;
 
 // The driver finds the hit record at instance offset + ray type offset + geometry index · stride.
 const uint RECORD_STRIDE = 1u;
@@ -21,9 +20,9 @@ bool trace_ray(Ray ray, float t_max, out Hit hit) {
 // Whether anything is hit nearer than t_max: no hit shader runs, only the miss shader says that there was nothing.
 bool is_occluded(Ray ray, float t_max) {
     ++ray_count;
-    shadow_payload = true;
+    hit_payload.triangle = 0u;  // any triangle
     traceRayEXT(acceleration_structure,
                 gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu,
-                0u, RECORD_STRIDE, SHADOW_MISS_RECORD, ray.origin, 0.0, ray.direction, t_max, SHADOW_PAYLOAD);
-    return shadow_payload;
+                0u, RECORD_STRIDE, SHADOW_MISS_RECORD, ray.origin, 0.0, ray.direction, t_max, HIT_PAYLOAD);
+    return hit_payload.triangle != NO_TRIANGLE;
 }

@@ -53,14 +53,7 @@ Rates measure(Renderer& renderer, double pixels) {
 
 json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
     const auto tests = project_folder() / "tests";
-    const RenderParameters parameters{.camera = make_camera(scene.camera, size, size),
-                                      .image_size = uvec2(size),
-                                      .seed_key = seed_key(1),
-                                      .first_sample = 0,
-                                      .max_path_length = 8,
-                                      .only_path_length = -1,
-                                      .background = vec3(0),
-                                      .probe_rotation = 0};
+    const RenderParameters parameters = default_parameters(scene, uvec2(size));
     const GpuScene gpu_scene(device, scene);
     const size_t path_count =
         size_t{(size + 7) / 8 * 8} * ((size + 7) / 8 * 8);  // blocks at the border are whole

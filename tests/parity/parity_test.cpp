@@ -4,43 +4,52 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 
 #include "app/renderer.h"
 #include "parity/scenes.h"
 #include "support/gpu_test.h"
+#include "support/render.h"
 
 namespace lab {
 namespace {
 
-namespace fs = std::filesystem;
-
-struct Rendering {
+struct TracedImage {
     Image image;
     uint64_t rays;
 };
 
-Rendering render(Backend backend, const Scene& scene, const fs::path& estimator, uint32_t size) {
-    const Device& device = test_device();
-    const GpuScene gpu_scene(device, scene);
-    const auto structure = build_acceleration_structure(backend, device, gpu_scene);
-    const RenderParameters parameters{.camera = make_camera(scene.camera, size, size),
-                                      .image_size = {size, size},
-                                      .seed_key = seed_key(1),
-                                      .first_sample = 0,
-                                      .max_path_length = 8,
-                                      .only_path_length = -1,
-                                      .background = scene.background,
-                                      .probe_rotation = scene.probe_rotation};
-    Renderer renderer(device, *structure, {estimator}, parameters);
-    while (renderer.advance(1)) {
-    }
-    return {renderer.film().read().mean(), renderer.rays()};
-}
+// A scene with the acceleration structure of a backend.
+class BackendScene {
+  public:
+    BackendScene(Backend backend, const Scene& scene)
+        : gpu_scene_(test_device(), scene),
+          structure_(build_acceleration_structure(backend, test_device(), gpu_scene_)) {}
 
-// Paths are different where their radiance differs by more than 10^-3 relatively. Their number for each path
-// segment is at most `limit`, and the means differ by no more than the different paths explain.
-void expect_parity(const std::string& what, Backend backend, const Rendering& expected,
-                   const Rendering& actual, double limit) {
+    // One sample a pixel.
+    TracedImage render(const RenderSettings& settings) const {
+        Renderer renderer(test_device(), *structure_, settings.estimator,
+                          make_parameters(gpu_scene_.scene(), settings));
+        while (renderer.advance(1)) {
+        }
+        return {renderer.film().read().mean(), renderer.rays()};
+    }
+
+  private:
+    GpuScene gpu_scene_;
+    std::unique_ptr<AccelerationStructure> structure_;
+};
+
+struct Limits {
+    // Paths are different where their radiance differs by more than this, relatively.
+    double radiance = 1e-3;
+    // Largest number of different paths for each path segment.
+    double fraction = 1e-4;
+};
+
+// The paths are the same within the limits, and the means differ by no more than the different paths explain.
+void expect_parity(const std::string& what, Backend backend, const TracedImage& expected,
+                   const TracedImage& actual, const Limits& limits) {
     size_t different = 0, pixels = expected.image.pixels.size() / 3;
     double difference_sum = 0, difference_square_sum = 0, sum = 0;
     for (size_t pixel = 0; pixel < pixels; ++pixel) {
@@ -48,7 +57,7 @@ void expect_parity(const std::string& what, Backend backend, const Rendering& ex
         double total = 0;
         for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) {
             const double a = expected.image.pixels[i], b = actual.image.pixels[i];
-            differs |= std::abs(a - b) > 1e-3 * std::max(std::abs(a), std::abs(b));
+            differs |= std::abs(a - b) > limits.radiance * std::max(std::abs(a), std::abs(b));
             total += b - a;
             sum += a;
         }
@@ -59,13 +68,13 @@ void expect_parity(const std::string& what, Backend backend, const Rendering& ex
     const double fraction =
         static_cast<double>(different) / static_cast<double>(std::max<uint64_t>(expected.rays, 1));
     std::printf(
-        "[  PARITY  ] %-28s %-8s %zu of %zu paths differ, %.1e a segment, mean differs by %.1e relatively\n",
+        "[  PARITY  ] %-36s %-8s %zu of %zu paths differ, %.1e a segment, mean differs by %.1e relatively\n",
         what.c_str(), to_string(backend).c_str(), different, pixels, fraction,
         sum > 0 ? difference_sum / sum : 0.0);
-    EXPECT_LE(fraction, limit) << what;
+    EXPECT_LE(fraction, limits.fraction) << what;
     // Rays that are counted differently would be traced differently.
     EXPECT_NEAR(static_cast<double>(actual.rays), static_cast<double>(expected.rays),
-                10 * limit * static_cast<double>(expected.rays) + 1);
+                10 * limits.fraction * static_cast<double>(expected.rays) + 1);
     // A path that takes another way is as likely to gain as to lose: five standard deviations of the sum, and
     // roundings.
     EXPECT_LE(std::abs(difference_sum), 5 * std::sqrt(difference_square_sum) + 1e-6 * sum) << what;
@@ -78,16 +87,19 @@ bool must_have_all_backends() {
     return version != std::string::npos && std::atoi(driver.c_str() + version + 14) >= 25;
 }
 
-// Largest fraction of different paths for each path segment.
-double path_difference_limit(const Scene& scene) {
-    // Hit points on textures at uv ~ 20 are rounded to 1/1000 of a texel: at sharp edges that is more than
-    // 10^-3 in radiance, while the path stays the same.
-    if (!scene.textures.empty()) return 1e-2;
+Limits limits_of(const Scene& scene) {
+    Limits limits;
+    // At uv ~ 20 a hit point is rounded to 1/1000 of a texel. Where a dark texel meets a bright one that is
+    // some percent in radiance, while the path stays the same: one path in a hundred is beyond 10^-3, one in
+    // a thousand beyond 10^-2. A path that goes another way nearly always differs by more than a tenth.
+    if (!scene.textures.empty()) limits = {.radiance = 0.1, .fraction = 2e-4};
     size_t triangles = 0;
     for (const uint32_t mesh : scene.instance_meshes) triangles += scene.meshes[mesh].triangle_count;
     // Triangles that are a thousandth of their distance from the origin leave many edges to be grazed, and
-    // `compute` knows their vertices in world space where the driver transforms the ray.
-    return triangles > 1000000 ? 5e-4 : 1e-4;
+    // `compute` knows their vertices in world space where the driver transforms the ray. Barycentrics, and
+    // with them the light at a hit, differ by more than roundings.
+    if (triangles > 1000000) limits = {.radiance = 1e-2, .fraction = 5e-4};
+    return limits;
 }
 
 class Parity : public testing::TestWithParam<Backend> {
@@ -98,21 +110,35 @@ class Parity : public testing::TestWithParam<Backend> {
         GTEST_SKIP() << "the device lacks " << test_device().description().missing.at(GetParam()).front();
     }
 
-    void expect_same(const std::string& what, const Scene& scene, uint32_t size, double limit,
-                     const fs::path& estimator = project_folder() /
-                                                 "chapters/01_uniform_sampling/path_trace.glsl") {
-        expect_parity(what, GetParam(), render(Backend::compute, scene, estimator, size),
-                      render(GetParam(), scene, estimator, size), limit);
+    void expect_same(const std::string& what, const Scene& scene, uint32_t size, const Limits& limits) {
+        const RenderSettings settings{.width = size, .height = size};
+        expect_parity(what, GetParam(), BackendScene(Backend::compute, scene).render(settings),
+                      BackendScene(GetParam(), scene).render(settings), limits);
     }
 };
 
-TEST_P(Parity, EveryChapterOnEveryScene) {
+// The estimators of all chapters, with the options that bring in all of their code.
+std::map<std::string, RenderSettings> chapter_estimators() {
+    std::map<std::string, RenderSettings> all;
     for (const auto& chapter : sorted_entries(project_folder() / "chapters"))
-        for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes")) {
-            const Scene scene = load_scene(file);
-            expect_same(chapter.filename().string().substr(0, 2) + " " + file.stem().string(), scene, 192,
-                        path_difference_limit(scene), chapter / "path_trace.glsl");
+        for (const auto& file : sorted_entries(chapter)) {
+            if (file.extension() != ".glsl") continue;
+            RenderSettings settings{.width = 192, .height = 192, .splitting_factor = 2, .estimator = {file}};
+            // It branches at every hit.
+            if (file.stem() == "path_trace_every_hit") settings.max_path_length = 3;
+            all[chapter.filename().string().substr(0, 2) + " " + file.stem().string()] = settings;
         }
+    return all;
+}
+
+TEST_P(Parity, EveryChapterOnEveryScene) {
+    for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes")) {
+        const Scene scene = load_scene(file);
+        const BackendScene expected(Backend::compute, scene), actual(GetParam(), scene);
+        for (const auto& [name, settings] : chapter_estimators())
+            expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings),
+                          actual.render(settings), limits_of(scene));
+    }
 }
 
 TEST_P(Parity, TurnedStretchedAndMirroredInstances) {
@@ -120,7 +146,7 @@ TEST_P(Parity, TurnedStretchedAndMirroredInstances) {
     place(scene, {{2, 0, 0}, {0, 0.3f, 0.1f}, {0, 0, 1}, {0, 0, 0}});
     place(scene, {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}, {2, 1, -1}});
     place(scene, {{-1, 0, 0.5f}, {0, 1, 0}, {0, 0, 1}, {-2, 1, -1}});  // mirrored and sheared
-    expect_same("transformed instances", scene, 192, 1e-4);
+    expect_same("transformed instances", scene, 192, {});
 }
 
 TEST_P(Parity, ManyInstances) {
@@ -135,15 +161,15 @@ TEST_P(Parity, ManyInstances) {
                           {scale * static_cast<float>(i % columns - columns / 2),
                            scale * static_cast<float>(i / columns - columns / 2), 0}});
         }
-        expect_same(std::to_string(count) + " instances", scene, 96, 1e-3);
+        expect_same(std::to_string(count) + " instances", scene, 96, {.fraction = 1e-3});
     }
 }
 
 TEST_P(Parity, EmptySceneAndSingleTriangle) {
-    expect_same("empty scene", lit_scene({}), 32, 0);
+    expect_same("empty scene", lit_scene({}), 32, {.fraction = 0});
     Scene triangle = lit_scene({{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}});
     place(triangle, mat4x3(1));
-    expect_same("single triangle", triangle, 64, 1e-3);
+    expect_same("single triangle", triangle, 64, {.fraction = 1e-3});
 }
 
 // More vertices than 16-bit indices reach, and more triangles than some drivers like to number.
@@ -151,7 +177,7 @@ TEST_P(Parity, LargeMeshes) {
     for (const uint32_t rings : {260u, 1460u}) {
         Scene scene = lit_scene(bumpy_sphere(rings));
         place(scene, mat4x3(1));
-        expect_same(std::to_string(scene.triangles.size()) + " triangles", scene, 96, 1e-3);
+        expect_same(std::to_string(scene.triangles.size()) + " triangles", scene, 96, {.fraction = 1e-3});
     }
 }
 
