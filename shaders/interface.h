@@ -89,12 +89,12 @@ struct Camera {
 struct RenderParameters {
     Camera camera;
     uvec2 image_size;
-    uvec2 seed_key;        // scrambles the start states of the random numbers
-    uint first_sample;     // index of this render's first sample in every pixel
-    uint max_path_length;  // number of bounces after which a path ends: 0 shows emission only
-    int only_path_length;  // counts light only after exactly this many bounces; -1 counts all
-    vec3 background;       // radiance of the sky; with a light probe its factor
-    float probe_rotation;  // radians about +Y, counter-clockwise seen from above
+    uvec2 seed_key;         // scrambles the start states of the random numbers
+    uint first_sample;      // index of this render's first sample in every pixel
+    uint max_path_length;   // number of bounces after which a path ends: 0 shows emission only
+    int only_path_length;   // counts light only after exactly this many bounces; -1 counts all
+    vec3 background;        // radiance of the sky; with a light probe its factor
+    float probe_rotation;   // radians about +Y, counter-clockwise seen from above
     uint splitting_factor;  // number of branches in which a path goes on, from chapter 4
     uint roulette_start;    // Russian roulette begins at this bounce, from chapter 5
     float survival_cap;     // largest survival probability, in (0,1], from chapter 5

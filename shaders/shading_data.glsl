@@ -45,6 +45,7 @@ SurfacePoint get_surface_point(Hit hit) {
     // Counter-clockwise seen from the front: the scene's loader takes care of it.
     float size = max(max_component(x_1 - x_0), max_component(x_2 - x_0));
     point.geometric_normal = cross((x_1 - x_0) / size, (x_2 - x_0) / size);
+    float slenderness = 1.0 / max_component(point.geometric_normal);  // about length over height
 #ifdef FEATURE_TRANSFORMS
     Instance instance = instances[hit.instance];
     mat3 linear = mat3(instance.object_to_world);
@@ -54,8 +55,9 @@ SurfacePoint get_surface_point(Hit hit) {
 #endif
     point.geometric_normal = normalize_scaled(point.geometric_normal);
     // Roundings of relative size 2^-24 in the position and in the next ray's intersection with the same triangle, also
-    // where the surface itself is at coordinate 0. Measured: self-intersections end at a factor of 4.
-    point.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z);
+    // where the surface itself is at coordinate 0. Measured: self-intersections end at a factor of 4. The intersection
+    // with a slender triangle is less exact; the limit keeps rays from passing what is close to a very slender one.
+    point.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * min(slenderness, 256.0);
     return point;
 }
 

@@ -1,4 +1,5 @@
-// Chapter 2, cosine sampling: directions are chosen with a density proportional to the cosine of the rendering equation.
+// Chapter 2, cosine sampling: directions are chosen with a density proportional to the cosine of the rendering
+// equation.
 //
 // Then the cosine cancels, and the estimator of the slides becomes L_{k-1} = L_{e,k} + L_k π ρ(x_k, ω_k, -ω_{k-1}).
 

@@ -5,8 +5,8 @@
 #include "sampling.glsl"
 #include "direct_light.glsl"
 
-// The light that arrives at the first hit x_1 and that it reflects to the camera, by one path with random numbers of its
-// own.
+// The light that arrives at the first hit x_1 and that it reflects to the camera, by one path with random numbers of
+// its own.
 vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     vec3 radiance = vec3(0.0);
     vec3 throughput = vec3(1.0);

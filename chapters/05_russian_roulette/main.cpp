@@ -1,4 +1,4 @@
-// Chapter 5: russian roulette: dim paths end early, without bias. The path tracer itself is path_trace.glsl.
+// Chapter 5: Russian roulette: dim paths end early, without bias. The path tracer itself is path_trace.glsl.
 #include "app/chapter.h"
 
 int main(int argument_count, char** arguments) {

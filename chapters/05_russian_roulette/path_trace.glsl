@@ -1,13 +1,13 @@
 // Chapter 5, Russian roulette: after every bounce the path survives with probability q only, and then counts 1/q.
 //
-// Since q · (1/q) X + (1 - q) · 0 = X the expectation stays the same, and paths of any length end after a finite number of
-// bounces. q is the throughput: dim paths cost most and bring least. As it already holds the factors 1/q of earlier
-// bounces, surviving paths carry about the same throughput however long they are.
+// Since q · (1/q) X + (1 - q) · 0 = X the expectation stays the same, and paths of any length end after a finite
+// number of bounces. q is the throughput: dim paths cost as much as bright ones and bring less. As it already holds
+// the factors 1/q of earlier bounces, surviving paths carry about the same throughput however long they are.
 #include "sampling.glsl"
 #include "direct_light.glsl"
 
-// The light that arrives at the first hit x_1 and that it reflects to the camera, by one path with random numbers of its
-// own.
+// The light that arrives at the first hit x_1 and that it reflects to the camera, by one path with random numbers of
+// its own.
 vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     vec3 radiance = vec3(0.0);
     vec3 throughput = vec3(1.0);

@@ -1,5 +1,5 @@
-// Chapter 5 with splitting at every hit (--split-every-hit): Russian roulette prunes the tree of branches that chapter 4
-// lets grow.
+// Chapter 5 with splitting at every hit (--split-every-hit): Russian roulette prunes the tree of branches that chapter
+// 4 lets grow.
 #include "sampling.glsl"
 #include "direct_light.glsl"
 

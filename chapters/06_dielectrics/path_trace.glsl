@@ -1,8 +1,10 @@
-// Chapter 6, dielectrics: at smooth glass and water light is either reflected or refracted, each into a single direction.
+// Chapter 6, dielectrics: at smooth glass and water light is either reflected or refracted, each into a single
+// direction.
 //
-// A share F of the light is reflected (Fresnel), 1 - F refracted. The estimator follows one of the two directions, chosen
-// with these probabilities, so that the weight is 1. No light sample can meet exactly that direction: after such a bounce
-// emission counts where the path finds it. The bright caustics that arise are found by chance only, so they are noisy.
+// A share F of the light is reflected (Fresnel), 1 - F refracted. The estimator follows one of the two directions,
+// chosen with these probabilities, so that the weight is 1. No light sample can meet exactly that direction: after
+// such a bounce emission counts where the path finds it. The bright caustics that arise are found by chance only, so
+// they are noisy.
 #include "sampling.glsl"
 #include "direct_light.glsl"
 
@@ -34,8 +36,8 @@ vec3 sample_dielectric(ShadingData s, vec3 out_direction, float u) {
     return normalize(difference * s.normal - out_direction);
 }
 
-// The light that arrives at the first hit x_1 and that it scatters to the camera, by one path with random numbers of its
-// own.
+// The light that arrives at the first hit x_1 and that it scatters to the camera, by one path with random numbers of
+// its own.
 vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     vec3 radiance = vec3(0.0);
     vec3 throughput = s.transmittance;
@@ -54,8 +56,8 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
         // The last ray could only find lights that have been sampled, or the background.
         if (is_light_sampled && !HAS_BACKGROUND && path_length == parameters.max_path_length) break;
 
-        // Sample ω_k: at a dielectric one of two directions, elsewhere with density n·ω_k / π with respect to solid angle
-        // and the weight π ρ. A direction on opposite sides of the two normals carries nothing.
+        // Sample ω_k: at a dielectric one of two directions, elsewhere with density n·ω_k / π with respect to solid
+        // angle and the weight π ρ. A direction on opposite sides of the two normals carries nothing.
         vec2 u = get_random_numbers(seed);
         vec3 omega;
         if (s.is_dielectric) {

@@ -34,7 +34,7 @@ struct Chapter {
 inline const ChapterOption splitting_factor{.name = "--splitting-factor",
                                             .help = "Branches in which a path goes on",
                                             .parameter = &RenderParameters::splitting_factor,
-                                            .default_value = 2,
+                                            .default_value = 4,
                                             .low = 1,
                                             .high = 1024};
 inline const ChapterOption survival_cap{
@@ -47,7 +47,7 @@ inline const ChapterOption survival_cap{
 inline const ChapterOption roulette_start{.name = "--roulette-start",
                                           .help = "Bounce at which Russian roulette begins",
                                           .parameter = &RenderParameters::roulette_start,
-                                          .default_value = 1,
+                                          .default_value = 3,
                                           .low = 1,
                                           .high = 1000000};
 

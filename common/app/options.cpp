@@ -104,10 +104,10 @@ void add_device_options(CLI::App& app, Options& options) {
 // What only some chapters have.
 void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options) {
     if (chapter.light_sampling)
-        app.add_option("--light-sampling", options.light_sampling,
-                       "on: sample points on lights; off: count emission where paths find it")
-            ->transform(CLI::Transformer({{"on", "true"}, {"off", "false"}}))
-            ->type_name("on|off");
+        app.add_option_function<std::string>(
+               "--light-sampling", [&](const std::string& value) { options.light_sampling = value == "on"; },
+               "on: sample points on lights; off: count emission where paths find it")
+            ->check(CLI::IsMember({"on", "off"}));
     if (chapter.split_every_hit)
         app.add_flag("--split-every-hit", options.split_every_hit,
                      "Split at every hit, not only at the first");
@@ -174,6 +174,8 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
         std::replace(message.begin(), message.end(), '\n', ' ');
         throw UserError(message + " (--help shows all options)");
     }
+    if (options.split_every_hit && app.count(splitting_factor.name) == 0)
+        options.chapter_values.front() = 2;  // the blog's: 4^5 branches would take hours
     options.scene = find_scene(scene);
     for (const auto& known : views())
         if (known.name == view) options.view = &known;

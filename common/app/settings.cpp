@@ -14,6 +14,9 @@ namespace {
 // Where paths have no limit they still end here: a sample must end in bounded time.
 constexpr uint32_t safety_limit = 10000;
 
+// With --split-every-hit, whose work grows with the power of the length: the blog's.
+constexpr uint32_t split_every_hit_length = 5;
+
 // More branches would keep a device busy with one sample for longer than drivers allow.
 constexpr double max_branches = 1 << 20;
 
@@ -31,9 +34,10 @@ uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Optio
     if (options.max_path_length && only > *options.max_path_length)
         throw UserError("--only-path-length " + std::to_string(only) + " is above --max-path-length " +
                         std::to_string(*options.max_path_length) + ": the picture would be black");
-    const bool is_unlimited = chapter.unlimited_path_length && !options.split_every_hit;
-    return std::max(
-        options.max_path_length.value_or(is_unlimited ? safety_limit : scene.defaults.max_path_length), only);
+    uint32_t length = scene.defaults.max_path_length;
+    if (chapter.unlimited_path_length) length = safety_limit;
+    if (options.split_every_hit) length = split_every_hit_length;
+    return std::max(options.max_path_length.value_or(length), only);
 }
 
 void check_split_every_hit(const RenderParameters& parameters) {
@@ -108,9 +112,7 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto folder = project_folder() / "chapters" / chapter.name;
     if (!options.view)
         return {folder / (options.split_every_hit ? "path_trace_every_hit.glsl" : "path_trace.glsl")};
-    Estimator estimator{project_folder() / "shaders" / "view.glsl", {options.view->define}};
-    if (options.view->name == "bvh-steps") estimator.defines.emplace_back("COUNT_TRAVERSAL_STEPS");
-    return estimator;
+    return {project_folder() / "shaders" / "view.glsl", {options.view->define}};
 }
 
 std::string safety_limit_text(const Scene& scene) {

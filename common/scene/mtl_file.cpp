@@ -93,7 +93,9 @@ void make_dielectric(const std::string& file, const tinyobj::material_t& source,
     const auto fail = [&](const std::string& reason) {
         throw UserError(file + ": material " + in_quotes(stated.name) + ": " + reason);
     };
-    if (!(source.ior > 0)) fail("is transparent (d < 1) and needs a refractive index Ni above 0");
+    // Beyond these bounds nothing is transparent, and Fresnel's formulas would overflow.
+    if (!(source.ior >= 0.01f && source.ior <= 100))
+        fail("is transparent (d < 1) and needs a refractive index Ni from 0.01 to 100");
     material.refractive_index = source.ior;
     if (!stated.transmittance) return;
     for (int channel = 0; channel < 3; ++channel) {

@@ -17,10 +17,10 @@ struct MtlMaterial {
 };
 
 // Kd, map_Kd, Ke, Ks and Ns as in Material; Kd is white for a material with map_Kd alone. d < 1 or Tr > 0 (=
-// 1 - d) makes a smooth dielectric of refractive index Ni that absorbs -ln Tf per unit of length, nothing
-// without Tf; Tf 0 would be infinite absorption and is refused. Other keywords have no effect, which a
-// warning says. Textures are relative to texture_folder. UserError for numbers that are missing, not finite
-// or out of range.
+// 1 - d) makes a smooth dielectric of refractive index Ni in [0.01,100] that absorbs -ln Tf per unit of
+// length, nothing without Tf; Tf 0 would be infinite absorption and is refused. Other keywords have no
+// effect, which a warning says. Textures are relative to texture_folder. UserError for numbers that are
+// missing, not finite or out of range.
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file,
                                   const std::filesystem::path& texture_folder, SourceFiles& files,
                                   std::vector<std::string>& warnings);

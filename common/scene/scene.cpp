@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "image/image_checks.h"
+#include "scene/dielectric_warnings.h"
 #include "scene/features.h"
 #include "scene/mesh_assembly.h"
 #include "scene/scene_file.h"
@@ -113,6 +114,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
     if (!std::isfinite(diagonal))
         throw UserError(name + ": its coordinates are too large for 32-bit numbers");
+    for (std::string& warning : dielectric_warnings(scene)) scene.warnings.push_back(std::move(warning));
     if (description.camera)
         scene.camera = *description.camera;
     else if (!scene.instances.empty())

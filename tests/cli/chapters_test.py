@@ -1,0 +1,104 @@
+"""What the chapters have beyond the common command line: options of their own, scenes that they refuse."""
+
+import unittest
+
+from program import BINARIES, PROJECT, ProgramTest, RenderTest
+
+CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").iterdir() if path.is_dir())
+TINY = ["--width=16", "--height=16", "--samples=2", "--backend=compute"]
+
+
+def options_of(chapter):
+    """Those of its own."""
+    number = int(chapter[:2])
+    options = ["--light-sampling"] if number >= 3 else []
+    options += ["--splitting-factor"] if number >= 4 else []
+    options += ["--split-every-hit"] if number in (4, 5) else []
+    return options + (["--survival-cap", "--roulette-start"] if number >= 5 else [])
+
+
+class EveryChapter(ProgramTest):
+    def test_has_its_own_options_and_no_others(self):
+        every = ["--light-sampling", "--splitting-factor", "--split-every-hit", "--survival-cap", "--roulette-start"]
+        for chapter in CHAPTERS:
+            with self.subTest(chapter=chapter):
+                out = self.render("--help", program=BINARIES / chapter)
+                self.assertEqual([option for option in every if option in out], options_of(chapter))
+
+    def test_renders_its_default_scene(self):
+        for chapter in CHAPTERS:
+            with self.subTest(chapter=chapter):
+                out = self.render(*TINY, "--validation", program=BINARIES / chapter)
+                self.assertIn("validation     no complaints", out)
+                self.assertIn(f"output/{chapter}.png", out)
+
+    def test_refuses_glass_before_chapter_6(self):
+        for chapter in CHAPTERS[:5]:
+            with self.subTest(chapter=chapter):
+                self.assert_refused(["glass"], "dielectric", "chapter 6", program=BINARIES / chapter)
+
+
+class ChapterOptions(ProgramTest):
+    def refuse(self, number, *arguments):
+        program = BINARIES / CHAPTERS[number - 1]
+        self.assert_refused(["quad.json", *arguments], arguments[0].split("=")[0], program=program)
+
+    def test_splitting_factor(self):
+        for value in ("0", "1000000", "1.5", "-2", "nan"):
+            with self.subTest(value=value):
+                self.refuse(4, f"--splitting-factor={value}")
+
+    def test_survival_cap(self):
+        for value in ("0", "-0.5", "1.01", "nan", "inf"):
+            with self.subTest(value=value):
+                self.refuse(5, f"--survival-cap={value}")
+
+    def test_roulette_start(self):
+        for value in ("0", "-1", "2.5", "first"):
+            with self.subTest(value=value):
+                self.refuse(6, f"--roulette-start={value}")
+
+    def test_light_sampling(self):
+        for value in ("maybe", "", "2"):
+            with self.subTest(value=value):
+                self.refuse(3, f"--light-sampling={value}")
+
+    def test_splitting_at_every_hit_is_bounded(self):
+        self.refuse(4, "--split-every-hit", "--max-path-length=9")
+        self.refuse(5, "--splitting-factor=6", "--split-every-hit", "--max-path-length=8")
+
+    def test_largest_settings_end(self):
+        program = BINARIES / CHAPTERS[3]
+        self.render("quad.json", *TINY, "--splitting-factor=1024", program=program)
+        self.render("quad.json", *TINY, "--split-every-hit", "--splitting-factor=1024", "--max-path-length=2", program=program)
+        program = BINARIES / CHAPTERS[4]
+        self.render("quad.json", *TINY, "--survival-cap=1", "--roulette-start=1000000", program=program)
+
+    def test_the_limit_of_unlimited_paths_is_told(self):
+        program = BINARIES / CHAPTERS[4]
+        self.assertRegex(self.render("quad.json", *TINY, program=program), r"beyond 10000 bounces .* at most \de-\d+")
+        self.assertNotIn("bounces", self.render("quad.json", *TINY, "--max-path-length=3", program=program))
+
+
+class ChapterRenders(RenderTest):
+    def picture_of(self, number, name, *arguments):
+        file = self.folder / f"{name}.exr"
+        self.render(*self.command(*arguments), "--quiet", "--output", file, program=BINARIES / CHAPTERS[number - 1])
+        return file
+
+    def test_other_settings_are_not_joined(self):
+        first = self.picture_of(4, "first", "--samples=2", "--splitting-factor=2")
+        for change in ("--splitting-factor=3", "--light-sampling=off", "--split-every-hit"):
+            with self.subTest(change=change):
+                arguments = ["--samples=4", "--max-path-length=8", f"--resume={first}", change]
+                program = BINARIES / CHAPTERS[3]
+                self.assert_refused(self.command(*arguments), "settings|estimator", program=program)
+
+    def test_light_sampling_changes_the_noise(self):
+        on = self.picture_of(3, "on", "--samples=4")
+        off = self.picture_of(3, "off", "--samples=4", "--light-sampling=off")
+        self.assertNotEqual(on.read_bytes(), off.read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
