@@ -11,13 +11,13 @@ in scene units, radiance in linear sRGB primaries, triangles counter-clockwise s
 import argparse
 import json
 import math
-import struct
 import sys
-import zlib
 from colorsys import hsv_to_rgb
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
+
+from image_encoders import encode_hdr, encode_png
 
 ASSETS = Path(__file__).resolve().parent.parent / "assets"
 files = {}  # path below assets/ -> bytes
@@ -115,37 +115,17 @@ def write_scene(name, description, meshes, view, **keys):
 
 
 def write_png(name, width, height, pixel):
-    """textures/NAME.png, eight bits a channel; pixel(x, y), y down: its sRGB-encoded channels in [0,1]."""
-    rows = [b"\0" + bytes(round(255 * c) for x in range(width) for c in pixel(x, y)) for y in range(height)]
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    # Stored, a block a row: what zlib compresses to depends on its version, and git compresses anyway.
-    blocks = b"".join(bytes([y == height - 1]) + struct.pack("<HH", len(row), 0xFFFF - len(row)) + row
-                      for y, row in enumerate(rows))
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)  # 8 bits, RGB, not interlaced
-    stream = b"\x78\x01" + blocks + struct.pack(">I", zlib.adler32(b"".join(rows)))
-    chunks = chunk(b"IHDR", header) + chunk(b"IDAT", stream) + chunk(b"IEND", b"")
-    files[f"textures/{name}.png"] = b"\x89PNG\r\n\x1a\n" + chunks
+    files[f"textures/{name}.png"] = encode_png(width, height, pixel)
 
 
 def write_light_probe(name, width, height, radiance):
     """light_probes/NAME.hdr, equirectangular; radiance(d): linear RGB that comes from direction d. The centre
     of the image is towards -Z, its right half towards +X, its top +Y."""
-    content = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
-    for y in range(height):
-        pixels = []
-        for x in range(width):
-            d = direction(math.pi * (y + 0.5) / height, math.pi - 2 * math.pi * ((x + 0.5) / width - 0.5))
-            rgb = radiance(d)
-            exponent = math.frexp(max(rgb))[1]
-            pixels.append([min(255, round(c * 2**(8 - exponent))) for c in rgb] + [exponent + 128])
-        content += struct.pack(">BBH", 2, 2, width)  # a row: four planes, each in runs of at most 128 bytes
-        for plane in zip(*pixels):
-            for run in (plane[k:k + 128] for k in range(0, width, 128)):
-                content += bytes([len(run), *run])
-    files[f"light_probes/{name}.hdr"] = content
+    def pixel(x, y):
+        azimuth = math.pi - 2 * math.pi * ((x + 0.5) / width - 0.5)
+        return radiance(direction(math.pi * (y + 0.5) / height, azimuth))
+
+    files[f"light_probes/{name}.hdr"] = encode_hdr(width, height, pixel)
 
 
 # ---------------------------------------------------------------------------------------------- shapes

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Runs the statistical tests with other seeds: none may fail, and their p-values together must be uniform.
+
+    tools/false_alarms.py [SEEDS]        default: 5 seeds
+
+Counts the first p-value of each test and seed, since others of a test may come from the same paths. Prints how many
+p-values a run has, which gives the rate of false alarms that it was designed for.
+"""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PROGRAMS = ["shaders_tests", "convergence_tests"]
+SIGNIFICANCE = 1e-6  # of an expectation, as in tests/support/expect_statistics.h
+
+
+def run(seed, folder):
+    """Runs all tests with a seed; returns the programs that failed and the lines test, what, p-value."""
+    file = Path(folder) / f"{seed}.tsv"
+    environment = {**os.environ, "LAB_TEST_SEED": str(seed), "LAB_TEST_P_VALUES": str(file)}
+    failed = [
+        program
+        for program in PROGRAMS
+        if subprocess.run([ROOT / "build/bin" / program, "--gtest_brief=1"], env=environment, stdout=sys.stderr, check=False).returncode
+    ]
+    return failed, [line.split("\t") for line in file.read_text(encoding="utf-8").splitlines()]
+
+
+def kolmogorov_smirnov(numbers):
+    """The p-value of uniformity on [0,1] (Stephens' approximation)."""
+    ordered, n = sorted(numbers), len(numbers)
+    distance = max(max(i / n - x, x - (i - 1) / n) for i, x in enumerate(ordered, 1))
+    scaled = (math.sqrt(n) + 0.12 + 0.11 / math.sqrt(n)) * distance
+    return min(1, 2 * sum((-1) ** (k - 1) * math.exp(-2 * (k * scaled) ** 2) for k in range(1, 101)))
+
+
+def main():
+    seeds = range(1, 1 + (int(sys.argv[1]) if len(sys.argv) > 1 else 5))
+    failures, first_p_values = 0, []
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in seeds:
+            failed, lines = run(seed, folder)
+            failures += len(failed)
+            first = {}
+            for test, _, p_value in lines:
+                first.setdefault(test, float(p_value))
+            first_p_values += first.values()
+            print(f"seed {seed}: {len(lines)} p-values of {len(first)} tests, smallest {min(float(l[2]) for l in lines):.2g}"
+                  + (f", FAILED: {' '.join(failed)}" if failed else ""), flush=True)
+    print(f"{len(first_p_values)} independent p-values: Kolmogorov-Smirnov p = {kolmogorov_smirnov(first_p_values):.2g}")
+    print(f"designed rate of false alarms of a run: {1 - (1 - SIGNIFICANCE) ** len(lines):.2g}")
+    sys.exit(failures > 0 or kolmogorov_smirnov(first_p_values) < 0.001)
+
+
+if __name__ == "__main__":
+    main()
