@@ -12,11 +12,11 @@
 
 // In place of scene.glsl.
 RenderParameters parameters;
-vec3 positions[3];
-vec3 normals[3];
-uvec3 triangles[1] = {uvec3(0u, 1u, 2u)};
-uint triangle_materials[1] = {0u};
-Material materials[1];
+vec3 positions[6];
+vec3 normals[6];
+uvec3 triangles[2] = {uvec3(0u, 1u, 2u), uvec3(3u, 4u, 5u)};  // the surface, and a light where a test needs one
+uint triangle_materials[2] = {0u, 1u};
+Material materials[2];
 
 #include "background.glsl"
 #include "shading_data.glsl"
@@ -39,9 +39,14 @@ bool is_counted(uint path_length) { return true; }
 // `max_path_length` is 1, but no constant: with one, Mesa 25.0.7 for CPUs translates the estimators' loop wrongly.
 void set_surface(vec3 normal, Material material, uint max_path_length) {
     vec3 tangent = normalize(cross(normal, abs(normal.x) > 0.5 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
-    positions = vec3[](vec3(0.0), tangent, cross(normal, tangent));
-    normals = vec3[](normal, normal, normal);
+    vec3 corners[3] = {vec3(0.0), tangent, cross(normal, tangent)};
+    for (int i = 0; i < 3; ++i) {
+        positions[i] = corners[i];
+        normals[i] = normal;
+    }
     materials[0] = material;
     parameters.max_path_length = max_path_length;
     parameters.background = vec3(1.0);
+    parameters.splitting_factor = 1u;
+    parameters.roulette_start = 2u;
 }

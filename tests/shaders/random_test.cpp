@@ -18,7 +18,10 @@ struct StreamId {
     RandomState key;
 };
 
-RandomState key_of_seed(uint32_t seed) { return {seed_key(seed).x, seed_key(seed).y}; }
+RandomState key_of_seed(uint32_t seed) {
+    const uvec2 key = seed_key(test_seed(seed));
+    return {key.x, key.y};
+}
 
 // Pairs of 24 and fewer bits, a billion apart and next to each other.
 std::vector<RandomState> hard_states() {
@@ -81,7 +84,7 @@ TEST(StartStates, AreDistinct) {
 // Numbers of all pixels of an image, as a separate series for each sample, seed and dimension.
 class Streams {
   public:
-    static constexpr uint32_t width = 512, height = 256, pixels = width * height;
+    static constexpr uint32_t width = 512, height = 288, pixels = width * height;
     static constexpr uint32_t samples = 3, seeds = 2, dimensions = 8;
 
     Streams() : series_(size_t{seeds} * samples * dimensions, std::vector<float>(pixels)) {

@@ -38,7 +38,7 @@ Material white_material() {
 
 std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& surface, size_t count,
                                    uint32_t run) {
-    return run_bounces(chapter, surface, seed_key(run), {}, count);
+    return run_bounces(chapter, surface, seed_key(test_seed(run)), {}, count);
 }
 
 std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surface,

@@ -4,20 +4,104 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
 
 namespace lab {
 
+// Adds a p-value to the file that LAB_TEST_P_VALUES names, for tools/false_alarms.py.
+static void record_p_value(const std::string& what, double p_value) {
+    const char* file = std::getenv("LAB_TEST_P_VALUES");
+    if (!file) return;
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    std::ofstream(file, std::ios::app)
+        << test->test_suite_name() << '.' << test->name() << '\t' << what << '\t' << p_value << '\n';
+}
+
 // Numbers that fit better than all but this share of independent ones do are not independent.
 static constexpr double too_good = 1 - 1e-9;
+
+// Relative error that rounding may cause: estimates without noise have to be exact but for this.
+static constexpr double rounding_error = 1e-6;
+
+// Wallace's transformation of Student's t with ν degrees of freedom to a standard normal number of the same
+// p-value (Annals of Mathematical Statistics 30(4), 1959), and its inverse: z within 0.01 for ν > 20.
+static double wallace_factor(double degrees_of_freedom) {
+    return (8 * degrees_of_freedom + 1) / (8 * degrees_of_freedom + 3);
+}
+static double normal_of_student(double t, double degrees_of_freedom) {
+    return wallace_factor(degrees_of_freedom) *
+           std::sqrt(degrees_of_freedom * std::log1p(t * t / degrees_of_freedom));
+}
+static double student_of_normal(double z, double degrees_of_freedom) {
+    const double scaled = z / wallace_factor(degrees_of_freedom);
+    return std::sqrt(degrees_of_freedom * std::expm1(scaled * scaled / degrees_of_freedom));
+}
+
+double Difference::p_value() const {
+    if (value == 0) return 1;
+    return normal_p_value(normal_of_student(value / standard_error, degrees_of_freedom));
+}
+
+double Difference::smallest_detectable(double level) const {
+    // Of the noncentral t-distribution: near the critical value t the statistic has a variance of
+    // 1 + t²/(2ν).
+    const double t = student_of_normal(normal_quantile(0.5 * level), degrees_of_freedom);
+    return standard_error * (t + normal_quantile(power) * std::sqrt(1 + 0.5 * t * t / degrees_of_freedom));
+}
+
+Difference Difference::relative_to(double scale) const {
+    return {value / scale, standard_error / scale, degrees_of_freedom};
+}
+
+Difference difference_from(std::span<const double> numbers, double expected) {
+    const MeanEstimate estimate = estimate_mean(numbers);
+    const double rounding = rounding_error * std::abs(expected);
+    return {estimate.mean - expected, std::max(estimate.standard_error, rounding),
+            static_cast<double>(numbers.size() - 1)};
+}
+
+Difference difference_of(std::span<const double> first, std::span<const double> second) {
+    const MeanEstimate a = estimate_mean(first), b = estimate_mean(second);
+    const auto square = [](double x) { return x * x; };
+    const double rounding = rounding_error * std::abs(b.mean);
+    const double variance_a = square(std::max(a.standard_error, rounding)),
+                 variance_b = square(std::max(b.standard_error, rounding));
+    const double degrees_of_freedom =
+        square(variance_a + variance_b) / (square(variance_a) / static_cast<double>(first.size() - 1) +
+                                           square(variance_b) / static_cast<double>(second.size() - 1));
+    return {a.mean - b.mean, std::sqrt(variance_a + variance_b), degrees_of_freedom};
+}
+
+void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences,
+                          double largest_difference, size_t comparisons) {
+    const double level = sidak(significance, relative_differences.size() * comparisons);
+    Difference worst;
+    double smallest_p_value = 1, weakest = 0;
+    for (const Difference& difference : relative_differences) {
+        weakest = std::max(weakest, difference.smallest_detectable(level));
+        const double p_value = difference.p_value();
+        if (p_value > smallest_p_value) continue;
+        smallest_p_value = p_value;
+        worst = difference;
+    }
+    // The first alone: p-values of the others are not independent of it.
+    if (relative_differences.front().standard_error > 2 * rounding_error)
+        record_p_value(what, relative_differences.front().p_value());
+    std::printf("  %s: smallest p of %zu = %.2g, there %+.3f %%; finds a bias of %.3f %%\n", what.c_str(),
+                relative_differences.size(), smallest_p_value, 100 * worst.value, 100 * weakest);
+    EXPECT_GT(smallest_p_value, level) << what << " is off by " << 100 * worst.value << " %";
+    EXPECT_LT(weakest, largest_difference) << what << ": the test is too weak, take more samples";
+}
 
 void expect_mean(const std::string& what, const MeanEstimate& estimate, double expected,
                  double largest_relative_bias, size_t comparisons) {
     const double level = sidak(significance, comparisons);
     const double bias = smallest_detectable_bias(estimate.standard_error, level, power) / std::abs(expected);
-    // A standard error of 0 is allowed: an estimate without noise has to be exact but for rounding errors.
-    const double rounding = 1e-6 * std::abs(expected);
+    const double rounding = rounding_error * std::abs(expected);
     const double z = (estimate.mean - expected) / std::max(estimate.standard_error, rounding);
     const double p_value = normal_p_value(z);
+    if (estimate.standard_error > 2 * rounding) record_p_value(what, p_value);
     std::printf("  %s: %.6f, expected %.6f, p = %.2g; finds a bias of %.3f %%\n", what.c_str(), estimate.mean,
                 expected, p_value, 100 * bias);
     EXPECT_GT(p_value, level) << what << " is biased by " << 100 * (estimate.mean / expected - 1) << " %";
@@ -28,6 +112,7 @@ void expect_distribution(const std::string& what, std::span<const uint64_t> coun
                          std::span<const double> probabilities, double largest_error) {
     const ChiSquareTest test = chi_square_test(counts, probabilities);
     const double error = test.smallest_detectable_error(significance, power);
+    record_p_value(what, test.p_value);
     std::printf(
         "  %s: chi-square %.1f at %.0f degrees of freedom, p = %.2g; finds an error of the density of %.2f "
         "%%\n",
@@ -37,8 +122,9 @@ void expect_distribution(const std::string& what, std::span<const uint64_t> coun
     EXPECT_LT(error, largest_error) << what << ": the test is too weak, take more samples";
 }
 
-void expect_uniform(const std::string& what, const std::vector<double>& numbers) {
+void expect_uniform(const std::string& what, const std::vector<double>& numbers, double largest_distance) {
     const double p_value = kolmogorov_smirnov_p_value(numbers);
+    record_p_value(what, p_value);
     // The distance whose asymptotic p-value is the significance, plus as much as it varies.
     const double count = static_cast<double>(numbers.size());
     const double distance =
@@ -46,6 +132,7 @@ void expect_uniform(const std::string& what, const std::vector<double>& numbers)
     std::printf("  %s: Kolmogorov-Smirnov p = %.2g; finds a distribution that is off by %.3f %%\n",
                 what.c_str(), p_value, 100 * distance);
     EXPECT_GT(p_value, significance) << what << " is not uniform";
+    EXPECT_LT(distance, largest_distance) << what << ": the test is too weak, take more of them";
 }
 
 }  // namespace lab

@@ -11,9 +11,9 @@
 namespace lab {
 
 // Probability of a false alarm in each expectation. Seeds are fixed, so a test that is green on a device
-// stays so; with the about 100 expectations there are, a new device raises a false alarm with a probability
-// of 0.001.
-inline constexpr double significance = 1e-5;
+// stays so; on a new device a run with its less than 1000 expectations raises a false alarm with a
+// probability below 0.001, see docs/numerics.md.
+inline constexpr double significance = 1e-6;
 inline constexpr double power = 0.99;
 
 // The mean is `expected`, and a bias of `largest_relative_bias` times `expected` would have been found.
@@ -21,12 +21,36 @@ inline constexpr double power = 0.99;
 void expect_mean(const std::string& what, const MeanEstimate& estimate, double expected,
                  double largest_relative_bias, size_t comparisons = 1);
 
+// How far an estimate is from what it should be, or from another estimate of the same number.
+struct Difference {
+    double value = 0;
+    double standard_error = 0;
+    double degrees_of_freedom = 0;  // of the standard error, which is itself an estimate
+
+    // Student's t-test of a difference of 0.
+    double p_value() const;
+    // Smallest difference that the t-test finds with probability `power`.
+    double smallest_detectable(double level) const;
+    // All but the degrees of freedom divided by a scale.
+    Difference relative_to(double scale) const;
+};
+// Of the mean of independent numbers from the expected one.
+Difference difference_from(std::span<const double> numbers, double expected);
+// Of the means of two independent series (Welch).
+Difference difference_of(std::span<const double> first, std::span<const double> second);
+
+// All relative differences are 0, and in each of them `largest_difference` would have been found. They share
+// the significance of this test, and with `comparisons` tests like it.
+void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences,
+                          double largest_difference, size_t comparisons = 1);
+
 // The counts follow the probabilities, and a relative error of the density by `largest_error` (root mean
 // square) would have been found.
 void expect_distribution(const std::string& what, std::span<const uint64_t> counts,
                          std::span<const double> probabilities, double largest_error);
 
-// The numbers are uniform in [0,1).
-void expect_uniform(const std::string& what, const std::vector<double>& numbers);
+// The numbers are uniform in [0,1), and a distribution function that is off by `largest_distance` would have
+// been found.
+void expect_uniform(const std::string& what, const std::vector<double>& numbers, double largest_distance);
 
 }  // namespace lab

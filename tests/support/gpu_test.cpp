@@ -1,11 +1,20 @@
 #include "support/gpu_test.h"
 
+#include <cstdlib>
+
 namespace lab {
 
 const Device& test_device() {
     static const Device device({.choice = "", .validation = true});
     return device;
 }
+
+uint32_t test_seed(uint32_t seed) {
+    const char* text = std::getenv("LAB_TEST_SEED");
+    return seed + (text ? 1000003 * static_cast<uint32_t>(std::strtoul(text, nullptr, 10)) : 0);
+}
+
+bool runs_all_tests() { return std::getenv("LAB_TEST_ALL") != nullptr; }
 
 void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
                 std::span<const std::byte> inputs) {

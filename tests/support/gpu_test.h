@@ -16,6 +16,13 @@ namespace lab {
 // every test fail in which they complain.
 const Device& test_device();
 
+// The seed that stands for this one in this run: LAB_TEST_SEED gives all tests other random numbers.
+uint32_t test_seed(uint32_t seed);
+
+// Tests that take minutes on a CPU run only with ./lab test --all, which sets LAB_TEST_ALL.
+enum class Run { always, with_all };
+bool runs_all_tests();
+
 // A shader that computes one result in each invocation.
 struct TestShader {
     std::string name;  // of the file in tests/shaders

@@ -1,11 +1,34 @@
 #include "support/render.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "app/options.h"
 #include "support/gpu_test.h"
 
 namespace lab {
+namespace {
+
+// Calls `receive` with the film and the number of rays so far each time that all pixels have settings.samples
+// samples more. Fails the test if any of them is invalid.
+void render_progressively(const Scene& scene, const RenderSettings& settings, size_t steps,
+                          const std::function<void(const FilmImage&, uint64_t)>& receive) {
+    const Device& device = test_device();
+    const GpuScene gpu_scene(device, scene, settings.light_sampling);
+    const auto acceleration_structure = build_acceleration_structure(settings.backend, device, gpu_scene);
+    Renderer renderer(device, *acceleration_structure, settings.estimator, make_parameters(scene, settings));
+    renderer.set_dispatch_seconds(settings.dispatch_seconds);
+    for (uint32_t step = 1; step <= steps; ++step) {
+        while (renderer.advance(step * settings.samples)) {
+        }
+        const FilmImage film = renderer.film().read();
+        EXPECT_EQ(film.invalid_samples(), 0u);
+        EXPECT_EQ(film.min_samples(), step * settings.samples);
+        receive(film, renderer.rays());
+    }
+}
+
+}  // namespace
 
 Estimator chapter_estimator(const std::string& chapter) {
     return {project_folder() / "chapters" / chapter / "path_trace.glsl"};
@@ -19,7 +42,7 @@ Estimator view_estimator(const std::string& view) {
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings) {
     RenderParameters parameters = default_parameters(scene, {settings.width, settings.height});
-    parameters.seed_key = seed_key(settings.seed);
+    parameters.seed_key = seed_key(test_seed(settings.seed));
     parameters.first_sample = settings.first_sample;
     parameters.max_path_length = settings.max_path_length;
     parameters.only_path_length = settings.only_path_length;
@@ -30,17 +53,46 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
 }
 
 FilmImage render(const Scene& scene, const RenderSettings& settings) {
-    const Device& device = test_device();
-    const GpuScene gpu_scene(device, scene, settings.light_sampling);
-    const auto acceleration_structure = build_acceleration_structure(settings.backend, device, gpu_scene);
-    Renderer renderer(device, *acceleration_structure, settings.estimator, make_parameters(scene, settings));
-    renderer.set_dispatch_seconds(settings.dispatch_seconds);
-    while (renderer.advance(settings.samples)) {
+    return render_and_count(scene, settings).film;
+}
+
+Rendering render_and_count(const Scene& scene, const RenderSettings& settings) {
+    Rendering rendering;
+    render_progressively(scene, settings, 1, [&](const FilmImage& film, uint64_t rays) {
+        rendering = {film, rays};
+    });
+    return rendering;
+}
+
+Batches render_batches(const Scene& scene, const RenderSettings& settings, size_t count) {
+    Batches batches{.width = settings.width, .height = settings.height, .images = {}, .rays = {}};
+    std::vector<glm::dvec3> previous(size_t{settings.width} * settings.height);
+    double previous_rays = 0;
+    render_progressively(scene, settings, count, [&](const FilmImage& film, uint64_t rays) {
+        auto& image = batches.images.emplace_back(previous.size());
+        for (size_t i = 0; i < image.size(); ++i) {
+            const glm::dvec3 sum = glm::dvec3(film.pixels[i].sum) + glm::dvec3(film.pixels[i].compensation);
+            image[i] = (sum - previous[i]) / static_cast<double>(settings.samples);
+            previous[i] = sum;
+        }
+        const double all_rays = static_cast<double>(rays);
+        batches.rays.push_back((all_rays - previous_rays) / settings.samples /
+                               static_cast<double>(image.size()));
+        previous_rays = all_rays;
+    });
+    return batches;
+}
+
+std::vector<double> Batches::means(int channel, uvec2 corner, uvec2 size) const {
+    std::vector<double> means;
+    for (const auto& image : images) {
+        double sum = 0;
+        for (uint32_t y = corner.y; y < corner.y + size.y; ++y)
+            for (uint32_t x = corner.x; x < corner.x + size.x; ++x)
+                sum += image[size_t{y} * width + x][channel];
+        means.push_back(sum / size.x / size.y);
     }
-    FilmImage film = renderer.film().read();
-    EXPECT_EQ(film.invalid_samples(), 0u);
-    EXPECT_EQ(film.min_samples(), settings.samples);
-    return film;
+    return means;
 }
 
 vec3 radiance_at(const FilmImage& film, uint32_t x, uint32_t y) {
@@ -58,6 +110,10 @@ std::vector<double> pixel_means(const FilmImage& film, int channel) {
 
 void OnEachBackend::SetUp() {
     if (!test_device().description().supports(GetParam())) GTEST_SKIP() << "the device lacks this backend";
+}
+
+uint32_t chapter_number(const std::string& chapter) {
+    return static_cast<uint32_t>(std::stoul(chapter.substr(0, 2)));
 }
 
 std::string backend_name(const testing::TestParamInfo<Backend>& info) { return to_string(info.param); }

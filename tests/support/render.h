@@ -36,8 +36,29 @@ struct RenderSettings {
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings);
 
+struct Rendering {
+    FilmImage film;
+    uint64_t rays = 0;
+};
+
 // The film after all samples. Fails the test if any of them is invalid.
 FilmImage render(const Scene& scene, const RenderSettings& settings);
+Rendering render_and_count(const Scene& scene, const RenderSettings& settings);
+
+// The same image rendered again and again with other samples: independent estimates, so that their spread
+// tells how exact their mean is.
+struct Batches {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<std::vector<glm::dvec3>> images;  // mean radiance of each pixel, one image a batch
+    std::vector<double> rays;                     // per sample, one number a batch
+
+    // One number a batch: the mean of a channel over the image, or over a rectangle of pixels.
+    std::vector<double> means(int channel) const { return means(channel, {0, 0}, {width, height}); }
+    std::vector<double> means(int channel, uvec2 corner, uvec2 size) const;
+};
+// Each batch takes settings.samples samples of every pixel.
+Batches render_batches(const Scene& scene, const RenderSettings& settings, size_t count);
 
 // Mean radiance of pixels, row by row from the top.
 vec3 radiance_at(const FilmImage& film, uint32_t x, uint32_t y);
@@ -51,6 +72,10 @@ class OnEachBackend : public testing::TestWithParam<Backend> {
   protected:
     void SetUp() override;
 };
+
+// 1 for "01_uniform_sampling". Chapters may follow the same paths if their seeds are equal: tests that are to
+// be independent of each other make it part of the seed.
+uint32_t chapter_number(const std::string& chapter);
 
 // For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters.
 std::string backend_name(const testing::TestParamInfo<Backend>& info);

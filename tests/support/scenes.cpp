@@ -1,5 +1,6 @@
 #include "support/scenes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -10,7 +11,11 @@ namespace {
 void finish(Scene& scene) {
     scene.file = "test scene";
     scene.triangle_materials.resize(scene.triangles.size(), 0);
-    scene.meshes = {{"test mesh", 0, static_cast<uint32_t>(scene.triangles.size())}};
+    const auto dielectric_count =
+        std::count_if(scene.triangle_materials.begin(), scene.triangle_materials.end(),
+                      [&](uint32_t material) { return scene.materials[material].refractive_index > 0; });
+    scene.meshes = {{"test mesh", 0, static_cast<uint32_t>(scene.triangles.size()),
+                     static_cast<uint32_t>(dielectric_count)}};
     scene.instance_meshes = {0};
     set_transform(scene, mat4x3(1));
 }
@@ -41,18 +46,22 @@ Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>
     return scene;
 }
 
-Scene closed_box(const Material& material) {
+std::vector<Quad> box_sides(const vec3& low, const vec3& high, uint32_t material, Facing facing) {
     std::vector<Quad> sides;
     for (int axis = 0; axis < 3; ++axis) {
-        vec3 u(0), v(0);
-        u[(axis + 1) % 3] = 2;
-        v[(axis + 2) % 3] = 2;
-        vec3 far_corner(-1);
-        far_corner[axis] = 1;
-        sides.push_back({vec3(-1), u, v});
-        sides.push_back({far_corner, v, u});
+        vec3 u(0), v(0), far_corner = low;
+        u[(axis + 1) % 3] = high[(axis + 1) % 3] - low[(axis + 1) % 3];
+        v[(axis + 2) % 3] = high[(axis + 2) % 3] - low[(axis + 2) % 3];
+        far_corner[axis] = high[axis];
+        if (facing == Facing::outwards) std::swap(u, v);
+        sides.push_back({low, u, v, material});
+        sides.push_back({far_corner, v, u, material});
     }
-    Scene scene = make_scene({material}, sides);
+    return sides;
+}
+
+Scene closed_box(const Material& material) {
+    Scene scene = make_scene({material}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
     scene.camera = {
         .position = {0.3f, -0.2f, 0.5f}, .target = {-0.4f, 0.1f, -1}, .up = {0, 1, 0}, .vertical_fov = 70};
     return scene;

@@ -18,13 +18,15 @@ struct Quad {
 };
 
 // One mesh and one instance of it. The four positions of a quad follow each other: corner, + edge_u, + both,
-// + edge_v.
+// + edge_v. Quads of dielectrics have to come last.
 Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>& quads);
+
+enum class Facing { inwards, outwards };
+std::vector<Quad> box_sides(const vec3& low, const vec3& high, uint32_t material, Facing facing);
 
 // The sides of the box [-1,1]³, with their fronts inside. The camera is inside as well.
 Scene closed_box(const Material& material);
 
-enum class Facing { inwards, outwards };
 // An icosahedron around the origin, each triangle divided into four: 80 triangles of circumscribed radius 1.
 // Facing inwards it is closed around the camera, outwards it fills the camera's view.
 Scene make_sphere(const Material& material, Facing facing);

@@ -1,0 +1,117 @@
+// On scenes without dielectrics all chapters have the same expected image.
+#include <algorithm>
+#include <array>
+
+#include "support/agreement.h"
+#include "support/expect_statistics.h"
+#include "support/gpu_test.h"
+#include "support/render.h"
+
+namespace lab {
+namespace {
+
+struct Subject {
+    std::string name;
+    std::string file;  // in chapters/
+    uint32_t splitting_factor;
+};
+
+// Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
+// p-values are independent. The splitting factors differ from length to length.
+using Pair = std::array<Subject, 2>;
+const Pair bounces{Subject{"1", "01_uniform_sampling/path_trace.glsl", 1},
+                   Subject{"2", "02_cosine_sampling/path_trace.glsl", 1}};
+std::vector<Pair> light_sampling_pairs(uint32_t length) {
+    const auto subject = [](const std::string& name, const std::string& file, uint32_t s) {
+        return Subject{name + ", s = " + std::to_string(s), file, s};
+    };
+    const uint32_t s = length == 1 ? 1 : length == 2 ? 5 : 3;
+    std::vector<Pair> pairs{{Subject{"3", "03_next_event_estimation/path_trace.glsl", 1},
+                             subject("4", "04_splitting/path_trace.glsl", s)},
+                            {subject("5", "05_russian_roulette/path_trace.glsl", 6 - s),
+                             subject("6", "06_dielectrics/path_trace.glsl", s == 5 ? 1 : 2)}};
+    // At length 1 there is but one hit to split at.
+    if (length > 1)
+        pairs.push_back(
+            {subject("4 at every hit", "04_splitting/path_trace_every_hit.glsl", length == 2 ? 3 : 2),
+             subject("5 at every hit", "05_russian_roulette/path_trace_every_hit.glsl",
+                     length == 2 ? 2 : 3)});
+    return pairs;
+}
+
+constexpr uint32_t size = 48, batch_count = 32;
+
+struct AgreementCase {
+    std::string scene;
+    uint32_t samples;                  // of a batch
+    uint32_t bounce_samples;           // of a batch of chapters 1 and 2, which find lights by bounces
+    AgreementLimits of_bounces;        // in comparisons with chapters 1 or 2
+    AgreementLimits of_light_samples;  // in all others
+    Run run = Run::always;
+};
+
+// The lower part of the scene, where no light is seen: it would add nothing but noise. Small suns are dimmed,
+// since bounces meet them so rarely that no error of the rest would be found.
+Scene load_test_scene(const std::string& name) {
+    Scene scene = load_scene(project_folder() / "assets" / "scenes" / (name + ".json"));
+    scene.camera.target.y = 0.4f;
+    scene.camera.vertical_fov = 16;
+    if (scene.light_probe)
+        for (float& number : scene.light_probe->pixels) number = std::min(number, 2.0f);
+    return scene;
+}
+
+Batches render_subject(const Scene& scene, const Subject& subject, uint32_t length, uint32_t samples,
+                       uint32_t seed) {
+    RenderSettings settings{.width = size,
+                            .height = size,
+                            .samples = samples,
+                            .max_path_length = length,
+                            .seed = seed,
+                            .splitting_factor = subject.splitting_factor};
+    settings.estimator = {project_folder() / "chapters" / subject.file};
+    return render_batches(scene, settings, batch_count);
+}
+
+class ChapterAgreement : public testing::TestWithParam<AgreementCase> {};
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, ChapterAgreement,
+    testing::Values(AgreementCase{"cornell_box", 8, 64, {0.06, 0.75}, {0.02, 0.18}},
+                    AgreementCase{"torus", 8, 64, {0.06, 0.9}, {0.02, 0.22}, Run::with_all},
+                    AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}},
+                    AgreementCase{"textured", 8, 8, {0.045, 0.45}, {0.045, 0.45}},
+                    AgreementCase{"glossy", 8, 64, {0.12, 3.5}, {0.05, 1.3}, Run::with_all}),
+    [](const auto& instance) { return instance.param.scene; });
+
+TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
+    if (GetParam().run == Run::with_all && !runs_all_tests()) GTEST_SKIP() << "runs with ./lab test --all";
+    const auto& [name, samples, bounce_samples, of_bounces, of_light_samples, run] = GetParam();
+    const Scene scene = load_test_scene(name);
+    uint32_t seed = 1000;
+    std::vector<double> p_values;
+    for (const uint32_t length : {1u, 2u, 4u}) {
+        const auto compare_pair = [&](const Pair& pair, uint32_t pair_samples,
+                                      const AgreementLimits& limits) {
+            const std::array images{render_subject(scene, pair[0], length, pair_samples, ++seed),
+                                    render_subject(scene, pair[1], length, pair_samples, ++seed)};
+            const auto more = expect_agreement(
+                "length " + std::to_string(length) + ": chapters " + pair[0].name + " and " + pair[1].name,
+                images[0], images[1], limits);
+            p_values.insert(p_values.end(), more.begin(), more.end());
+            return images;
+        };
+        const Batches oracle = length == 2
+                                   ? compare_pair(bounces, bounce_samples, of_bounces)[1]
+                                   : render_subject(scene, bounces[1], length, bounce_samples, ++seed);
+        for (const Pair& pair : light_sampling_pairs(length)) {
+            const auto images = compare_pair(pair, samples, of_light_samples);
+            for (size_t i = 0; i < pair.size(); ++i)
+                expect_agreement("length " + std::to_string(length) + ": chapters " + pair[i].name + " and 2",
+                                 images[i], oracle, of_bounces);
+        }
+    }
+    expect_uniform("p-values of the tiles", p_values, 0.3);
+}
+
+}  // namespace
+}  // namespace lab

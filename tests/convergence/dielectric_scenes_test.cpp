@@ -1,0 +1,140 @@
+// Chapter 6 in lit scenes, against other ways to compute the same image; and scenes that are hard on it.
+#include "support/dielectric_scenes.h"
+
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <utility>
+
+#include "support/agreement.h"
+#include "support/expect_statistics.h"
+#include "support/render.h"
+
+namespace lab {
+namespace {
+
+RenderSettings make_settings(uint32_t samples, uint32_t seed) {
+    return {.width = 48,
+            .height = 48,
+            .samples = samples,
+            .max_path_length = 1000,  // as good as unlimited: roulette ends paths long before
+            .seed = seed,
+            .roulette_start = 3,
+            .estimator = chapter_estimator("06_dielectrics")};
+}
+
+constexpr size_t batch_count = 32;
+
+TEST(DielectricScene, BoxOfIndexOneIsInvisibleInALitRoom) {
+    // With light samples: they do not reach through the box, but paths do and count what they find.
+    const Batches with_box =
+        render_batches(room_with_box(dielectric_material(1)), make_settings(14, 1), batch_count);
+    const Batches without = render_batches(empty_room(), make_settings(14, 2), batch_count);
+    expect_uniform("p-values of the tiles",
+                   expect_agreement("box of index 1", with_box, without, {0.02, 0.3}), 0.7);
+}
+
+TEST(DielectricScene, LightSamplingKeepsTheMean) {
+    Material glass = dielectric_material(1.5f, {0.5f, 0.2f, 0.8f});
+    const Scene clear = room_with_box(glass), filled = glass_with_lamp(glass);
+    glass.emission = {1, 2, 0.5f};
+    const Scene emissive = room_with_box(glass);
+    const std::pair<const char*, const Scene*> scenes[] = {
+        {"glass box", &clear}, {"emissive glass box", &emissive}, {"lamp in glass", &filled}};
+    for (const auto& [name, scene] : scenes) {
+        RenderSettings off = make_settings(20, 4);
+        off.light_sampling = LightSampling::off;
+        expect_agreement(name, render_batches(*scene, make_settings(14, 3), batch_count),
+                         render_batches(*scene, off, batch_count), {0.02, 0.3});
+    }
+}
+
+TEST(DielectricScene, BranchesAndRouletteKeepTheMean) {
+    const Scene scene = room_with_box(dielectric_material(1.5f, {0.5f, 0.2f, 0.8f}));
+    RenderSettings split = make_settings(5, 6);
+    split.splitting_factor = 3;
+    split.roulette_start = 1;
+    RenderSettings plain = make_settings(9, 5);
+    plain.roulette_start = 20;
+    expect_agreement("splitting and early roulette", render_batches(scene, split, batch_count),
+                     render_batches(scene, plain, batch_count), {0.02, 0.3});
+}
+
+// Without dielectrics the chapter is chapter 5, down to the random numbers. Only the rounding of sums may
+// differ, where a compiler contracts them, and then a few paths by roulette.
+TEST(DielectricScene, WithoutGlassIsChapterFive) {
+    Scene scene = empty_room();
+    Scene glossy = scene;
+    glossy.materials[0].specular_albedo = vec3(0.2f);
+    glossy.materials[0].specular_exponent = 20;
+    for (const Scene* room : {&scene, &glossy}) {
+        RenderSettings settings = make_settings(8, 7);
+        settings.splitting_factor = 2;
+        const FilmImage sixth = render(*room, settings);
+        settings.estimator = chapter_estimator("05_russian_roulette");
+        const FilmImage fifth = render(*room, settings);
+        size_t equal = 0, close = 0;
+        for (size_t i = 0; i < fifth.pixels.size(); ++i) {
+            equal += fifth.pixels[i].sum == sixth.pixels[i].sum;
+            close += glm::distance(fifth.pixels[i].sum, sixth.pixels[i].sum) <=
+                     1e-5f * glm::length(fifth.pixels[i].sum);
+        }
+        std::printf("  %zu of %zu pixels are equal to the bit, %zu up to roundings\n", equal,
+                    fifth.pixels.size(), close);
+        EXPECT_GE(close, fifth.pixels.size() * 99 / 100);
+    }
+}
+
+TEST(DielectricScene, EmissiveGlassAddsItsEmissionOnce) {
+    Material glass = dielectric_material(1.5f);
+    glass.emission = {3, 2, 1};
+    Scene scene = make_sphere(glass, Facing::outwards);
+    scene.background = vec3(1);
+    for (const LightSampling light_sampling : {LightSampling::on, LightSampling::off}) {
+        RenderSettings settings = make_settings(50, 8);
+        settings.light_sampling = light_sampling;
+        settings.roulette_start = 1000;
+        const FilmImage film = render(scene, settings);
+        for (int channel = 0; channel < 3; ++channel)
+            expect_mean("channel " + std::to_string(channel), estimate_mean(pixel_means(film, channel)),
+                        1 + double{glass.emission[channel]}, 0.001, 6);
+    }
+}
+
+// Scenes in which surfaces touch, coincide or enclose the camera: render() expects all samples to be finite,
+// and the image may be no brighter than its lamp is through glass.
+TEST(DielectricScene, TouchingSurfacesStayFinite) {
+    const Material glass = dielectric_material(1.5f, {0.1f, 0.2f, 0.3f});
+    const Material lamp = diffuse_material(vec3(0.5f), vec3(1));
+    const Quad lamp_quad{{-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, 0};
+    const struct {
+        const char* name;
+        vec3 low, high;  // of a box of glass
+        vec3 camera;
+    } cases[] = {
+        {"a face in the plane of the lamp", {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}, {0, 0.5f, 3}},
+        {"the lamp inside the glass", {-1, 0, -1}, {1, 2, 1}, {0, 0.5f, 3}},
+        {"an edge on the lamp", {0, 0, 0}, {1, 1, 1}, {0, 0.5f, 3}},
+        {"the camera in the glass", {-0.5f, 0, -0.5f}, {0.5f, 0.9f, 0.5f}, {0, 0.5f, 0.2f}},
+        {"the camera on a face", {-0.5f, 0, -0.5f}, {0.5f, 0.9f, 0.5f}, {0, 0.5f, 0.5f}},
+        {"a box without height", {-0.5f, 0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, {0, 1, 3}},
+    };
+    for (const auto& [name, low, high, camera] : cases) {
+        std::vector<Quad> quads{lamp_quad, {{-2, -0.01f, -2}, {0, 0, 4}, {4, 0, 0}, 1}};
+        for (const Quad& side : box_sides(low, high, 2, Facing::outwards))
+            if (glm::cross(side.edge_u, side.edge_v) != vec3(0)) quads.push_back(side);
+        Scene scene = make_scene({lamp, diffuse_material(vec3(0.7f)), glass}, quads);
+        scene.background = vec3(0.1f);
+        scene.camera = {.position = camera, .target = {0, 0.4f, -1}, .up = {0, 1, 0}, .vertical_fov = 50};
+        const FilmImage film = render(scene, make_settings(25, 9));
+        const std::vector<double> means = pixel_means(film, 0);
+        const double mean =
+            std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
+        std::printf("  %s: mean radiance %.3f\n", name, mean);
+        EXPECT_GT(mean, 0.01) << name;
+        EXPECT_LT(mean, 2.25 * 1.1) << name;
+    }
+}
+
+}  // namespace
+}  // namespace lab

@@ -1,0 +1,81 @@
+// What each chapter gains over the one before: error times cost, on the same scene in one run. The cost is
+// the number of rays, so that the test does not depend on what else the machine does.
+#include <cmath>
+#include <cstdio>
+
+#include "film/error_metrics.h"
+#include "support/expect_statistics.h"
+#include "support/render.h"
+
+namespace lab {
+namespace {
+
+// Logarithms of the error of one sample a pixel times the rays for it, from independent pairs of renders.
+struct Cost {
+    std::vector<double> logarithms;
+    double error, rays;
+};
+
+Cost measure(const Scene& scene, RenderSettings settings) {
+    constexpr uint32_t pairs = 16;
+    const double paths = double{2} * settings.samples * settings.width * settings.height;
+    Cost cost{.logarithms = {}, .error = 0, .rays = 0};
+    for (uint32_t pair = 0; pair < pairs; ++pair) {
+        const Rendering first = render_and_count(scene, settings);
+        ++settings.seed;
+        const Rendering second = render_and_count(scene, settings);
+        ++settings.seed;
+        const double error =
+            2 * settings.samples * estimate_error(first.film.mean(), second.film.mean()).rel_mse;
+        const double rays = static_cast<double>(first.rays + second.rays) / paths;
+        cost.error += error / pairs;
+        cost.rays += rays / pairs;
+        cost.logarithms.push_back(std::log(error * rays));
+    }
+    return cost;
+}
+
+// That `technique` needs fewer rays than `before` for the same error (Welch's test of the logarithms).
+void expect_gain(const std::string& what, const Cost& before, const Cost& technique) {
+    const Difference gain = difference_of(technique.logarithms, before.logarithms);
+    std::printf(
+        "  %s: error x %.3f, rays x %.2f, error times rays x %.3f, p = %.2g; finds a gain of x %.2f\n",
+        what.c_str(), technique.error / before.error, technique.rays / before.rays, std::exp(gain.value),
+        gain.p_value(), std::exp(-gain.smallest_detectable(significance)));
+    EXPECT_TRUE(gain.value < 0 && gain.p_value() < significance) << what << " does not pay";
+}
+
+Cost measure_chapter(const std::string& scene_name, size_t number, uint32_t samples, uint32_t length,
+                     uint32_t splitting = 1) {
+    const Scene scene = load_scene(project_folder() / "assets" / "scenes" / (scene_name + ".json"));
+    RenderSettings settings{.width = 64, .height = 64, .samples = samples, .max_path_length = length};
+    settings.splitting_factor = splitting;
+    settings.roulette_start = 2;
+    settings.seed = static_cast<uint32_t>(1000 * number);
+    settings.estimator = chapter_estimator(all_chapters.at(number - 1));
+    return measure(scene, settings);
+}
+
+TEST(Efficiency, CosineSamplingAndNextEventEstimationPay) {
+    const Cost uniform = measure_chapter("cornell_box", 1, 64, 4),
+               cosine = measure_chapter("cornell_box", 2, 64, 4);
+    expect_gain("cosine sampling against uniform angles", uniform, cosine);
+    expect_gain("next event estimation against cosine sampling", cosine,
+                measure_chapter("cornell_box", 3, 8, 4));
+}
+
+// Splitting pays where what comes after the first hit is noisy, as with a light of thousands of triangles. In
+// the Cornell box edges and camera rays weigh as much as they save each other.
+TEST(Efficiency, SplittingPaysForNoisyLight) {
+    expect_gain("splitting in 4 against next event estimation", measure_chapter("heart_light", 3, 16, 4),
+                measure_chapter("heart_light", 4, 4, 4, 4));
+}
+
+// Without a limit of the path length there is more to be estimated, and still it pays.
+TEST(Efficiency, RussianRoulettePaysForLongPaths) {
+    expect_gain("Russian roulette against splitting", measure_chapter("cornell_box", 4, 8, 8, 2),
+                measure_chapter("cornell_box", 5, 8, 1000, 2));
+}
+
+}  // namespace
+}  // namespace lab

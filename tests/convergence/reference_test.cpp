@@ -1,0 +1,213 @@
+// The chapters against images that another renderer has made: Mitsuba 3, see tools/make_references.py.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "film/error_metrics.h"
+#include "support/expect_statistics.h"
+#include "support/failure_images.h"
+#include "support/gpu_test.h"
+#include "support/render.h"
+
+namespace lab {
+namespace {
+
+enum class Tail { light, heavy };  // heavy: rare bright samples
+
+struct ReferenceCase {
+    std::string reference;  // in assets/references: scene and maximal path length
+    size_t chapter;
+    uint32_t samples;                // of a batch
+    double largest_bias;             // of the image's mean, that may go unnoticed
+    double largest_tile_bias = 0.9;  // the same of a tile, as part of the image's mean
+    Run run = Run::always;
+    Tail tail = Tail::light;
+};
+
+constexpr size_t batch_count = 64;
+constexpr uint32_t tile = 8;
+
+// Chapters 1 and 2, which find lights by bounces, are held to 1 % of the image's mean, the others to 0.3 %.
+// More only where that took minutes: the sun of the light probe and the caustics of glass are found by
+// bounces in all chapters. What takes longest on two cores does not run every time.
+const std::vector<ReferenceCase> reference_cases{
+    {"cornell_box_1", 1, 32, 0.01},
+    {"cornell_box_1", 2, 20, 0.01},
+    {"cornell_box_1", 3, 40, 0.003},
+    {"cornell_box_6", 3, 32, 0.003},
+    {"cornell_box_6", 4, 28, 0.003},
+    {"cornell_box_6", 5, 26, 0.003},
+    {"cornell_box_6", 6, 26, 0.003},
+    {"heart_light_4", 5, 10, 0.003},
+    {"textured_4", 2, 24, 0.01},
+    {"instances_4", 3, 2, 0.003},
+    {"glass_8", 6, 15, 0.005, 0.9, Run::always, Tail::heavy},
+    {"textured_4", 1, 38, 0.01, 0.9, Run::with_all},
+    {"torus_5", 3, 52, 0.003, 0.5, Run::with_all},
+    {"torus_5", 4, 32, 0.003, 0.5, Run::with_all},
+    {"torus_5", 5, 47, 0.003, 0.5, Run::with_all},
+    {"torus_5", 6, 47, 0.003, 0.5, Run::with_all},
+    {"heart_light_4", 3, 22, 0.003, 0.9, Run::with_all},
+    {"heart_light_4", 4, 12, 0.003, 0.9, Run::with_all},
+    {"textured_4", 3, 38, 0.01, 0.9, Run::with_all},
+    {"textured_4", 4, 20, 0.01, 0.9, Run::with_all},
+    {"textured_4", 5, 162, 0.003, 0.9, Run::with_all},
+    {"textured_4", 6, 22, 0.01, 0.9, Run::with_all},
+    {"glossy_5", 3, 72, 0.003, 0.9, Run::with_all},
+    {"glossy_5", 4, 42, 0.003, 0.9, Run::with_all},
+    {"glossy_5", 5, 52, 0.003, 0.9, Run::with_all},
+    {"instances_4", 4, 4, 0.003, 0.9, Run::with_all},
+    {"instances_4", 5, 4, 0.003, 0.9, Run::with_all},
+    {"instances_4", 6, 4, 0.003, 0.9, Run::with_all},
+    {"glass_8", 6, 52, 0.003, 0.9, Run::with_all, Tail::heavy},
+};
+
+// The part of the estimates that a batch has in a rectangle of pixels, and the same of the reference.
+struct Comparison {
+    const Batches& batches;
+    const Reference& reference;
+
+    // Difference of the means over a rectangle, as part of `scale`. The variance of the reference counts.
+    Difference difference(int channel, uvec2 corner, uvec2 size, double scale) const {
+        double sum = 0, variance = 0;
+        for (uint32_t y = corner.y; y < corner.y + size.y; ++y)
+            for (uint32_t x = corner.x; x < corner.x + size.x; ++x) {
+                const size_t i = 3 * (size_t{y} * batches.width + x) + static_cast<size_t>(channel);
+                sum += reference.mean.pixels[i];
+                variance += reference.variance->pixels[i];
+            }
+        const double count = static_cast<double>(size_t{size.x} * size.y);
+        Difference difference = difference_from(batches.means(channel, corner, size), sum / count);
+        // Emission alone has no variance, but the two programs round it differently.
+        const double rounding = 1e-5 * std::abs(sum / count);
+        difference.standard_error =
+            std::hypot(difference.standard_error, std::sqrt(variance) / count, rounding);
+        return difference.relative_to(scale);
+    }
+};
+
+// Mean of a channel of an image.
+double channel_mean(const Image& image, size_t channel) {
+    double sum = 0;
+    for (size_t i = channel; i < image.pixels.size(); i += 3) sum += image.pixels[i];
+    return sum / static_cast<double>(image.pixels.size() / 3);
+}
+
+Image mean_image(const Batches& batches) {
+    Image image{batches.width, batches.height, {}};
+    for (size_t i = 0; i < batches.images.front().size(); ++i) {
+        glm::dvec3 sum(0);
+        for (const auto& batch : batches.images) sum += batch[i];
+        for (int channel = 0; channel < 3; ++channel)
+            image.pixels.push_back(
+                static_cast<float>(sum[channel] / static_cast<double>(batches.images.size())));
+    }
+    return image;
+}
+
+// Mean excess kurtosis of the tiles' batch means: about 0 where batches are long enough for their spread to
+// tell the error of the mean.
+double excess_kurtosis(const Batches& batches) {
+    double sum = 0;
+    size_t count = 0;
+    for (uint32_t y = 0; y < batches.height; y += tile)
+        for (uint32_t x = 0; x < batches.width; x += tile) {
+            const auto numbers = batches.means(1, {x, y}, uvec2(tile));
+            const double mean = estimate_mean(numbers).mean;
+            double second = 0, fourth = 0;
+            for (const double number : numbers) {
+                second += std::pow(number - mean, 2);
+                fourth += std::pow(number - mean, 4);
+            }
+            if (second == 0) continue;
+            sum += static_cast<double>(numbers.size()) * fourth / (second * second) - 3;
+            ++count;
+        }
+    return count ? sum / static_cast<double>(count) : 0;
+}
+
+// Signs of neighbouring tiles are independent where there is noise only; a bias is coherent. p-value of the
+// number of neighbours with equal signs.
+double sign_map_p_value(const ZMap& map) {
+    double equal = 0, pairs = 0;
+    for (uint32_t y = 0; y < map.height; ++y)
+        for (uint32_t x = 0; x < map.width; ++x) {
+            const double z = map.values[size_t{y} * map.width + x];
+            const auto compare = [&](double neighbour) {
+                if (z == 0 || neighbour == 0) return;  // black tiles
+                ++pairs;
+                equal += (z > 0) == (neighbour > 0);
+            };
+            if (x > 0) compare(map.values[size_t{y} * map.width + x - 1]);
+            if (y > 0) compare(map.values[size_t{y - 1} * map.width + x]);
+        }
+    return pairs > 0 ? normal_p_value((equal - 0.5 * pairs) / std::sqrt(0.25 * pairs)) : 1;
+}
+
+std::string case_name(const ReferenceCase& c) {
+    const std::string all = c.run == Run::with_all ? "_all" : "";
+    return c.reference + "_chapter_" + std::to_string(c.chapter) + all;
+}
+
+class ReferenceImage : public testing::TestWithParam<size_t> {};
+INSTANTIATE_TEST_SUITE_P(, ReferenceImage, testing::Range(size_t{0}, reference_cases.size()),
+                         [](const auto& instance) { return case_name(reference_cases[instance.param]); });
+
+TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
+    const ReferenceCase& c = reference_cases[GetParam()];
+    if (c.run == Run::with_all && !runs_all_tests()) GTEST_SKIP() << "runs with ./lab test --all";
+    const auto file = project_folder() / "assets" / "references" / (c.reference + ".exr");
+    const auto attributes = read_exr(file).attributes;
+    const Reference reference = read_reference(file);
+    const Scene scene = load_scene(project_folder() / "assets" / "scenes" / attributes.at("scene"));
+    char hash[17];
+    std::snprintf(hash, sizeof hash, "%llx", static_cast<unsigned long long>(scene.hash));
+    ASSERT_EQ(attributes.at("scene_hash"), hash)
+        << file << " is stale: its scene has changed; run ./lab reference --all";
+
+    RenderSettings settings{
+        .width = reference.mean.width, .height = reference.mean.height, .samples = c.samples};
+    settings.max_path_length = static_cast<uint32_t>(std::stoul(attributes.at("max_path_length")));
+    // Another one for each case: chapters may follow the same paths if their seeds are equal.
+    settings.seed = 1000 + static_cast<uint32_t>(&c - reference_cases.data());
+    settings.roulette_start = 2;
+    settings.splitting_factor = c.chapter >= 4 ? 2 : 1;
+    settings.estimator = chapter_estimator(all_chapters.at(c.chapter - 1));
+    const Batches batches = render_batches(scene, settings, batch_count);
+
+    const Comparison comparison{batches, reference};
+    const uvec2 size(batches.width, batches.height);
+    std::vector<Difference> of_image, of_tiles;
+    std::vector<double> p_values;
+    ZMap map{size.x / tile, size.y / tile, {}};
+    for (int channel = 0; channel < 3; ++channel) {
+        const double mean = channel_mean(reference.mean, static_cast<size_t>(channel));
+        of_image.push_back(comparison.difference(channel, {0, 0}, size, mean));
+        for (uint32_t y = 0; y < size.y; y += tile)
+            for (uint32_t x = 0; x < size.x; x += tile) {
+                of_tiles.push_back(comparison.difference(channel, {x, y}, uvec2(tile), mean));
+                if (channel != 1) continue;
+                const Difference& tile_difference = of_tiles.back();
+                // Tiles that see a light or the sky alone have no noise, so that their p-values are not
+                // uniform.
+                const MeanEstimate estimate = estimate_mean(batches.means(channel, {x, y}, uvec2(tile)));
+                const bool is_noisy = estimate.standard_error > 1e-5 * estimate.mean;
+                map.values.push_back(is_noisy ? tile_difference.value / tile_difference.standard_error : 0);
+                if (is_noisy) p_values.push_back(tile_difference.p_value());
+            }
+    }
+    expect_no_difference("image", of_image, c.largest_bias);
+    expect_no_difference("tiles", of_tiles, c.largest_tile_bias);
+    expect_uniform("p-values of the tiles", p_values, 0.3);
+    const double sign_p_value = sign_map_p_value(map), kurtosis = excess_kurtosis(batches);
+    std::printf("  signs of neighbouring tiles: p = %.2g; excess kurtosis of batches %.2f\n", sign_p_value,
+                kurtosis);
+    EXPECT_GT(sign_p_value, significance) << "neighbouring tiles are off to the same side";
+    if (c.tail == Tail::light) {
+        EXPECT_LT(kurtosis, 2) << "the batches' spread does not tell the error of their mean";
+    }
+    if (HasFailure()) write_failure(case_name(c), mean_image(batches), reference.mean, map);
+}
+
+}  // namespace
+}  // namespace lab

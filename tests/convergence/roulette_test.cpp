@@ -1,0 +1,174 @@
+// Chapter 5: Russian roulette in a furnace, where mean, variance and cost are known for every survival
+// probability.
+#include <cmath>
+
+#include "support/expect_statistics.h"
+#include "support/render.h"
+#include "support/scenes.h"
+
+namespace lab {
+namespace {
+
+constexpr uint32_t unlimited = 100'000;
+
+// Inside a box whose walls emit 1 and reflect `albedo`; emission is found by bounces.
+Batches render_furnace(const std::string& chapter, const vec3& albedo, RenderSettings settings,
+                       size_t count) {
+    settings.light_sampling = LightSampling::off;
+    settings.estimator = chapter_estimator(chapter);
+    return render_batches(closed_box(diffuse_material(albedo, vec3(1))), settings, count);
+}
+
+// The mean of the samples' squares of a channel, one number a batch of one sample.
+std::vector<double> square_means(const Batches& batches) {
+    std::vector<double> means;
+    for (const auto& image : batches.images) {
+        double sum = 0;
+        for (const auto& radiance : image) sum += radiance.g * radiance.g;
+        means.push_back(sum / static_cast<double>(image.size()));
+    }
+    return means;
+}
+
+std::vector<Difference> relative_difference(const std::vector<double>& numbers, double expected) {
+    return {difference_from(numbers, expected).relative_to(expected)};
+}
+
+class Roulette : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::Values("05_russian_roulette", "06_dielectrics"),
+                         chapter_name);
+
+// With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So
+// E[X] = m = 1/(1-a), E[X²] = (1 + 2am)/(1 - a²/p), and it has 1/(1-p) rays.
+TEST_P(Roulette, HasTheKnownMeanVarianceAndCost) {
+    const struct {
+        float albedo, cap;
+        bool is_fourth_moment_finite;  // a⁴/p³ < 1: else the variance's own estimate is not to be trusted
+    } cases[] = {
+        {0.5f, 0.45f, true},  {0.5f, 0.5f, true},  {0.5f, 0.95f, true}, {0.8f, 0.7f, false},
+        {0.8f, 0.75f, false}, {0.8f, 0.78f, true}, {0.8f, 0.95f, true},
+    };
+    uint32_t seed = 1000 * chapter_number(GetParam());
+    for (const auto& [albedo, cap, is_fourth_moment_finite] : cases) {
+        RenderSettings settings{.samples = 1, .max_path_length = unlimited, .seed = ++seed};
+        settings.survival_cap = cap;
+        const Batches batches = render_furnace(GetParam(), vec3(albedo), settings, 256);
+        // The compensated throughput is a after the first bounce, and after a survival 1 or above.
+        const double a = albedo, p = std::min(albedo, cap), m = 1 / (1 - a);
+        char name[100];
+        std::snprintf(name, sizeof(name), "albedo %.2f, cap %.2f: ", a, double{cap});
+        expect_no_difference(std::string(name) + "mean", relative_difference(batches.means(1), m), 0.02, 20);
+        expect_no_difference(std::string(name) + "rays", relative_difference(batches.rays, 1 / (1 - p)), 0.01,
+                             20);
+        if (is_fourth_moment_finite)
+            expect_no_difference(
+                std::string(name) + "square",
+                relative_difference(square_means(batches), (1 + 2 * a * m) / (1 - a * a / p)), 0.15, 20);
+    }
+}
+
+TEST_P(Roulette, SurvivalIsTheLargestComponentOfTheThroughput) {
+    const vec3 albedo(0.2f, 0.4f, 0.6f);
+    RenderSettings settings{.samples = 16, .max_path_length = unlimited};
+    const Batches batches = render_furnace(GetParam(), albedo, settings, 64);
+    std::vector<Difference> means;
+    for (int channel = 0; channel < 3; ++channel)
+        means.push_back(
+            relative_difference(batches.means(channel), 1 / (1 - double{albedo[channel]})).front());
+    expect_no_difference("means", means, 0.01, 2);
+    expect_no_difference("rays", relative_difference(batches.rays, 1 / (1 - 0.6)), 0.01, 2);
+}
+
+TEST_P(Roulette, IgnoresTheSplitting) {
+    // Each of s branches has p/(1-p) rays, and the variance of one is divided by s: were the factor 1/s part
+    // of the throughput, more of them would end.
+    const double a = 0.5, m = 2, variance = (1 + 2 * a * m) / (1 - a) - m * m;
+    for (const uint32_t s : {1u, 4u, 7u}) {
+        RenderSettings settings{.samples = 1,
+                                .max_path_length = unlimited,
+                                .seed = 1000 * chapter_number(GetParam()) + 20 + s,
+                                .splitting_factor = s};
+        const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 96);
+        const std::string name = "s = " + std::to_string(s) + ": ";
+        expect_no_difference(name + "mean", relative_difference(batches.means(1), m), 0.02, 9);
+        expect_no_difference(name + "rays", relative_difference(batches.rays, 1 + s * a / (1 - a)), 0.02, 9);
+        expect_no_difference(name + "square",
+                             relative_difference(square_means(batches), m * m + variance / s), 0.03, 9);
+    }
+}
+
+TEST_P(Roulette, BeginsAtItsStart) {
+    // Before it nobody ends; at bounce 3 the survivors' throughput a³ is made up for at once.
+    const double a = 0.5;
+    RenderSettings settings{.samples = 16, .max_path_length = unlimited, .roulette_start = 3};
+    const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 64);
+    expect_no_difference("mean", relative_difference(batches.means(1), 2), 0.01, 2);
+    expect_no_difference("rays", relative_difference(batches.rays, 3 + a * a * a / (1 - a)), 0.01, 2);
+}
+
+TEST_P(Roulette, EndsAtTheMaximalLengthAtTheLatest) {
+    // White walls and a survival probability of 1: only the maximal length ends these paths, all at 1 + 50.
+    RenderSettings settings{.width = 16, .height = 16, .samples = 4, .max_path_length = 50};
+    settings.survival_cap = 1;
+    const Batches batches = render_furnace(GetParam(), vec3(1), settings, 2);
+    for (const double rays : batches.rays) EXPECT_EQ(rays, 51);
+    for (const double mean : batches.means(0)) EXPECT_NEAR(mean, 51, 1e-4);
+}
+
+// Slope of log(error) over log(number of samples), one number for each group of pixels: least squares over
+// the numbers that follow from the first batch by factors of four.
+std::vector<double> convergence_slopes(const Batches& batches, double expected) {
+    constexpr size_t groups = 256;
+    std::vector<double> sums(batches.images.front().size());
+    const size_t group_size = sums.size() / groups;
+    std::vector<double> x;               // logarithms of the number of batches
+    std::vector<std::vector<double>> y;  // for each of these, the logarithm of every group's error
+    for (size_t i = 0, next = 1; i < batches.images.size(); ++i) {
+        for (size_t pixel = 0; pixel < sums.size(); ++pixel) sums[pixel] += batches.images[i][pixel].g;
+        if (i + 1 != next) continue;
+        next *= 4;
+        x.push_back(std::log(static_cast<double>(i + 1)));
+        y.emplace_back();
+        for (size_t first = 0; first < sums.size(); first += group_size) {
+            double square_error = 0;
+            for (size_t pixel = first; pixel < first + group_size; ++pixel)
+                square_error += std::pow(sums[pixel] / static_cast<double>(i + 1) - expected, 2);
+            y.back().push_back(0.5 * std::log(square_error / static_cast<double>(group_size)));
+        }
+    }
+    const MeanEstimate centre = estimate_mean(x);
+    const double spread = centre.variance * static_cast<double>(x.size() - 1);
+    std::vector<double> slopes(groups);
+    for (size_t group = 0; group < groups; ++group)
+        for (size_t k = 0; k < x.size(); ++k) slopes[group] += (x[k] - centre.mean) / spread * y[k][group];
+    return slopes;
+}
+
+TEST_P(Roulette, ConvergesSlowlyWhereItsVarianceIsInfinite) {
+    // The error falls with n^-1/2 where the variance is finite, p > a². At p = a²/2 the largest samples
+    // decide: X > x has the probability x^(-3/2) if a = 1/2, so that the error falls with n^-1/3 only. Closer
+    // to a² the slope would not tell in affordable time.
+    constexpr double tolerance = 0.05;
+    const auto slopes = [&](float cap) {
+        RenderSettings settings{.width = 128,
+                                .height = 128,
+                                .samples = 4,
+                                .max_path_length = unlimited,
+                                .seed = 1000 * chapter_number(GetParam()) + 7};
+        settings.survival_cap = cap;
+        return convergence_slopes(render_furnace(GetParam(), vec3(0.5f), settings, 256), 2);
+    };
+    const Difference good = difference_from(slopes(0.5f), -0.5),
+                     bad = difference_from(slopes(0.125f), -0.5 + tolerance);
+    const double finds = tolerance + bad.smallest_detectable(significance);
+    std::printf("  slope %.3f at p = a, %.3f at p = a²/2; flags a slope that differs by %.3f from -1/2\n",
+                good.value - 0.5, bad.value - 0.5 + tolerance, finds);
+    EXPECT_LT(std::abs(good.value), tolerance);
+    EXPECT_LT(good.smallest_detectable(significance), tolerance) << "the test is too weak, take more samples";
+    EXPECT_LT(finds, 1.0 / 6) << "the test is too weak, take more samples";
+    EXPECT_TRUE(bad.value > 0 && bad.p_value() < significance)
+        << "a survival probability of infinite variance is not flagged";
+}
+
+}  // namespace
+}  // namespace lab

@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Makes a mistake of mistakes.json in a copy of the shaders and expects the test that is meant to catch it to fail.
+
+    LAB_BINARIES=build/bin tests/mistakes/mistake.py NAME
+
+Exits with 0 if the test was red because an expectation failed: neither because the shader does not compile nor because the
+program crashed. A substitution that does not match exactly once is stale, which is an error, too.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build" / "bin"))
+
+
+def load():
+    """All mistakes by name."""
+    mistakes = json.loads((Path(__file__).parent / "mistakes.json").read_text(encoding="utf-8"))
+    return {mistake["name"]: mistake for mistake in mistakes}
+
+
+def make(mistake, tree):
+    """Copies what the test programs read into `tree`, with the mistake in it."""
+    for folder in ("shaders", "chapters", "tests/shaders"):
+        shutil.copytree(ROOT / folder, tree / folder)
+    (tree / "assets").symlink_to(ROOT / "assets")
+    shader = tree / mistake["file"]
+    text = shader.read_text(encoding="utf-8")
+    if text.count(mistake["find"]) != 1:
+        sys.exit(f"stale: {mistake['file']} has {text.count(mistake['find'])} places with {mistake['find']!r}")
+    shader.write_text(text.replace(mistake["find"], mistake["replace"]), encoding="utf-8")
+
+
+def run(mistake, tree):
+    """Runs the test on that tree; returns the names of the tests that failed and their messages."""
+    program, test = mistake["test"].split(".", 1)
+    # Programs find the shaders above themselves.
+    binary = tree / "bin" / f"{program}_tests"
+    binary.parent.mkdir()
+    shutil.copy(BINARIES / binary.name, binary)
+    report = tree / "report.json"
+    command = [binary, f"--gtest_filter={test}", f"--gtest_output=json:{report}"]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tree / "cache")}
+    result = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if not report.exists():
+        sys.exit(f"{program}_tests ended with {result.returncode} before its tests did:\n{result.stdout[-2000:]}")
+    suites = json.loads(report.read_text(encoding="utf-8"))["testsuites"]
+    cases = [(suite["name"], case) for suite in suites for case in suite["testsuite"]]
+    if not cases:
+        sys.exit(f"there is no test {mistake['test']}")
+    return [
+        (f"{suite}.{case['name']}", failure["failure"])
+        for suite, case in cases
+        for failure in case.get("failures", [])
+    ]
+
+
+def main():
+    mistakes = load()
+    if len(sys.argv) != 2 or sys.argv[1] not in mistakes:
+        sys.exit("usage: mistake.py NAME, one of\n  " + "\n  ".join(f"{n}: {m['explanation']}" for n, m in mistakes.items()))
+    mistake = mistakes[sys.argv[1]]
+    print(f"{mistake['name']}: {mistake['explanation']}")
+    with tempfile.TemporaryDirectory() as folder:
+        make(mistake, Path(folder))
+        failures = run(mistake, Path(folder))
+    # A test that finds itself too weak, or a complaint about the use of Vulkan, is no verdict on the estimator.
+    verdicts = [failure for failure in failures if "too weak" not in failure[1] and "validation" not in failure[1]]
+    for name, message in verdicts:
+        print(f"  red: {name}: {message.splitlines()[-1]}")
+        if "exception" in message:
+            sys.exit(f"not a verdict but an error:\n{message}")
+    if not verdicts:
+        sys.exit(f"not detected: {mistake['test']} " + ("only finds itself too weak" if failures else "is green"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+#version 460
+// get_fresnel_reflectance() and sample_dielectric() of chapter 6 for each surface and direction.
+#include "estimator_stub.glsl"
+#include "lights.glsl"
+bool is_occluded(Ray ray, float t_max) { return false; }
+#include "path_trace.glsl"
+
+struct Input {
+    vec3 normal;
+    vec3 out_direction;
+    float eta;
+    float eta_cos_theta_t;
+    float u;
+};
+struct Result {
+    float reflectance;
+    vec3 direction;
+};
+
+layout(scalar, binding = 0) writeonly buffer Results { Result results[]; };
+layout(scalar, binding = 1) readonly buffer Inputs { Input inputs[]; };
+
+layout(local_size_x = 128) in;
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= inputs.length()) return;
+    ShadingData s;
+    s.normal = inputs[i].normal;
+    s.relative_index = inputs[i].eta;
+    float cos_theta = dot(s.normal, inputs[i].out_direction);
+    results[i].reflectance = get_fresnel_reflectance(cos_theta, inputs[i].eta, inputs[i].eta_cos_theta_t);
+    results[i].direction = sample_dielectric(s, inputs[i].out_direction, inputs[i].u);
+}

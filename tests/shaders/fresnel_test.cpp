@@ -1,0 +1,295 @@
+// Chapter 6's Fresnel reflectance, refraction and choice between the two directions, against the textbook's
+// formulas in long double: those cancel where indices are nearly equal, but have 11 bits more than double to
+// lose.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "shaders/interface.h"
+#include "support/expect_statistics.h"
+#include "support/gpu_test.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+
+// As in fresnel.comp.
+struct DielectricInput {
+    vec3 normal{0, 0, 1};
+    vec3 out_direction;
+    float eta;
+    float eta_cos_theta_t = 0;
+    float u = 0;
+};
+struct DielectricResult {
+    float reflectance;
+    vec3 direction;
+};
+
+std::vector<DielectricResult> evaluate(const std::vector<DielectricInput>& inputs) {
+    TestShader shader{.name = "fresnel.comp"};
+    shader.named_includes = {
+        {"path_trace.glsl", project_folder() / "chapters/06_dielectrics/path_trace.glsl"}};
+    return run_shader<DielectricResult>(shader, inputs);
+}
+
+// Indices from nearly equal ones to diamond, seen from both sides.
+const std::vector<float> test_etas{1,    1 + 1e-6f, 1 - 1e-6f, 1 + 1e-4f, 1 - 1e-4f,
+                                   1.5f, 1 / 1.5f,  2.4f,      1 / 2.4f};
+
+// Cosines from grazing to normal incidence, evenly spaced in the logarithm.
+std::vector<float> test_cosines() {
+    constexpr int count = 600;
+    std::vector<float> cosines;
+    for (int i = 0; i <= count; ++i) cosines.push_back(static_cast<float>(std::pow(10.0, -6.0 * i / count)));
+    return cosines;
+}
+
+// Fresnel's formulas with Snell's law.
+struct Textbook {
+    bool is_total;  // no refracted direction
+    long double cos_theta_t = 0;
+    long double reflectance = 1;
+
+    Textbook(long double cos_theta, long double eta) {
+        const long double sin_squared = (1 - cos_theta * cos_theta) / (eta * eta);
+        is_total = sin_squared >= 1;
+        if (is_total) return;
+        cos_theta_t = std::sqrt(1 - sin_squared);
+        const long double r_s = (cos_theta - eta * cos_theta_t) / (cos_theta + eta * cos_theta_t);
+        const long double r_p = (eta * cos_theta - cos_theta_t) / (eta * cos_theta + cos_theta_t);
+        reflectance = 0.5L * (r_s * r_s + r_p * r_p);
+    }
+};
+
+// By how much the reflectance changes where the cosine and the difference of the indices change by a few
+// roundings: near the critical angle that is much more than a rounding, and no formula can do better.
+double rounding_effect(double cos_theta, double eta) {
+    const long double exact = Textbook(cos_theta, eta).reflectance;
+    long double largest = 0;
+    for (const long double factor : {1 - 0x1p-22L, 1 + 0x1p-22L})
+        largest = std::max({largest,
+                            std::abs(Textbook(std::min(1.0L, cos_theta * factor), eta).reflectance - exact),
+                            std::abs(Textbook(cos_theta, 1 + (eta - 1.0L) * factor).reflectance - exact)});
+    return static_cast<double>(largest);
+}
+
+// Direction in the xz-plane whose cosine to the z-axis is exactly this.
+vec3 direction_of_cosine(float cos_theta) {
+    return {std::sqrt(1 - double{cos_theta} * double{cos_theta}), 0, cos_theta};
+}
+
+DielectricInput make_input(float cos_theta, float eta, float u = 0) {
+    const long double eta_cos_theta_t = eta * Textbook(cos_theta, eta).cos_theta_t;
+    return {.out_direction = direction_of_cosine(cos_theta),
+            .eta = eta,
+            .eta_cos_theta_t = static_cast<float>(eta_cos_theta_t),
+            .u = u};
+}
+
+bool is_reflected(const DielectricInput& input, const DielectricResult& result) {
+    return glm::dot(input.normal, result.direction) > 0;
+}
+
+// The largest number below 1 that the generator yields: it asks for refraction, if there is any.
+constexpr float refract = 1 - 0x1p-24f;
+
+TEST(Fresnel, IsTheTextbooksReflectance) {
+    for (const float eta : test_etas) {
+        std::vector<DielectricInput> inputs;
+        for (const float cos_theta : test_cosines())
+            if (!Textbook(cos_theta, eta).is_total) inputs.push_back(make_input(cos_theta, eta));
+        const auto results = evaluate(inputs);
+        double worst = 0;
+        for (size_t i = 0; i < inputs.size(); ++i) {
+            const auto expected = static_cast<double>(Textbook(inputs[i].out_direction.z, eta).reflectance);
+            if (eta == 1)
+                ASSERT_EQ(results[i].reflectance, 0) << "equal indices reflect nothing";
+            else
+                worst = std::max(worst, std::abs(results[i].reflectance / expected - 1));
+        }
+        std::printf("  index ratio %.7f: largest relative error of the reflectance %.2g\n", eta, worst);
+        EXPECT_LT(worst, 2e-6) << eta;
+    }
+}
+
+TEST(Fresnel, IsTheSameFromBothSides) {
+    for (const float eta : {1.5f, 2.4f}) {
+        std::vector<DielectricInput> inputs;
+        for (const float cos_theta : test_cosines()) {
+            inputs.push_back(make_input(cos_theta, eta));
+            const auto cos_theta_t = static_cast<float>(Textbook(cos_theta, eta).cos_theta_t);
+            inputs.push_back(make_input(cos_theta_t, 1 / eta));
+        }
+        const auto results = evaluate(inputs);
+        for (size_t i = 0; i < inputs.size(); i += 2)
+            ASSERT_NEAR(results[i].reflectance, results[i + 1].reflectance,
+                        1e-6 + rounding_effect(inputs[i + 1].out_direction.z, inputs[i + 1].eta))
+                << "index ratio " << eta << ", cosine " << inputs[i].out_direction.z;
+    }
+}
+
+TEST(Dielectric, ReflectsIfTheRandomNumberIsBelowTheReflectance) {
+    double widest = 0;
+    for (const float eta : test_etas) {
+        std::vector<DielectricInput> inputs;
+        for (const float cos_theta : test_cosines()) {
+            const auto reflectance = static_cast<double>(Textbook(cos_theta, eta).reflectance);
+            const double error = 1e-6 * reflectance + rounding_effect(cos_theta, eta);
+            if (reflectance < 1) widest = std::max(widest, error);
+            inputs.push_back(make_input(cos_theta, eta, static_cast<float>(reflectance - error)));
+            inputs.push_back(make_input(cos_theta, eta, static_cast<float>(reflectance + error)));
+        }
+        const auto results = evaluate(inputs);
+        for (size_t i = 0; i < inputs.size(); i += 2) {
+            const float cos_theta = inputs[i].out_direction.z;
+            const std::string what = std::to_string(eta) + ", cosine " + std::to_string(cos_theta);
+            ASSERT_TRUE(eta == 1 || is_reflected(inputs[i], results[i])) << what;
+            ASSERT_TRUE(inputs[i + 1].u >= 1 || !is_reflected(inputs[i + 1], results[i + 1])) << what;
+        }
+    }
+    std::printf("  the threshold is that of the textbook up to %.2g, and 1e-6 where it is not critical\n",
+                widest);
+}
+
+TEST(Dielectric, ReflectsAsOftenAsTheReflectanceSays) {
+    std::mt19937 generator(1);
+    const struct {
+        float cos_theta, eta;
+    } cases[] = {{1, 1.5f}, {0.3f, 1.5f}, {0.8f, 1 / 1.5f}, {0.5f, 2.4f}};
+    for (const auto& [cos_theta, eta] : cases) {
+        std::vector<DielectricInput> inputs(1'000'000, make_input(cos_theta, eta));
+        for (DielectricInput& input : inputs) input.u = static_cast<float>(generator() >> 8) * 0x1p-24f;
+        const auto results = evaluate(inputs);
+        std::vector<double> reflected;
+        for (size_t i = 0; i < inputs.size(); ++i)
+            reflected.push_back(is_reflected(inputs[i], results[i]) ? 1 : 0);
+        char what[80];
+        std::snprintf(what, sizeof what, "frequency of reflection at cosine %.1f, index ratio %.3f",
+                      cos_theta, eta);
+        expect_mean(what, estimate_mean(reflected), static_cast<double>(Textbook(cos_theta, eta).reflectance),
+                    0.04, std::size(cases));
+    }
+}
+
+TEST(Dielectric, ReflectsTotallyBelowTheCriticalAngle) {
+    for (const float eta : test_etas) {
+        if (eta >= 1) continue;
+        const auto critical = static_cast<float>(std::sqrt((1 - static_cast<long double>(eta)) * (1 + eta)));
+        constexpr int ulps = 16;
+        std::vector<DielectricInput> inputs;
+        float cos_theta = critical;
+        for (int i = 0; i < ulps; ++i) cos_theta = std::nextafter(cos_theta, 0.0f);
+        for (int i = -ulps; i <= ulps; ++i, cos_theta = std::nextafter(cos_theta, 1.0f))
+            inputs.push_back(make_input(cos_theta, eta, refract));
+        const auto results = evaluate(inputs);
+        int width = 0;
+        for (int i = -ulps; i <= ulps; ++i) {
+            const size_t index = static_cast<size_t>(i + ulps);
+            const bool is_total = Textbook(inputs[index].out_direction.z, eta).is_total;
+            if (is_reflected(inputs[index], results[index]) != is_total) width = std::max(width, std::abs(i));
+            EXPECT_LT(std::abs(glm::length(dvec3(results[index].direction)) - 1), 1e-6);
+        }
+        std::printf("  index ratio %.7f: critical cosine exact to %d ulp\n", eta, width);
+        EXPECT_LE(width, 1) << eta;
+    }
+}
+
+TEST(Dielectric, OfIndexOneIsTransparent) {
+    std::vector<DielectricInput> inputs;
+    for (const float cos_theta : test_cosines()) inputs.push_back(make_input(cos_theta, 1));
+    const auto results = evaluate(inputs);
+    for (size_t i = 0; i < inputs.size(); ++i) {
+        ASSERT_FALSE(is_reflected(inputs[i], results[i]));
+        // To the rounding by which it is brought to unit length.
+        ASSERT_LT(glm::distance(dvec3(results[i].direction), -dvec3(inputs[i].out_direction)), 0x1p-23);
+    }
+}
+
+// Surfaces and directions in general position, for each index ratio.
+std::vector<DielectricInput> random_inputs(float u) {
+    std::mt19937 generator(2);
+    std::normal_distribution<double> normal;
+    const auto direction = [&] {
+        return glm::normalize(dvec3(normal(generator), normal(generator), normal(generator)));
+    };
+    std::vector<DielectricInput> inputs;
+    for (const float eta : test_etas)
+        for (int i = 0; i < 20'000; ++i) {
+            const dvec3 n = direction();
+            dvec3 out = direction();
+            if (glm::dot(n, out) < 0) out = -out;
+            inputs.push_back({.normal = vec3(n), .out_direction = vec3(out), .eta = eta, .u = u});
+        }
+    return inputs;
+}
+
+TEST(Dielectric, RefractsBySnellsLaw) {
+    const auto inputs = random_inputs(refract);
+    const auto results = evaluate(inputs);
+    double worst_snell = 0, worst_plane = 0, worst_length = 0;
+    size_t refracted = 0;
+    for (size_t i = 0; i < inputs.size(); ++i) {
+        if (is_reflected(inputs[i], results[i])) continue;
+        ++refracted;
+        const dvec3 n = glm::normalize(dvec3(inputs[i].normal)), out(inputs[i].out_direction),
+                    direction(results[i].direction);
+        // η sin θ_t = sin θ, in the same plane and on the other side.
+        const dvec3 sine = glm::cross(n, out), sine_t = glm::cross(-n, direction);
+        worst_snell = std::max(worst_snell, glm::length(double{inputs[i].eta} * sine_t - sine));
+        worst_plane = std::max(worst_plane, std::abs(glm::dot(direction, sine)));
+        worst_length = std::max(worst_length, std::abs(glm::length(direction) - 1));
+    }
+    std::printf(
+        "  %zu directions: residual of Snell's law %.2g, distance to the plane %.2g, length off by %.2g\n",
+        refracted, worst_snell, worst_plane, worst_length);
+    EXPECT_GT(refracted, inputs.size() / 2);
+    EXPECT_LT(worst_snell, 1e-6);
+    EXPECT_LT(worst_plane, 1e-6);
+    EXPECT_LT(worst_length, 1e-6);
+}
+
+TEST(Dielectric, ReflectsLikeAMirror) {
+    auto inputs = random_inputs(0);
+    const auto results = evaluate(inputs);
+    double worst = 0;
+    for (size_t i = 0; i < inputs.size(); ++i) {
+        if (inputs[i].eta == 1) continue;
+        const dvec3 n = glm::normalize(dvec3(inputs[i].normal)), out(inputs[i].out_direction);
+        worst = std::max(worst, glm::distance(dvec3(results[i].direction), 2 * glm::dot(n, out) * n - out));
+    }
+    std::printf("  largest error of a mirrored direction %.2g\n", worst);
+    EXPECT_LT(worst, 1e-6);
+}
+
+TEST(Dielectric, SlabKeepsTheDirection) {
+    const auto inputs = random_inputs(refract);
+    const auto first = evaluate(inputs);
+    // At the second surface the ray arrives from inside; the normal on its side is the same.
+    std::vector<DielectricInput> seconds = inputs;
+    for (size_t i = 0; i < inputs.size(); ++i) {
+        seconds[i].eta = 1 / inputs[i].eta;
+        seconds[i].out_direction = -first[i].direction;
+    }
+    const auto second = evaluate(seconds);
+    double worst = 0;
+    size_t crossed = 0;
+    for (size_t i = 0; i < inputs.size(); ++i) {
+        if (is_reflected(inputs[i], first[i]) || is_reflected(seconds[i], second[i])) continue;
+        ++crossed;
+        // Grazing light has lost its cosine to the roundings within the slab, in proportion to 1 / cosine.
+        const double smaller_cosine =
+            std::min(glm::dot(dvec3(inputs[i].normal), dvec3(inputs[i].out_direction)),
+                     -glm::dot(dvec3(inputs[i].normal), dvec3(first[i].direction)));
+        worst = std::max(worst, smaller_cosine * glm::distance(dvec3(second[i].direction),
+                                                               -dvec3(inputs[i].out_direction)));
+    }
+    std::printf("  %zu directions: largest difference behind the slab %.2g / cosine\n", crossed, worst);
+    EXPECT_GT(crossed, inputs.size() / 2);
+    EXPECT_LT(worst, 1e-6);
+}
+
+}  // namespace
+}  // namespace lab

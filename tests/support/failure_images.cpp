@@ -1,0 +1,76 @@
+#include "support/failure_images.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "film/statistics.h"
+#include "gpu/shader_compiler.h"
+
+namespace lab {
+namespace {
+
+Texture blank(uint32_t width, uint32_t height) {
+    return {width, height, std::vector<uint8_t>(size_t{4} * width * height, 255)};
+}
+
+void set_pixel(Texture& texture, uint32_t x, uint32_t y, const std::array<double, 3>& colour) {
+    for (size_t channel = 0; channel < 3; ++channel)
+        texture.pixels[4 * (size_t{y} * texture.width + x) + channel] =
+            static_cast<uint8_t>(std::lround(255 * std::clamp(colour[channel], 0.0, 1.0)));
+}
+
+void write_both(const std::filesystem::path& folder, const std::string& name, const Image& image) {
+    write_exr(folder / (name + ".exr"), {.image = image, .channels = {}, .attributes = {}});
+    Texture texture = blank(image.width, image.height);
+    for (uint32_t i = 0; i < image.width * image.height; ++i) {
+        const float* rgb = &image.pixels[3 * size_t{i}];
+        set_pixel(texture, i % image.width, i / image.width,
+                  {linear_to_srgb(rgb[0]), linear_to_srgb(rgb[1]), linear_to_srgb(rgb[2])});
+    }
+    write_png(folder / (name + ".png"), texture);
+}
+
+Texture draw(const ZMap& map) {
+    constexpr uint32_t magnification = 8;
+    Texture texture = blank(map.width * magnification, map.height * magnification);
+    for (uint32_t y = 0; y < texture.height; ++y)
+        for (uint32_t x = 0; x < texture.width; ++x) {
+            const double z = map.values[size_t{y} / magnification * map.width + x / magnification] / 5;
+            set_pixel(texture, x, y, {1 + std::min(z, 0.0), 1 - std::abs(z), 1 - std::max(z, 0.0)});
+        }
+    return texture;
+}
+
+Texture draw_histogram(const ZMap& map) {
+    constexpr uint32_t bars = 20, bar_width = 12, height = 120;
+    std::array<size_t, bars> counts{};
+    for (const double z : map.values)
+        ++counts[std::min(static_cast<size_t>(normal_p_value(z) * bars), size_t{bars - 1})];
+    const size_t highest = *std::max_element(counts.begin(), counts.end());
+    Texture texture = blank(bars * bar_width, height);
+    for (uint32_t x = 0; x < texture.width; ++x) {
+        const uint32_t bar_height = static_cast<uint32_t>(counts[x / bar_width] * height / highest);
+        for (uint32_t y = height - bar_height; y < height; ++y) set_pixel(texture, x, y, {0.2, 0.2, 0.2});
+    }
+    return texture;
+}
+
+}  // namespace
+
+void write_failure(const std::string& name, const Image& image, const Image& reference, const ZMap& map) {
+    const auto folder = project_folder() / "output" / "failed" / name;
+    std::filesystem::create_directories(folder);
+    Image difference = image;
+    for (size_t i = 0; i < difference.pixels.size(); ++i) difference.pixels[i] -= reference.pixels[i];
+    write_both(folder, "image", image);
+    write_both(folder, "reference", reference);
+    write_both(folder, "difference", difference);
+    write_png(folder / "z_map.png", draw(map));
+    write_png(folder / "p_histogram.png", draw_histogram(map));
+    std::printf("  see %s\n", folder.string().c_str());
+}
+
+}  // namespace lab

@@ -1,0 +1,119 @@
+// Dielectrics whose scene means more than is computed are warned about, and absurd ones refused.
+#include <algorithm>
+
+#include "gpu/shader_compiler.h"
+#include "scene/scene.h"
+#include "test_files.h"
+
+namespace lab {
+namespace {
+
+const std::string nested = "a dielectric may lie inside the dielectric of ",
+                  enclosed = "an opaque object may lie inside the absorbing glass of ";
+
+// A folder with a cube [-1,1]³ of each material, cube_<material>.obj.
+class DielectricWarnings : public testing::Test {
+  protected:
+    DielectricWarnings() {
+        folder.write(
+            "all.mtl",
+            "newmtl clear\nd 0\nNi 1.5\nnewmtl teal\nd 0\nNi 1.5\nTf 0.1 0.5 0.6\nnewmtl wall\nKd 1 1 1\n"
+            "newmtl water\nd 0\nNi 1.33\n");
+        for (const std::string material : {"clear", "teal", "wall"})
+            folder.write("cube_" + material + ".obj", "mtllib all.mtl\nusemtl " + material + "\n" + cube(1));
+    }
+
+    // The faces of a cube of 8 further vertices.
+    static std::string cube(int half_width) {
+        const std::string one = std::to_string(half_width);
+        std::string text;
+        for (int corner = 0; corner < 8; ++corner) {
+            text += "v";
+            for (int axis = 0; axis < 3; ++axis) text += (corner >> axis & 1 ? " " : " -") + one;
+            text += "\n";
+        }
+        return text +
+               "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n";
+    }
+
+    // Warnings for these entries of "meshes".
+    std::vector<std::string> warnings(const std::string& meshes) const {
+        return load_scene(folder.write("a.json", R"({"meshes": [)" + meshes + "]}")).warnings;
+    }
+
+    // An entry of "meshes".
+    static std::string entry(const std::string& material, double scale, double x = 0) {
+        return R"({"file": "cube_)" + material + R"(.obj", "scale": )" + std::to_string(scale) +
+               R"(, "translation": [)" + std::to_string(x) + ", 0, 0]}";
+    }
+
+    // The only warning is of this kind, and names these files.
+    static void expect_only(const std::vector<std::string>& warnings, const std::string& kind,
+                            const std::string& inner, const std::string& outer) {
+        ASSERT_EQ(warnings.size(), 1u) << kind;
+        EXPECT_NE(warnings[0].find("cube_" + inner + ".obj: " + kind), std::string::npos) << warnings[0];
+        EXPECT_NE(warnings[0].find("cube_" + outer + ".obj: ", warnings[0].find(" of ")), std::string::npos)
+            << warnings[0];
+        EXPECT_EQ(warnings[0].find('\n'), std::string::npos);
+    }
+
+    TestFolder folder;
+};
+
+TEST_F(DielectricWarnings, NameADielectricInsideAnother) {
+    expect_only(warnings(entry("clear", 2) + "," + entry("teal", 1)), nested, "teal", "clear");
+    expect_only(warnings(entry("clear", 1) + "," + entry("clear", 3)), nested, "clear", "clear");
+    expect_only(warnings(entry("clear", 1, 0.5) + "," + entry("teal", 2)), nested, "clear", "teal");
+}
+
+TEST_F(DielectricWarnings, NameAnOpaqueObjectInsideAbsorbingGlass) {
+    expect_only(warnings(entry("teal", 2) + "," + entry("wall", 1)), enclosed, "wall", "teal");
+}
+
+TEST_F(DielectricWarnings, AreOneLineForEachKind) {
+    std::string meshes = entry("teal", 50);
+    for (int i = -8; i <= 8; ++i) meshes += "," + entry("clear", 1, 3 * i) + "," + entry("wall", 0.5, 3 * i);
+    EXPECT_EQ(warnings(meshes).size(), 2u);
+}
+
+TEST_F(DielectricWarnings, TellMaterialsOfOneMeshApart) {
+    folder.write("drink.obj", "mtllib all.mtl\nusemtl clear\n" + cube(2) + "usemtl water\n" + cube(1));
+    const auto found = warnings(R"({"file": "drink.obj"})");
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NE(found[0].find("drink.obj: " + nested), std::string::npos) << found[0];
+}
+
+TEST_F(DielectricWarnings, AreNotForWhatIsComputed) {
+    const std::string right_scenes[] = {
+        entry("clear", 2) + "," + entry("wall", 1),                            // opaque in clear glass
+        entry("wall", 5) + "," + entry("teal", 1),                             // glass in a room
+        entry("teal", 1) + "," + entry("clear", 1, 3),                         // beside each other
+        entry("teal", 2) + "," + entry("clear", 1, 1.5),                       // partly inside
+        entry("teal", 1) + "," + entry("clear", 1) + "," + entry("clear", 1),  // in the same place
+        entry("wall", 2) + "," + entry("wall", 1),                             // no glass at all
+    };
+    for (const std::string& scene : right_scenes) EXPECT_TRUE(warnings(scene).empty()) << scene;
+}
+
+TEST_F(DielectricWarnings, AreNotForTheGlassScene) {
+    EXPECT_TRUE(load_scene(project_folder() / "assets/scenes/glass.json").warnings.empty());
+}
+
+TEST_F(DielectricWarnings, EndEarlyInScenesOfManyInstances) {
+    std::string meshes = entry("clear", 1);
+    for (int i = 0; i < 5000; ++i) meshes += "," + entry("clear", 1, i);
+    EXPECT_TRUE(warnings(meshes).empty());
+}
+
+TEST_F(DielectricWarnings, AbsurdIndicesAreRefused) {
+    const auto load = [&](const std::string& index) {
+        folder.write("b.mtl", "newmtl m\nd 0\nNi " + index + "\n");
+        return load_scene(folder.write("b.obj", "mtllib b.mtl\nusemtl m\n" + cube(1)));
+    };
+    for (const char* index : {"-1.5", "0", "-0", "nan", "inf", "1e39", "1e-30", "1e30"})
+        EXPECT_USER_ERROR(load(index), "Ni");
+    for (const char* index : {"1", "0.75", "2.42", "4"}) EXPECT_NO_THROW(load(index)) << index;
+}
+
+}  // namespace
+}  // namespace lab
