@@ -64,10 +64,12 @@ TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
     later_samples.first_sample = later_samples.samples;
     const FilmImage film = render(scene, settings()), film_of_other_seed = render(scene, other_seed),
                     later_film = render(scene, later_samples);
-    for (size_t i = 0; i < film.pixels.size(); ++i) {
-        ASSERT_NE(film.pixels[i].sum, film_of_other_seed.pixels[i].sum);
-        ASSERT_NE(film.pixels[i].sum, later_film.pixels[i].sum);
-    }
+    // A few pixels may have equal sums by chance, since few numbers occur as weights.
+    size_t equal = 0;
+    for (size_t i = 0; i < film.pixels.size(); ++i)
+        equal += (film.pixels[i].sum == film_of_other_seed.pixels[i].sum) +
+                 (film.pixels[i].sum == later_film.pixels[i].sum);
+    EXPECT_LE(equal, film.pixels.size() / 100);
 }
 
 TEST_P(Determinism, PartsMergeToTheWhole) {

@@ -236,7 +236,7 @@ TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
         const Receiver receiver(normal);
         Scene scene = receiver.scene();
         add_triangle(scene, receiver.place(light), 1);
-        const Batches batches = render_batches(scene, settings_of(GetParam(), 64, ++seed), batch_count);
+        const Batches batches = render_batches(scene, settings_of(GetParam(), 80, ++seed), batch_count);
         expect_direct_light(name, batches, receiver.irradiance(receiver.place(light)), {0.02, 0.7},
                             light_cases().size());
     }

@@ -38,7 +38,7 @@ const std::vector<ReferenceCase> reference_cases{
     {"cornell_box_6", 4, 28, 0.003},
     {"cornell_box_6", 5, 26, 0.003},
     {"cornell_box_6", 6, 26, 0.003},
-    {"heart_light_4", 5, 10, 0.003},
+    {"heart_light_4", 5, 13, 0.003},
     {"textured_4", 2, 24, 0.01},
     {"instances_4", 3, 2, 0.003},
     {"glass_8", 6, 15, 0.005, 0.9, Run::always, Tail::heavy},

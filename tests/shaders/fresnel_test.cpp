@@ -203,8 +203,9 @@ TEST(Dielectric, OfIndexOneIsTransparent) {
     const auto results = evaluate(inputs);
     for (size_t i = 0; i < inputs.size(); ++i) {
         ASSERT_FALSE(is_reflected(inputs[i], results[i]));
-        // To the rounding by which it is brought to unit length.
-        ASSERT_LT(glm::distance(dvec3(results[i].direction), -dvec3(inputs[i].out_direction)), 0x1p-23);
+        // To the roundings by which it is brought to unit length: some devices multiply by the inverse
+        // length.
+        ASSERT_LT(glm::distance(dvec3(results[i].direction), -dvec3(inputs[i].out_direction)), 0x1p-22);
     }
 }
 
