@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
-#include <sstream>
 
 #include "app/backend_choice.h"
 #include "app/headless.h"
@@ -29,12 +28,6 @@ void print_devices() {
                         missing.empty() ? "works" : ("lacks " + missing).c_str());
         }
     }
-}
-
-std::string hexadecimal(uint64_t number) {
-    std::ostringstream text;
-    text << std::hex << number;
-    return text.str();
 }
 
 // Fails before anything is rendered if a result could not be kept later.
@@ -126,7 +119,7 @@ void run(const Chapter& chapter, const Options& options) {
     RenderJob job = make_job(chapter, scene, estimator, options);
 
     const Device device({options.device, options.validation});
-    const bool samples_lights = chapter.light_sampling && options.light_sampling;
+    const bool samples_lights = chapter.light_sampling && options.light_sampling && !options.view;
     const GpuScene gpu_scene(device, scene, samples_lights ? LightSampling::on : LightSampling::off);
     const Backend backend = choose_backend(options, device, gpu_scene, estimator, job.parameters);
     const auto acceleration_structure = build_acceleration_structure(backend, device, gpu_scene);

@@ -114,12 +114,13 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
     options.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i) {
         const ChapterOption& option = chapter.options[i];
-        options.chapter_values[i] = option.default_value;
         const bool is_whole = std::holds_alternative<uint32_t RenderParameters::*>(option.parameter);
         std::ostringstream range;
         range << "a number from " << option.low << " to " << option.high;
+        std::ostringstream default_value;
+        default_value << option.default_value;
         app.add_option(option.name, options.chapter_values[i], option.help)
-            ->capture_default_str()
+            ->default_str(default_value.str())
             ->check(is_whole
                         ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
                         : within(option.low, option.high, range.str()));
@@ -174,8 +175,6 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
         std::replace(message.begin(), message.end(), '\n', ' ');
         throw UserError(message + " (--help shows all options)");
     }
-    if (options.split_every_hit && app.count(splitting_factor.name) == 0)
-        options.chapter_values.front() = 2;  // the blog's: 4^5 branches would take hours
     options.scene = find_scene(scene);
     for (const auto& known : views())
         if (known.name == view) options.view = &known;

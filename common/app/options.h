@@ -39,8 +39,8 @@ struct Options {
     bool specular = false;
     bool light_sampling = true;
     bool split_every_hit = false;
-    std::vector<double> chapter_values;  // one for each of the chapter's options
-    float exposure = 0;                  // stops
+    std::vector<std::optional<double>> chapter_values;  // one for each of the chapter's options, if given
+    float exposure = 0;                                 // stops
     std::filesystem::path resume;
     std::optional<double> save_every;  // seconds
     bool validation = false;

@@ -14,8 +14,9 @@ namespace {
 // Where paths have no limit they still end here: a sample must end in bounded time.
 constexpr uint32_t safety_limit = 10000;
 
-// With --split-every-hit, whose work grows with the power of the length: the blog's.
+// With --split-every-hit, whose work is a power: the blog's length and factor. Others would take hours.
 constexpr uint32_t split_every_hit_length = 5;
+constexpr double split_every_hit_factor = 2;
 
 // More branches would keep a device busy with one sample for longer than drivers allow.
 constexpr double max_branches = 1 << 20;
@@ -38,6 +39,14 @@ uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Optio
     if (chapter.unlimited_path_length) length = safety_limit;
     if (options.split_every_hit) length = split_every_hit_length;
     return std::max(options.max_path_length.value_or(length), only);
+}
+
+// The value of the chapter's option number i: as given, or its default.
+double value_of(const Chapter& chapter, size_t i, const Options& options) {
+    const ChapterOption& option = chapter.options[i];
+    const bool splits_every_hit = options.split_every_hit && option.name == splitting_factor.name;
+    return options.chapter_values[i].value_or(splits_every_hit ? split_every_hit_factor
+                                                               : option.default_value);
 }
 
 void check_split_every_hit(const RenderParameters& parameters) {
@@ -83,7 +92,7 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
         std::visit(
             [&](auto member) {
                 using Number = std::remove_reference_t<decltype(parameters.*member)>;
-                parameters.*member = static_cast<Number>(options.chapter_values[i]);
+                parameters.*member = static_cast<Number>(value_of(chapter, i, options));
             },
             chapter.options[i].parameter);
     if (options.split_every_hit) check_split_every_hit(parameters);
@@ -97,7 +106,7 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     text << "--max-path-length " << parameters.max_path_length;
     if (parameters.only_path_length >= 0) text << " --only-path-length " << parameters.only_path_length;
     for (size_t i = 0; i < chapter.options.size(); ++i)
-        text << ' ' << chapter.options[i].name << ' ' << options.chapter_values[i];
+        text << ' ' << chapter.options[i].name << ' ' << value_of(chapter, i, options);
     if (!options.light_sampling) text << " --light-sampling off";
     if (options.split_every_hit) text << " --split-every-hit";
     if (options.view) text << " --view " << options.view->name;

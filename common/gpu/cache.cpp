@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace lab {
 namespace {
@@ -28,6 +29,12 @@ uint64_t checksum(const uint8_t* bytes, size_t size) {
 uint64_t hash_text(std::string_view text, uint64_t hash) {
     for (const char c : text) hash = (hash ^ static_cast<uint8_t>(c)) * 1099511628211ull;
     return hash;
+}
+
+std::string hexadecimal(uint64_t number) {
+    std::ostringstream text;
+    text << std::hex << number;
+    return text.str();
 }
 
 std::optional<std::vector<uint8_t>> read_cache(const std::string& name) {

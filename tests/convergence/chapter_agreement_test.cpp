@@ -53,7 +53,7 @@ struct AgreementCase {
 // The lower part of the scene, where no light is seen: it would add nothing but noise. Small suns are dimmed,
 // since bounces meet them so rarely that no error of the rest would be found.
 Scene load_test_scene(const std::string& name) {
-    Scene scene = load_scene(project_folder() / "assets" / "scenes" / (name + ".json"));
+    Scene scene = load_shipped_scene(name + ".json");
     scene.camera.target.y = 0.4f;
     scene.camera.vertical_fov = 16;
     if (scene.light_probe)

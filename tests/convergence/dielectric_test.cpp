@@ -1,6 +1,5 @@
 // Chapter 6 where the radiance behind and within dielectrics is known exactly.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -10,8 +9,6 @@
 
 namespace lab {
 namespace {
-
-const std::array<std::string, 3> channel_names{"red", "green", "blue"};
 
 // Far beyond what a path needs to leave these scenes.
 constexpr uint32_t unlimited = 1000;

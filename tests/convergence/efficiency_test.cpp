@@ -47,7 +47,7 @@ void expect_gain(const std::string& what, const Cost& before, const Cost& techni
 
 Cost measure_chapter(const std::string& scene_name, size_t number, uint32_t samples, uint32_t length,
                      uint32_t splitting = 1) {
-    const Scene scene = load_scene(project_folder() / "assets" / "scenes" / (scene_name + ".json"));
+    const Scene scene = load_shipped_scene(scene_name + ".json");
     RenderSettings settings{.width = 64, .height = 64, .samples = samples, .max_path_length = length};
     settings.splitting_factor = splitting;
     settings.roulette_start = 2;

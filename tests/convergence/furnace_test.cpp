@@ -1,5 +1,4 @@
 // Scenes whose radiance is known exactly.
-#include <array>
 #include <cmath>
 
 #include "support/expect_statistics.h"
@@ -11,8 +10,6 @@ namespace {
 
 class Furnace : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Furnace, testing::ValuesIn(all_chapters), chapter_name);
-
-const std::array<std::string, 3> channel_names{"red", "green", "blue"};
 
 // Inside a closed surface of albedo a and emission E every point shows E (1 + a + a² + ... + a^m) at path
 // length m. Each channel has its own numbers.

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "film/error_metrics.h"
+#include "gpu/cache.h"
 #include "support/expect_statistics.h"
 #include "support/failure_images.h"
 #include "support/gpu_test.h"
@@ -162,10 +163,8 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     const auto file = project_folder() / "assets" / "references" / (c.reference + ".exr");
     const auto attributes = read_exr(file).attributes;
     const Reference reference = read_reference(file);
-    const Scene scene = load_scene(project_folder() / "assets" / "scenes" / attributes.at("scene"));
-    char hash[17];
-    std::snprintf(hash, sizeof hash, "%llx", static_cast<unsigned long long>(scene.hash));
-    ASSERT_EQ(attributes.at("scene_hash"), hash)
+    const Scene scene = load_shipped_scene(attributes.at("scene"));
+    ASSERT_EQ(attributes.at("scene_hash"), hexadecimal(scene.hash))
         << file << " is stale: its scene has changed; run ./lab reference --all";
 
     RenderSettings settings{

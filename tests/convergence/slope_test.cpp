@@ -39,7 +39,7 @@ class Convergence : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(all_chapters), chapter_name);
 
 TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
-    Scene scene = load_scene(project_folder() / "assets" / "scenes" / "cornell_box.json");
+    Scene scene = load_shipped_scene("cornell_box.json");
     // Without the lamp: a few pixels at its edge would decide the error of the whole image.
     scene.camera.target = {0, 0.7f, 0};
     scene.camera.vertical_fov = 22;

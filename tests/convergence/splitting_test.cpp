@@ -31,7 +31,7 @@ std::vector<double> sample_variances(const Batches& batches, size_t group) {
 
 // The lower part of the Cornell box, without its lamp, in so wide pixels that the first hit matters.
 Scene view_of_boxes() {
-    Scene scene = load_scene(project_folder() / "assets" / "scenes" / "cornell_box.json");
+    Scene scene = load_shipped_scene("cornell_box.json");
     scene.camera.target = {0, 0.5f, 0};
     scene.camera.vertical_fov = 20;
     return scene;

@@ -30,6 +30,10 @@ void render_progressively(const Scene& scene, const RenderSettings& settings, si
 
 }  // namespace
 
+Scene load_shipped_scene(const std::string& file) {
+    return load_scene(project_folder() / "assets" / "scenes" / file);
+}
+
 Estimator chapter_estimator(const std::string& chapter) {
     return {project_folder() / "chapters" / chapter / "path_trace.glsl"};
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 
 #include "app/renderer.h"
@@ -16,6 +17,12 @@ inline const std::vector<std::string> all_chapters{"01_uniform_sampling",      "
 
 Estimator chapter_estimator(const std::string& chapter);
 Estimator view_estimator(const std::string& view);
+
+// For messages.
+inline const std::array<std::string, 3> channel_names{"red", "green", "blue"};
+
+// A scene of assets/scenes by its file name.
+Scene load_shipped_scene(const std::string& file);
 
 struct RenderSettings {
     uint32_t width = 64;
