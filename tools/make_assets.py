@@ -339,7 +339,7 @@ def panes(x, y):
 def sky(d):
     """A clear sky over hazy ground, with a sun so broad and mild that uniform sampling converges."""
     sun = normalize((-0.62, 0.5, 0.45))
-    glow = 90 * math.exp(200 * (dot(sun, d) - 1))
+    glow = 18 * math.exp(40 * (dot(sun, d) - 1))
     up = max(0, d[1])**0.5
     above = tuple((1 - up) * horizon + up * zenith + glow * s
                   for horizon, zenith, s in zip((0.62, 0.7, 0.78), (0.1, 0.26, 0.7), (1, 0.86, 0.62)))

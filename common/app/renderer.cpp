@@ -53,6 +53,14 @@ double Renderer::samples() const {
            static_cast<double>(next_block_) * (pass_samples_ - finished_samples_) / block_count();
 }
 
+void Renderer::restart(const RenderParameters& parameters) {
+    parameters_.write(&parameters, sizeof parameters);
+    film_.clear();
+    finished_samples_ = next_block_ = 0;
+    rays_ = 0;
+    device_seconds_ = 0;
+}
+
 void Renderer::resume(const FilmImage& image) {
     film_.write(image);
     finished_samples_ = image.min_samples();

@@ -30,6 +30,8 @@ class Renderer {
     // Samples per pixel so far, averaged over the image.
     double samples() const;
 
+    // Begins anew with other parameters, of an image of the same size.
+    void restart(const RenderParameters& parameters);
     // Goes on from an image of the same size instead of from nothing.
     void resume(const FilmImage& image);
     void set_dispatch_seconds(double seconds) { dispatch_seconds_ = seconds; }

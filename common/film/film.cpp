@@ -49,7 +49,11 @@ Film::Film(const Device& device, uint32_t width, uint32_t height)
     : width_(width),
       height_(height),
       buffer_(device, size_t{width} * height * sizeof(FilmPixel), vk::BufferUsageFlagBits::eStorageBuffer) {
-    write({width, height, std::vector<FilmPixel>(size_t{width} * height, FilmPixel{})});
+    clear();
+}
+
+void Film::clear() {
+    write({width_, height_, std::vector<FilmPixel>(size_t{width_} * height_, FilmPixel{})});
 }
 
 FilmImage Film::read() const {

@@ -31,6 +31,7 @@ class Film {
     uint32_t height() const { return height_; }
     Binding binding() const { return storage_binding(BINDING_FILM, buffer_); }
 
+    void clear();  // to no samples
     FilmImage read() const;
     void write(const FilmImage& image);  // of the same size
 

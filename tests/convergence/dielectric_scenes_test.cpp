@@ -23,7 +23,7 @@ RenderSettings make_settings(uint32_t samples, uint32_t seed) {
             .estimator = chapter_estimator("06_dielectrics")};
 }
 
-constexpr size_t batch_count = 32;
+constexpr uint32_t batch_count = 32;
 
 TEST(DielectricScene, BoxOfIndexOneIsInvisibleInALitRoom) {
     // With light samples: they do not reach through the box, but paths do and count what they find.

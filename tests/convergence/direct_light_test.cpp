@@ -8,6 +8,7 @@
 #include <random>
 
 #include "support/expect_statistics.h"
+#include "support/failure_images.h"
 #include "support/lambert_polygon.h"
 #include "support/render.h"
 #include "support/scenes.h"
@@ -115,7 +116,13 @@ void expect_direct_light(const std::string& what, const Batches& batches,
     };
     double mean = 0;
     for (const double e : irradiance) mean += e / static_cast<double>(irradiance.size());
+    const int failed_before = failed_expectations();
     std::vector<Difference> of_image, of_pixels;
+    ZMap map{batches.width, batches.height, std::vector<double>(irradiance.size())};
+    Image expected{batches.width, batches.height, {}};
+    for (const double e : irradiance)
+        for (int channel = 0; channel < 3; ++channel)
+            expected.pixels.push_back(static_cast<float>(radiance(e, channel)));
     for (int channel = 0; channel < 3; ++channel)
         of_image.push_back(difference_from(batches.means(channel), radiance(mean, channel))
                                .relative_to(radiance(mean, channel)));
@@ -128,9 +135,12 @@ void expect_direct_light(const std::string& what, const Batches& batches,
         }
         of_pixels.push_back(
             difference_from(means, radiance(irradiance[i], 1)).relative_to(radiance(mean, 1)));
+        const Difference& difference = of_pixels.back();
+        if (difference.standard_error > 0) map.values[i] = difference.value / difference.standard_error;
     }
     expect_no_difference(what + ", image", of_image, limits.image, 2 * comparisons);
     expect_no_difference(what + ", pixels", of_pixels, limits.pixel, 2 * comparisons);
+    if (failed_expectations() > failed_before) write_failure(what, batches.mean_image(), expected, map);
 }
 
 RenderSettings settings_of(const std::string& chapter, uint32_t samples, uint32_t seed) {
@@ -143,7 +153,7 @@ RenderSettings settings_of(const std::string& chapter, uint32_t samples, uint32_
     return settings;
 }
 
-constexpr size_t batch_count = 32;
+constexpr uint32_t batch_count = 32;
 
 // A receiver and a triangular light that faces it.
 struct LightCase {

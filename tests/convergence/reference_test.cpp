@@ -25,15 +25,15 @@ struct ReferenceCase {
     Tail tail = Tail::light;
 };
 
-constexpr size_t batch_count = 64;
+constexpr uint32_t batch_count = 64;
 constexpr uint32_t tile = 8;
 // In tiles that light hardly reaches, batches without a hit have no spread. What is a small part of the
 // image's mean there is taken for noise.
 constexpr double tile_floor = 5e-4;
 
 // Chapters 1 and 2, which find lights by bounces, are held to 1 % of the image's mean, the others to 0.3 %.
-// More only where that took minutes: the sun of the light probe and the caustics of glass are found by
-// bounces in all chapters. What takes longest on two cores does not run every time.
+// What takes longest on two cores does not run every time, and glass only less strictly: bounces find its
+// caustics by chance.
 const std::vector<ReferenceCase> reference_cases{
     {"cornell_box_1", 1, 32, 0.01},
     {"cornell_box_1", 2, 20, 0.01},
@@ -43,20 +43,20 @@ const std::vector<ReferenceCase> reference_cases{
     {"cornell_box_6", 5, 26, 0.003},
     {"cornell_box_6", 6, 26, 0.003},
     {"heart_light_4", 5, 13, 0.003},
-    {"textured_4", 2, 24, 0.01},
+    {"textured_4", 2, 10, 0.01},
     {"instances_4", 3, 2, 0.003},
     {"glass_8", 6, 15, 0.005, 0.9, Run::always, Tail::heavy},
-    {"textured_4", 1, 38, 0.01, 0.9, Run::with_all},
+    {"textured_4", 1, 16, 0.01, 0.9, Run::with_all},
     {"torus_5", 3, 52, 0.003, 0.5, Run::with_all},
     {"torus_5", 4, 32, 0.003, 0.5, Run::with_all},
     {"torus_5", 5, 47, 0.003, 0.5, Run::with_all},
     {"torus_5", 6, 47, 0.003, 0.5, Run::with_all},
     {"heart_light_4", 3, 22, 0.003, 0.9, Run::with_all},
     {"heart_light_4", 4, 12, 0.003, 0.9, Run::with_all},
-    {"textured_4", 3, 38, 0.01, 0.9, Run::with_all},
-    {"textured_4", 4, 20, 0.01, 0.9, Run::with_all},
-    {"textured_4", 5, 162, 0.003, 0.9, Run::with_all},
-    {"textured_4", 6, 22, 0.01, 0.9, Run::with_all},
+    {"textured_4", 3, 34, 0.003, 0.9, Run::with_all},
+    {"textured_4", 4, 26, 0.003, 0.9, Run::with_all},
+    {"textured_4", 5, 30, 0.003, 0.9, Run::with_all},
+    {"textured_4", 6, 26, 0.003, 0.9, Run::with_all},
     {"glossy_5", 3, 72, 0.003, 0.9, Run::with_all},
     {"glossy_5", 4, 42, 0.003, 0.9, Run::with_all},
     {"glossy_5", 5, 52, 0.003, 0.9, Run::with_all},
@@ -95,18 +95,6 @@ double channel_mean(const Image& image, size_t channel) {
     double sum = 0;
     for (size_t i = channel; i < image.pixels.size(); i += 3) sum += image.pixels[i];
     return sum / static_cast<double>(image.pixels.size() / 3);
-}
-
-Image mean_image(const Batches& batches) {
-    Image image{batches.width, batches.height, {}};
-    for (size_t i = 0; i < batches.images.front().size(); ++i) {
-        glm::dvec3 sum(0);
-        for (const auto& batch : batches.images) sum += batch[i];
-        for (int channel = 0; channel < 3; ++channel)
-            image.pixels.push_back(
-                static_cast<float>(sum[channel] / static_cast<double>(batches.images.size())));
-    }
-    return image;
 }
 
 // Mean excess kurtosis of the tiles' batch means: about 0 where batches are long enough for their spread to
@@ -209,7 +197,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     if (c.tail == Tail::light) {
         EXPECT_LT(kurtosis, 2) << "the batches' spread does not tell the error of their mean";
     }
-    if (HasFailure()) write_failure(case_name(c), mean_image(batches), reference.mean, map);
+    if (HasFailure()) write_failure("", batches.mean_image(), reference.mean, map);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "support/agreement.h"
 
 #include "support/expect_statistics.h"
+#include "support/failure_images.h"
 
 namespace lab {
 
@@ -9,6 +10,7 @@ std::vector<double> expect_agreement(const std::string& what, const Batches& ima
     constexpr uint32_t tile = 8;
     std::vector<Difference> of_image, of_tiles;
     std::vector<double> p_values;
+    ZMap map{image.width / tile, image.height / tile, {}};
     for (int channel = 0; channel < 3; ++channel) {
         const std::vector<double> expected = oracle.means(channel);
         const double mean = estimate_mean(expected).mean;
@@ -19,11 +21,18 @@ std::vector<double> expect_agreement(const std::string& what, const Batches& ima
                                                  oracle.means(channel, {x, y}, uvec2(tile)))
                                        .relative_to(mean));
                 // The other channels follow the same paths: they would not be independent.
-                if (channel == 1) p_values.push_back(of_tiles.back().p_value());
+                if (channel != 1) continue;
+                const Difference& difference = of_tiles.back();
+                p_values.push_back(difference.p_value());
+                map.values.push_back(
+                    difference.standard_error > 0 ? difference.value / difference.standard_error : 0);
             }
     }
+    const int failed_before = failed_expectations();
     expect_no_difference(what + ", image", of_image, limits.image);
     expect_no_difference(what + ", tiles", of_tiles, limits.tile);
+    if (failed_expectations() > failed_before)
+        write_failure(what, image.mean_image(), oracle.mean_image(), map);
     return p_values;
 }
 

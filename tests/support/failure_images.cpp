@@ -1,7 +1,10 @@
 #include "support/failure_images.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -60,7 +63,12 @@ Texture draw_histogram(const ZMap& map) {
 
 }  // namespace
 
-void write_failure(const std::string& name, const Image& image, const Image& reference, const ZMap& map) {
+void write_failure(const std::string& what, const Image& image, const Image& reference, const ZMap& map) {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    std::string name =
+        std::string(test.test_suite_name()) + "." + test.name() + (what.empty() ? "" : "." + what);
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.') c = '_';
     const auto folder = project_folder() / "output" / "failed" / name;
     std::filesystem::create_directories(folder);
     Image difference = image;
@@ -71,6 +79,10 @@ void write_failure(const std::string& name, const Image& image, const Image& ref
     write_png(folder / "z_map.png", draw(map));
     write_png(folder / "p_histogram.png", draw_histogram(map));
     std::printf("  see %s\n", folder.string().c_str());
+}
+
+int failed_expectations() {
+    return testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count();
 }
 
 }  // namespace lab

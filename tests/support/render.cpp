@@ -9,21 +9,26 @@
 namespace lab {
 namespace {
 
-// Calls `receive` with the film and the number of rays so far each time that all pixels have settings.samples
-// samples more. Fails the test if any of them is invalid.
-void render_progressively(const Scene& scene, const RenderSettings& settings, size_t steps,
-                          const std::function<void(const FilmImage&, uint64_t)>& receive) {
+// Renders the scene `count` times, with the seeds settings.seed, settings.seed + 2^16, ..., and calls
+// `receive` with the film and the number of rays of each. Fails the test if any sample is invalid.
+void render_repeatedly(const Scene& scene, const RenderSettings& settings, uint32_t count,
+                       const std::function<void(const FilmImage&, uint64_t)>& receive) {
     const Device& device = test_device();
     const GpuScene gpu_scene(device, scene, settings.light_sampling);
     const auto acceleration_structure = build_acceleration_structure(settings.backend, device, gpu_scene);
-    Renderer renderer(device, *acceleration_structure, settings.estimator, make_parameters(scene, settings));
+    RenderParameters parameters = make_parameters(scene, settings);
+    Renderer renderer(device, *acceleration_structure, settings.estimator, parameters);
     renderer.set_dispatch_seconds(settings.dispatch_seconds);
-    for (uint32_t step = 1; step <= steps; ++step) {
-        while (renderer.advance(step * settings.samples)) {
+    for (uint32_t i = 0; i < count; ++i) {
+        if (i > 0) {
+            parameters.seed_key = seed_key(test_seed(settings.seed + (i << 16)));
+            renderer.restart(parameters);
+        }
+        while (renderer.advance(settings.samples)) {
         }
         const FilmImage film = renderer.film().read();
         EXPECT_EQ(film.invalid_samples(), 0u);
-        EXPECT_EQ(film.min_samples(), step * settings.samples);
+        EXPECT_EQ(film.min_samples(), settings.samples);
         receive(film, renderer.rays());
     }
 }
@@ -62,29 +67,34 @@ FilmImage render(const Scene& scene, const RenderSettings& settings) {
 
 Rendering render_and_count(const Scene& scene, const RenderSettings& settings) {
     Rendering rendering;
-    render_progressively(scene, settings, 1, [&](const FilmImage& film, uint64_t rays) {
+    render_repeatedly(scene, settings, 1, [&](const FilmImage& film, uint64_t rays) {
         rendering = {film, rays};
     });
     return rendering;
 }
 
-Batches render_batches(const Scene& scene, const RenderSettings& settings, size_t count) {
+Batches render_batches(const Scene& scene, const RenderSettings& settings, uint32_t count) {
     Batches batches{.width = settings.width, .height = settings.height, .images = {}, .rays = {}};
-    std::vector<glm::dvec3> previous(size_t{settings.width} * settings.height);
-    double previous_rays = 0;
-    render_progressively(scene, settings, count, [&](const FilmImage& film, uint64_t rays) {
-        auto& image = batches.images.emplace_back(previous.size());
-        for (size_t i = 0; i < image.size(); ++i) {
-            const glm::dvec3 sum = glm::dvec3(film.pixels[i].sum) + glm::dvec3(film.pixels[i].compensation);
-            image[i] = (sum - previous[i]) / static_cast<double>(settings.samples);
-            previous[i] = sum;
-        }
-        const double all_rays = static_cast<double>(rays);
-        batches.rays.push_back((all_rays - previous_rays) / settings.samples /
+    render_repeatedly(scene, settings, count, [&](const FilmImage& film, uint64_t rays) {
+        auto& image = batches.images.emplace_back();
+        for (const FilmPixel& pixel : film.pixels)
+            image.push_back((glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation)) /
+                            static_cast<double>(settings.samples));
+        batches.rays.push_back(static_cast<double>(rays) / settings.samples /
                                static_cast<double>(image.size()));
-        previous_rays = all_rays;
     });
     return batches;
+}
+
+Image Batches::mean_image() const {
+    Image image{width, height, {}};
+    for (size_t i = 0; i < images.front().size(); ++i) {
+        glm::dvec3 sum(0);
+        for (const auto& batch : images) sum += batch[i];
+        for (int channel = 0; channel < 3; ++channel)
+            image.pixels.push_back(static_cast<float>(sum[channel] / static_cast<double>(images.size())));
+    }
+    return image;
 }
 
 std::vector<double> Batches::means(int channel, uvec2 corner, uvec2 size) const {

@@ -52,8 +52,8 @@ struct Rendering {
 FilmImage render(const Scene& scene, const RenderSettings& settings);
 Rendering render_and_count(const Scene& scene, const RenderSettings& settings);
 
-// The same image rendered again and again with other samples: independent estimates, so that their spread
-// tells how exact their mean is.
+// The same image rendered again and again with other seeds: independent estimates, so that their spread tells
+// how exact their mean is.
 struct Batches {
     uint32_t width = 0;
     uint32_t height = 0;
@@ -63,9 +63,10 @@ struct Batches {
     // One number a batch: the mean of a channel over the image, or over a rectangle of pixels.
     std::vector<double> means(int channel) const { return means(channel, {0, 0}, {width, height}); }
     std::vector<double> means(int channel, uvec2 corner, uvec2 size) const;
+    Image mean_image() const;
 };
 // Each batch takes settings.samples samples of every pixel.
-Batches render_batches(const Scene& scene, const RenderSettings& settings, size_t count);
+Batches render_batches(const Scene& scene, const RenderSettings& settings, uint32_t count);
 
 // Mean radiance of pixels, row by row from the top.
 vec3 radiance_at(const FilmImage& film, uint32_t x, uint32_t y);
