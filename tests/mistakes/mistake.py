@@ -26,10 +26,12 @@ def load():
 
 
 def make(mistake, tree):
-    """Copies what the test programs read into `tree`, with the mistake in it."""
+    """Copies what the test programs read into `tree`, with the mistake in it, if any."""
     for folder in ("shaders", "chapters", "tests/shaders"):
         shutil.copytree(ROOT / folder, tree / folder)
     (tree / "assets").symlink_to(ROOT / "assets")
+    if not mistake:
+        return
     shader = tree / mistake["file"]
     text = shader.read_text(encoding="utf-8")
     if text.count(mistake["find"]) != 1:
@@ -37,28 +39,30 @@ def make(mistake, tree):
     shader.write_text(text.replace(mistake["find"], mistake["replace"]), encoding="utf-8")
 
 
-def run(mistake, tree):
-    """Runs the test on that tree; returns the names of the tests that failed and their messages."""
-    program, test = mistake["test"].split(".", 1)
+def run(program, test, tree):
+    """Runs tests of a program on that tree; returns all tests that ran, with the messages of their failures."""
     # Programs find the shaders above themselves.
     binary = tree / "bin" / f"{program}_tests"
-    binary.parent.mkdir()
+    binary.parent.mkdir(exist_ok=True)
     shutil.copy(BINARIES / binary.name, binary)
     report = tree / "report.json"
+    report.unlink(missing_ok=True)
     command = [binary, f"--gtest_filter={test}", f"--gtest_output=json:{report}"]
     environment = {**os.environ, "XDG_CACHE_HOME": str(tree / "cache")}
     result = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     if not report.exists():
         sys.exit(f"{program}_tests ended with {result.returncode} before its tests did:\n{result.stdout[-2000:]}")
     suites = json.loads(report.read_text(encoding="utf-8"))["testsuites"]
-    cases = [(suite["name"], case) for suite in suites for case in suite["testsuite"]]
-    if not cases:
-        sys.exit(f"there is no test {mistake['test']}")
-    return [
-        (f"{suite}.{case['name']}", failure["failure"])
-        for suite, case in cases
-        for failure in case.get("failures", [])
-    ]
+    return {
+        f"{suite['name']}.{case['name']}": [failure["failure"] for failure in case.get("failures", [])]
+        for suite in suites
+        for case in suite["testsuite"]
+    }
+
+
+def is_verdict(message):
+    """Whether a failure speaks of the estimator: not where a test finds itself too weak or Vulkan is misused."""
+    return "too weak" not in message and "validation" not in message
 
 
 def main():
@@ -69,15 +73,18 @@ def main():
     print(f"{mistake['name']}: {mistake['explanation']}")
     with tempfile.TemporaryDirectory() as folder:
         make(mistake, Path(folder))
-        failures = run(mistake, Path(folder))
-    # A test that finds itself too weak, or a complaint about the use of Vulkan, is no verdict on the estimator.
-    verdicts = [failure for failure in failures if "too weak" not in failure[1] and "validation" not in failure[1]]
+        results = run(*mistake["test"].split(".", 1), Path(folder))
+    if not results:
+        sys.exit(f"there is no test {mistake['test']}")
+    failures = [(name, message) for name, messages in results.items() for message in messages]
+    verdicts = [failure for failure in failures if is_verdict(failure[1])]
     for name, message in verdicts:
         print(f"  red: {name}: {message.splitlines()[-1]}")
         if "exception" in message:
             sys.exit(f"not a verdict but an error:\n{message}")
     if not verdicts:
         sys.exit(f"not detected: {mistake['test']} " + ("only finds itself too weak" if failures else "is green"))
+
 
 
 if __name__ == "__main__":
