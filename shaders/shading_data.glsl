@@ -86,8 +86,10 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     s.diffuse_albedo = material.diffuse_albedo;
     s.texture_coordinates = vec2(0.0);
 #ifdef FEATURE_TEXTURES
-    s.texture_coordinates = w.x * texture_coordinates[corners.x] + w.y * texture_coordinates[corners.y] +
-                            w.z * texture_coordinates[corners.z];
+    // Textures repeat: without the whole part, coordinates far from 0 are as exact as others.
+    vec2 uv = texture_coordinates[corners.x];
+    s.texture_coordinates = fract(uv) + w.y * (texture_coordinates[corners.y] - uv) +
+                            w.z * (texture_coordinates[corners.z] - uv);
     if (material.albedo_texture >= 0)
         s.diffuse_albedo *= get_texture_colour(material.albedo_texture, s.texture_coordinates);
 #endif

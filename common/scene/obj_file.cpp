@@ -3,6 +3,7 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <streambuf>
@@ -67,6 +68,7 @@ class ObjReader : public tinyobj::MaterialReader {
         };
         callbacks.texcoord_cb = [](void* self, float u, float v, float) {
             static_cast<ObjReader*>(self)->check_numbers(1);
+            static_cast<ObjReader*>(self)->check_texture_coordinate(u, v);
             static_cast<ObjReader*>(self)->obj_.texture_coordinates.emplace_back(u, v);
         };
         callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
@@ -117,6 +119,12 @@ class ObjReader : public tinyobj::MaterialReader {
             fail(std::string(words[0]) + " needs " + std::to_string(count) + " numbers");
         for (size_t i = 1; i < words.size(); ++i)
             if (!to_number(words[i])) fail(in_quotes(words[i]) + " is not a finite number");
+    }
+
+    void check_texture_coordinate(float u, float v) const {
+        constexpr float limit = 8388608;  // 2^23
+        if (std::max(std::abs(u), std::abs(v)) > limit)
+            fail("texture coordinates beyond 2^23 are whole numbers in 32 bits and place nothing");
     }
 
     // tinyobjloader reads 0 where there is no number, and wraps those of more than 32 bits.

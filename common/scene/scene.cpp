@@ -9,6 +9,7 @@
 #include "scene/features.h"
 #include "scene/mesh_assembly.h"
 #include "scene/scene_file.h"
+#include "scene/texture_warnings.h"
 
 namespace lab {
 namespace {
@@ -115,6 +116,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     if (!std::isfinite(diagonal))
         throw UserError(name + ": its coordinates are too large for 32-bit numbers");
     for (std::string& warning : dielectric_warnings(scene)) scene.warnings.push_back(std::move(warning));
+    for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));
     if (description.camera)
         scene.camera = *description.camera;
     else if (!scene.instances.empty())

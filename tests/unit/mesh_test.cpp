@@ -173,6 +173,27 @@ TEST_F(MeshFile, TextureCoordinatesPointDownAndAreKeptOnlyForTextures) {
     EXPECT_TRUE(load(obj).texture_coordinates.empty());
 }
 
+TEST_F(MeshFile, TextureCoordinatesTooCoarseForTheirTextureAreNamed) {
+    folder.write("a.mtl", "newmtl m\nmap_Kd a.png\n");
+    write_png(folder / "a.png", {64, 1, std::vector<uint8_t>(size_t{4} * 64, 200)});
+    const auto warnings = [&](const std::string& coordinates) {
+        auto all =
+            load("mtllib a.mtl\nusemtl m\n" + corners_of_a_square + "vt " + coordinates + "\nf 1/1 2/1 3/1\n")
+                .warnings;
+        std::erase_if(all, [](const std::string& line) {
+            return line.find("texture coordinates") == std::string::npos;
+        });
+        return all;
+    };
+    // Floats between 2^16 and 2^17 are 2^-7 apart, between 2^17 and 2^18 2^-6: a texel of 64.
+    EXPECT_TRUE(warnings("0.5 -1000").empty());
+    EXPECT_TRUE(warnings("262143 0").empty());
+    const auto found = warnings("0 -1000000.5");
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NE(found[0].find("reach 1e+06"), std::string::npos) << found[0];
+    EXPECT_NE(found[0].find("steps of 4 texels"), std::string::npos) << found[0];
+}
+
 TEST_F(MeshFile, TexturesAreLoadedOnce) {
     folder.write("a.mtl", "newmtl m\nKd 1 0 1\nmap_Kd a.png\nnewmtl n\nmap_Kd ./a.png\nKd 0 1 0\n");
     write_png(folder / "a.png", {1, 1, {9, 9, 9, 255}});
@@ -364,6 +385,7 @@ TEST_F(MeshFile, DamagedMeshesNameFileAndLine) {
         {"v 0 0 O\nf 1 2 3", "\"O\""},
         {"vn 0 0\nf 1 2 3", "vn needs 3 numbers"},
         {"vt\tnan\nf 1 2 3", "\"nan\""},
+        {"vt 0 -1e7\nf 1 2 3", "2^23"},
         {"# no face", "no faces"},
         {"l 1 2 3", "no faces"},
         {std::string("f 1 2 3\0", 8), "binary"},
