@@ -63,7 +63,10 @@ class HeadlessRender {
         }
         if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
-        if (!options_.quiet) print_summary();
+        if (!options_.quiet)
+            print_summary();
+        else if (snapshot_.invalid_samples() > 0)  // never silent
+            std::fprintf(stderr, "note: %s\n", invalid_samples_text().c_str());
     }
 
   private:
@@ -188,14 +191,23 @@ class HeadlessRender {
         if (failure) throw *failure;
     }
 
+    double paths() const {
+        double paths = 0;
+        for (const auto& pixel : snapshot_.pixels) paths += pixel.sample_count;
+        return paths;
+    }
+
+    std::string invalid_samples_text() const {
+        return std::to_string(snapshot_.invalid_samples()) + " of " + short_number(paths()) +
+               " samples infinite or not a number: they count as 0 and their pixels are magenta";
+    }
+
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = seconds() - job_.record.seconds;
-        double paths = 0;
-        for (const auto& pixel : snapshot_.pixels) paths += pixel.sample_count;
         std::printf("mean radiance  %.5g %.5g %.5g (red, green, blue)\n", mean[0], mean[1], mean[2]);
         std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(),
-                    short_number(paths).c_str(),
+                    short_number(paths()).c_str(),
                     snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
         std::printf(
             "time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
@@ -207,9 +219,8 @@ class HeadlessRender {
             std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n",
                         100 * std::sqrt(rows_.back().error->rel_mse),
                         reference_ ? "against the reference" : "estimated");
-        if (const uint64_t invalid = snapshot_.invalid_samples(); invalid > 0)
-            std::printf("invalid        %llu samples were infinite or not a number (magenta pixels)\n",
-                        static_cast<unsigned long long>(invalid));
+        if (snapshot_.invalid_samples() > 0)
+            std::printf("invalid        %s\n", invalid_samples_text().c_str());
         for (const auto& file : options_.outputs) std::printf("picture        %s\n", file.string().c_str());
         if (!options_.report.empty()) std::printf("report         %s\n", options_.report.string().c_str());
     }

@@ -160,6 +160,9 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
             throw UserError(parts[i - 1].name + " ends before sample " + std::to_string(parts[i - 1].end) +
                             " and " + name + " starts at " + std::to_string(film.record.first_sample) +
                             ": the ranges must join without overlap or gap");
+        if (end - parts.front().film.record.first_sample > UINT32_MAX)
+            throw UserError(name + " ends at sample " + std::to_string(end) +
+                            ": a merged render has at most 2^32 - 1 samples");
         for (size_t p = 0; p < merged.image.pixels.size(); ++p) {
             FilmPixel& sum = merged.image.pixels[p];
             const FilmPixel& added = film.image.pixels[p];
