@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/gpu_test.h"
-#include "support/render.h"
+#include "support/device_arithmetic.h"
 #include "support/scenes.h"
+#include "support/textures.h"
 
 namespace lab {
 namespace {
@@ -16,30 +16,9 @@ using std::numbers::pi;
 
 class Textures : public OnEachBackend {
   protected:
-    // The albedo at texture coordinates: that of squares in a row which have the same coordinates everywhere,
-    // one in each pixel of the image.
-    std::vector<vec3> albedo_at(const Texture& texture, const std::vector<vec2>& coordinates,
-                                const vec3& factor = vec3(1)) const {
-        Material material = diffuse_material(factor);
-        material.albedo_texture = 0;
-        std::vector<Quad> quads;
-        for (size_t i = 0; i < coordinates.size(); ++i) quads.push_back({{i, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-        Scene scene = make_scene({material}, quads);
-        scene.textures = {texture};
-        for (const vec2& uv : coordinates)
-            scene.texture_coordinates.insert(scene.texture_coordinates.end(), 4, uv);
-        const auto count = static_cast<uint32_t>(coordinates.size());
-        const float distance = 10, middle = 0.5f * static_cast<float>(count);
-        scene.camera = {{middle, 0.5f, distance}, {middle, 0.5f, 0}, {0, 1, 0}, 0};
-        scene.camera.vertical_fov = static_cast<float>(glm::degrees(2 * std::atan(0.5 / double{distance})));
-        const FilmImage film = render(scene, {.width = count,
-                                              .height = 1,
-                                              .samples = 1,
-                                              .estimator = view_estimator("albedo"),
-                                              .backend = GetParam()});
-        std::vector<vec3> albedos;
-        for (uint32_t x = 0; x < count; ++x) albedos.push_back(radiance_at(film, x, 0));
-        return albedos;
+    static std::vector<vec3> albedo_at(const Texture& texture, const std::vector<vec2>& coordinates,
+                                       const vec3& factor = vec3(1)) {
+        return lab::albedo_at(GetParam(), texture, coordinates, factor);
     }
 };
 INSTANTIATE_TEST_SUITE_P(Backends, Textures, testing::ValuesIn(all_backends), backend_name);
@@ -54,19 +33,8 @@ Texture colourful_texture() {
     return texture;
 }
 
-// IEC 61966-2-1, in double.
-double decode_srgb(uint8_t value) {
-    const double encoded = value / 255.0;
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-dvec3 texel(const Texture& texture, uint32_t column, uint32_t row) {
-    const uint8_t* bytes = &texture.pixels[4 * (size_t{row} * texture.width + column)];
-    return {decode_srgb(bytes[0]), decode_srgb(bytes[1]), decode_srgb(bytes[2])};
-}
-
-// Devices decode sRGB with an error of up to half a step of eight bits.
-constexpr double decoding_error = 0.5 / 255;
+// What a device may decode wrongly: at most twice its error of x^2.4, and roundings.
+double decoding_error() { return 2 * test_arithmetic().decoding + 1e-6; }
 
 TEST_P(Textures, ShowTheirTexelsFromTheTopRowDown) {
     const Texture texture = colourful_texture();
@@ -80,7 +48,7 @@ TEST_P(Textures, ShowTheirTexelsFromTheTopRowDown) {
             }
     const auto albedos = albedo_at(texture, coordinates);
     for (size_t i = 0; i < albedos.size(); ++i)
-        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error)
+        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error())
             << coordinates[i].x << " " << coordinates[i].y;
 }
 
@@ -93,7 +61,7 @@ TEST_P(Textures, AreDecodedFromSrgb) {
     }
     const auto albedos = albedo_at(texture, coordinates);
     for (size_t value = 0; value < albedos.size(); ++value)
-        EXPECT_NEAR(double{albedos[value].g}, decode_srgb(static_cast<uint8_t>(value)), decoding_error)
+        EXPECT_NEAR(double{albedos[value].g}, decode_srgb(static_cast<uint8_t>(value)), decoding_error())
             << value;
 }
 
@@ -108,7 +76,7 @@ TEST_P(Textures, AreFilteredLinearlyAcrossTheirBorders) {
                                         0.75 * texel(texture, 3, 0) + 0.25 * texel(texture, 0, 0),
                                         0.5 * (texel(texture, 0, 1) + texel(texture, 0, 0))};
     for (size_t i = 0; i < albedos.size(); ++i)
-        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error) << i;
+        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error()) << i;
 }
 
 TEST_P(Textures, AreMultipliedByTheMaterialsColour) {

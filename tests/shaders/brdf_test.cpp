@@ -5,6 +5,7 @@
 #include <random>
 
 #include "support/bounce.h"
+#include "support/device_arithmetic.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
 
@@ -81,8 +82,10 @@ TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
     }
     std::printf("  largest error %.2g, largest difference of exchanged directions %.2g, of the peak\n", worst,
                 worst_reciprocity);
-    EXPECT_LT(worst, 3e-4);
-    EXPECT_LT(worst_reciprocity, 3e-4);
+    // The base's own roundings, about 2^-23, are magnified as well.
+    const double tolerance = 2 * test_arithmetic().phong_lobe + 1000 * 3 * 0x1p-24;
+    EXPECT_LT(worst, tolerance);
+    EXPECT_LT(worst_reciprocity, 2 * tolerance);
 }
 
 TEST(Brdf, ReflectsItsAlbedoAtNormalIncidence) {

@@ -45,7 +45,7 @@ TEST(Film, AddsTenMillionSamplesWithoutLosingAny) {
     const std::vector<Input> inputs{
         {uniform, samples}, {constant, samples}, {outliers, samples}, {invalid, samples}};
     const auto results = run_shader<Result>({"film.comp"}, inputs);
-    double worst_plain = 0;
+    double worst_plain = 0, worst_of_all = 0;
     for (size_t i = 0; i < inputs.size(); ++i) {
         const auto& [pixel, plain_sum] = results[i];
         const auto kind = static_cast<Kind>(inputs[i].kind);
@@ -60,10 +60,12 @@ TEST(Film, AddsTenMillionSamplesWithoutLosingAny) {
         }
         std::printf("  stream %u: relative error of the sum %.2g\n", inputs[i].kind, worst);
         EXPECT_LE(worst, 1e-6) << "stream " << i;
+        worst_of_all = std::max(worst_of_all, worst);
         EXPECT_EQ(pixel.sample_count, samples);
         EXPECT_EQ(pixel.invalid_count, kind == invalid ? samples / 5 : 0);
     }
-    std::printf("  relative error of a plain sum %.2g\n", worst_plain);
+    record("relative_error_of_a_sum", "%.1e after 1e7 samples", worst_of_all);
+    record("relative_error_of_a_plain_sum", "%.1e", worst_plain);
     EXPECT_GT(worst_plain, 1e-4) << "a plain sum is as good: these streams test nothing";
 }
 

@@ -1,6 +1,5 @@
 // shaders/frame.glsl: the rotation from the z-axis to a normal.
 #include <cmath>
-#include <cstdio>
 #include <random>
 
 #include "shaders/interface.h"
@@ -57,7 +56,7 @@ TEST(ShadingSpace, IsARotationThatTakesZToTheNormal) {
         ASSERT_LT(error, 1e-6) << "normal " << normals[i].x << " " << normals[i].y << " " << normals[i].z;
         worst = std::max(worst, error);
     }
-    std::printf("  largest deviation from an orthonormal basis %.2g\n", worst);
+    record("largest_deviation_from_an_orthonormal_basis", "%.1e", worst);
 }
 
 }  // namespace

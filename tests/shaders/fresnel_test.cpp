@@ -7,6 +7,7 @@
 #include <random>
 
 #include "shaders/interface.h"
+#include "support/device_arithmetic.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
 
@@ -97,6 +98,7 @@ bool is_reflected(const DielectricInput& input, const DielectricResult& result) 
 constexpr float refract = 1 - 0x1p-24f;
 
 TEST(Fresnel, IsTheTextbooksReflectance) {
+    double worst_of_all = 0;
     for (const float eta : test_etas) {
         std::vector<DielectricInput> inputs;
         for (const float cos_theta : test_cosines())
@@ -111,12 +113,17 @@ TEST(Fresnel, IsTheTextbooksReflectance) {
                 worst = std::max(worst, std::abs(results[i].reflectance / expected - 1));
         }
         std::printf("  index ratio %.7f: largest relative error of the reflectance %.2g\n", eta, worst);
-        EXPECT_LT(worst, 2e-6) << eta;
+        // Quotients of the numbers that the sums of two roundings make, squared.
+        EXPECT_LT(worst, 4 * test_arithmetic().division + 1e-6) << eta;
+        worst_of_all = std::max(worst_of_all, worst);
     }
+    record("largest_relative_error_of_the_reflectance", "%.1e", worst_of_all);
 }
 
 TEST(Fresnel, IsTheSameFromBothSides) {
-    for (const float eta : {1.5f, 2.4f}) {
+    double worst = 0;
+    for (const float eta : test_etas) {
+        if (eta <= 1) continue;
         std::vector<DielectricInput> inputs;
         for (const float cos_theta : test_cosines()) {
             inputs.push_back(make_input(cos_theta, eta));
@@ -124,11 +131,21 @@ TEST(Fresnel, IsTheSameFromBothSides) {
             inputs.push_back(make_input(cos_theta_t, 1 / eta));
         }
         const auto results = evaluate(inputs);
-        for (size_t i = 0; i < inputs.size(); i += 2)
-            ASSERT_NEAR(results[i].reflectance, results[i + 1].reflectance,
-                        1e-6 + rounding_effect(inputs[i + 1].out_direction.z, inputs[i + 1].eta))
+        for (size_t i = 0; i < inputs.size(); i += 2) {
+            const double difference = std::abs(results[i].reflectance - results[i + 1].reflectance);
+            // The second cosine and index are rounded, maybe to where all light is reflected. By how much
+            // that changes the reflectance is known, and the device's own roundings have about as much
+            // effect.
+            const Textbook first(inputs[i].out_direction.z, inputs[i].eta),
+                second(inputs[i + 1].out_direction.z, inputs[i + 1].eta);
+            if (second.is_total) continue;
+            const auto rounding = static_cast<double>(std::abs(first.reflectance - second.reflectance));
+            ASSERT_LT(difference, 2 * (4 * test_arithmetic().division + 1e-6) + 2 * rounding)
                 << "index ratio " << eta << ", cosine " << inputs[i].out_direction.z;
+            if (rounding < 1e-6) worst = std::max(worst, difference);
+        }
     }
+    record("largest_difference_between_the_sides", "%.1e where the angle is not critical", worst);
 }
 
 TEST(Dielectric, ReflectsIfTheRandomNumberIsBelowTheReflectance) {
@@ -175,6 +192,7 @@ TEST(Dielectric, ReflectsAsOftenAsTheReflectanceSays) {
 }
 
 TEST(Dielectric, ReflectsTotallyBelowTheCriticalAngle) {
+    int widest = 0;
     for (const float eta : test_etas) {
         if (eta >= 1) continue;
         const auto critical = static_cast<float>(std::sqrt((1 - static_cast<long double>(eta)) * (1 + eta)));
@@ -194,7 +212,9 @@ TEST(Dielectric, ReflectsTotallyBelowTheCriticalAngle) {
         }
         std::printf("  index ratio %.7f: critical cosine exact to %d ulp\n", eta, width);
         EXPECT_LE(width, 1) << eta;
+        widest = std::max(widest, width);
     }
+    record("error_of_the_critical_cosine", "%d ulp", widest);
 }
 
 TEST(Dielectric, OfIndexOneIsTransparent) {
@@ -246,6 +266,8 @@ TEST(Dielectric, RefractsBySnellsLaw) {
     std::printf(
         "  %zu directions: residual of Snell's law %.2g, distance to the plane %.2g, length off by %.2g\n",
         refracted, worst_snell, worst_plane, worst_length);
+    record("residual_of_the_law_of_refraction", "%.1e", worst_snell);
+    record("largest_error_of_a_length", "%.1e", worst_length);
     EXPECT_GT(refracted, inputs.size() / 2);
     EXPECT_LT(worst_snell, 1e-6);
     EXPECT_LT(worst_plane, 1e-6);
@@ -288,6 +310,7 @@ TEST(Dielectric, SlabKeepsTheDirection) {
                                                                -dvec3(inputs[i].out_direction)));
     }
     std::printf("  %zu directions: largest difference behind the slab %.2g / cosine\n", crossed, worst);
+    record("largest_difference_behind_a_slab", "%.1e over the cosine", worst);
     EXPECT_GT(crossed, inputs.size() / 2);
     EXPECT_LT(worst, 1e-6);
 }

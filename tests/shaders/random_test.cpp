@@ -61,6 +61,7 @@ TEST(RandomNumbers, StayBelowOneAtTheExtremes) {
             ASSERT_LT(results[i].u[k], 1.0f);
             ASSERT_EQ(double{results[i].u[k]}, numbers_of_state(states[i])[k]);
         }
+    record("largest_number", "1 - 2^-24");
 }
 
 TEST(StartStates, AreDistinct) {
@@ -79,6 +80,7 @@ TEST(StartStates, AreDistinct) {
     }
     std::sort(states.begin(), states.end());
     EXPECT_EQ(std::adjacent_find(states.begin(), states.end()), states.end());
+    record("states_that_occur_twice", "0 of %zu", states.size());
 }
 
 // Numbers of all pixels of an image, as a separate series for each sample, seed and dimension.
@@ -132,6 +134,7 @@ class Streams {
 
 TEST(RandomNumbers, AreNotCorrelated) {
     const Streams streams;
+    double largest_of_all = 0;
     for (const auto& lag : Streams::lags) {
         double largest = 0;
         const double limit = 5 / std::sqrt(static_cast<double>(Streams::pixels - lag.pixel));
@@ -144,7 +147,9 @@ TEST(RandomNumbers, AreNotCorrelated) {
             }
         std::printf("  %s: largest of 64 correlations %.4f, allowed %.4f; finds a correlation of %.4f\n",
                     lag.name, largest, limit, limit * (1 + normal_quantile(power) / 5));
+        largest_of_all = std::max(largest_of_all, largest);
     }
+    record("largest_correlation", "%.4f of %u pairs", largest_of_all, Streams::pixels);
 }
 
 TEST(RandomNumbers, FillTheSquareEvenly) {

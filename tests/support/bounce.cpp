@@ -1,13 +1,12 @@
 #include "support/bounce.h"
 
 #include "app/renderer.h"
-#include "support/gpu_test.h"
 
 namespace lab {
 namespace {
 
 std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surface, uvec2 key,
-                                const std::vector<RandomState>& seeds, size_t count) {
+                                const std::vector<RandomState>& seeds, size_t count, const Device& device) {
     struct Header {
         Surface surface;
         uint32_t max_path_length;
@@ -23,7 +22,7 @@ std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surfa
         {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
     if (surface.material.specular_albedo != vec3(0)) shader.defines.emplace_back("FEATURE_SPECULAR");
     std::vector<Bounce> bounces(count);
-    run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs);
+    run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs, device);
     return bounces;
 }
 
@@ -38,14 +37,14 @@ Material white_material() {
 
 std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& surface, size_t count,
                                    uint32_t run) {
-    return run_bounces(chapter, surface, seed_key(test_seed(run)), {}, count);
+    return run_bounces(chapter, surface, seed_key(test_seed(run)), {}, count, test_device());
 }
 
 std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surface,
-                               const std::vector<std::array<double, 2>>& numbers) {
+                               const std::vector<std::array<double, 2>>& numbers, const Device& device) {
     std::vector<RandomState> seeds;
     for (const auto& u : numbers) seeds.push_back(state_before(u));
-    return run_bounces(chapter, surface, {0, 0}, seeds, seeds.size());
+    return run_bounces(chapter, surface, {0, 0}, seeds, seeds.size(), device);
 }
 
 }  // namespace lab

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shaders/interface.h"
+#include "support/gpu_test.h"
 #include "support/pcg2d.h"
 
 namespace lab {
@@ -30,6 +31,7 @@ std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& su
 
 // Bounces whose first two random numbers are given (down to multiples of 2^-24).
 std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surface,
-                               const std::vector<std::array<double, 2>>& numbers);
+                               const std::vector<std::array<double, 2>>& numbers,
+                               const Device& device = test_device());
 
 }  // namespace lab

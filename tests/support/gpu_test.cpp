@@ -1,5 +1,7 @@
 #include "support/gpu_test.h"
 
+#include <cstdarg>
+#include <cstdio>
 #include <cstdlib>
 
 namespace lab {
@@ -17,8 +19,7 @@ uint32_t test_seed(uint32_t seed) {
 bool runs_all_tests() { return std::getenv("LAB_TEST_ALL") != nullptr; }
 
 void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
-                std::span<const std::byte> inputs) {
-    const Device& device = test_device();
+                std::span<const std::byte> inputs, const Device& device) {
     Buffer result_buffer(device, results.size(), vk::BufferUsageFlagBits::eStorageBuffer);
     const Buffer input_buffer(device, inputs, vk::BufferUsageFlagBits::eStorageBuffer);
     const std::vector<Binding> bindings{storage_binding(0, result_buffer), storage_binding(1, input_buffer)};
@@ -32,6 +33,15 @@ void run_shader(const TestShader& shader, size_t invocations, std::span<std::byt
         kernel.record(commands, nullptr, static_cast<uint32_t>((invocations + group_size - 1) / group_size));
     });
     result_buffer.read(results.data(), results.size());
+}
+
+void record(const char* name, const char* format, ...) {
+    char text[200];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    testing::Test::RecordProperty(name, text);
 }
 
 }  // namespace lab

@@ -33,16 +33,21 @@ struct TestShader {
 // Runs at least `invocations` invocations in groups of 128. `results` (binding 0) and `inputs` (binding 1)
 // are storage buffers; invocations beyond the results have to end at once.
 void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
-                std::span<const std::byte> inputs);
+                std::span<const std::byte> inputs, const Device& device = test_device());
 
 // The results of an invocation for each input. The shader declares, in scalar layout, arrays `results` and
 // `inputs` of types that match.
 template <typename Result, typename Input>
-std::vector<Result> run_shader(const TestShader& shader, const std::vector<Input>& inputs) {
+std::vector<Result> run_shader(const TestShader& shader, const std::vector<Input>& inputs,
+                               const Device& device = test_device()) {
     std::vector<Result> results(inputs.size());
     run_shader(shader, inputs.size(), std::as_writable_bytes(std::span(results)),
-               std::as_bytes(std::span(inputs)));
+               std::as_bytes(std::span(inputs)), device);
     return results;
 }
+
+// Makes a number that a test has measured part of its report, for docs/numerics.md. The name is in
+// snake_case; the value is as printf would write it, with its unit.
+__attribute__((format(printf, 2, 3))) void record(const char* name, const char* format, ...);
 
 }  // namespace lab

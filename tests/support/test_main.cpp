@@ -18,6 +18,14 @@ class ValidationListener : public testing::EmptyTestEventListener {
             std::printf("[  DRIVER  ] %s\n", messages[driver_count_].c_str());
     }
 
+    // Which device the report of the tests is about.
+    void OnTestIterationEnd(const testing::UnitTest&, int) override {
+        const DeviceDescription& device = test_device().description();
+        testing::Test::RecordProperty("device", device.name);
+        testing::Test::RecordProperty("driver", device.driver);
+        testing::Test::RecordProperty("api_version", device.api_version);
+    }
+
     size_t validation_count_ = 0;
     size_t driver_count_ = 0;
 };

@@ -1,0 +1,12 @@
+// Chapter 2's estimator, but for the sample with the state POISONED_STATE of the random numbers one channel is replaced
+// by a number with the bits POISON.
+#define path_trace path_trace_of_chapter
+#include "../../chapters/02_cosine_sampling/path_trace.glsl"
+#undef path_trace
+
+vec3 path_trace(Ray ray, inout uvec2 seed) {
+    bool is_poisoned = seed == uvec2(POISONED_STATE);
+    vec3 radiance = path_trace_of_chapter(ray, seed);
+    if (is_poisoned) radiance[POISONED_CHANNEL] = uintBitsToFloat(POISON);
+    return radiance;
+}

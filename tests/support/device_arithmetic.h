@@ -1,0 +1,50 @@
+// How exact a device's arithmetic is: largest errors, measured against double over the ranges that the
+// shaders use.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "support/render.h"
+
+namespace lab {
+
+// The largest errors of a function.
+struct FunctionError {
+    std::string name;
+    std::string range;       // of the arguments
+    std::string guaranteed;  // by Vulkan, "Precision and Operation of SPIR-V Instructions"; "-": nothing
+    std::optional<double> absolute = std::nullopt;  // not where results of all sizes occur
+    double ulps = 0;                                // in units in the last place of the exact value
+    double share_of_guarantee = 0;                  // above 1 the device breaks it; 0 where there is none
+};
+std::vector<FunctionError> measure_functions(const Device& device);
+
+// The largest distance of what a sampler makes of random numbers from what it should be: directions of unit
+// length, barycentric coordinates.
+struct SamplerError {
+    std::string name;
+    double absolute = 0;
+};
+std::vector<SamplerError> measure_samplers(const Device& device);
+
+// Where camera rays hit a scene, compared with the intersection of the very same ray and triangle.
+struct HitPointError {
+    Backend backend;
+    std::string scene;
+    double off_plane =
+        0;               // distance to the triangle's plane, in units of the offset of rays that start there
+    double off_ray = 0;  // distance to the ray, relative to its length
+};
+std::vector<HitPointError> measure_hit_points(const Device& device);
+
+// What tests take their tolerances from: largest errors of this device. Measured once.
+struct Arithmetic {
+    double sine;        // absolute, of sin and cos in [-π,π]
+    double decoding;    // relative, of x^2.4, which decodes sRGB
+    double phong_lobe;  // relative, of x^n for n up to 1000
+    double division;    // relative, of quotients and square roots
+};
+const Arithmetic& test_arithmetic();
+
+}  // namespace lab
