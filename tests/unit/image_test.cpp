@@ -66,6 +66,11 @@ std::string tga_bytes() {
 TEST(Srgb, KnownValues) {
     EXPECT_EQ(linear_to_srgb(0), 0);
     EXPECT_EQ(linear_to_srgb(1), 1);
+    // Where the two pieces of the curve nearly meet.
+    EXPECT_NEAR(linear_to_srgb(0.0031307f), 12.92 * 0.0031307, 4e-9);
+    EXPECT_NEAR(linear_to_srgb(0.0031309f), 1.055 * std::pow(0.0031309, 1 / 2.4) - 0.055, 4e-9);
+    EXPECT_NEAR(srgb_to_linear(0.0404f), 0.0404 / 12.92, 4e-10);
+    EXPECT_NEAR(srgb_to_linear(0.0405f), std::pow((0.0405 + 0.055) / 1.055, 2.4), 4e-10);
     EXPECT_EQ(srgb_to_linear(1), 1);
     EXPECT_FLOAT_EQ(linear_to_srgb(0.003f), 12.92f * 0.003f);
     EXPECT_FLOAT_EQ(linear_to_srgb(0.5f), 0.7353569831f);

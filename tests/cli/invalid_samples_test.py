@@ -1,0 +1,74 @@
+"""A sample that is infinite or not a number: the program counts, shows and reports it."""
+
+import json
+import shutil
+import unittest
+
+from image_files import Exr, read_png
+from program import CHAPTER, MERGE, PROJECT, RenderTest
+
+
+class Poison(RenderTest):
+    """A copy of the program's shaders in which one sample of one pixel is not a number."""
+
+    width, height, samples = 24, 20, 9
+    pixel, sample = 7 * 24 + 11, 4
+
+    def setUp(self):
+        super().setUp()
+        tree = self.folder / "poisoned"
+        for name in ("shaders", "chapters"):
+            shutil.copytree(PROJECT / name, tree / name)
+        shader = tree / "shaders" / "render_pixel.glsl"
+        text = shader.read_text(encoding="utf-8")
+        call = "add_sample(pixel, path_trace(get_camera_ray(image_position), seed));"
+        self.assertEqual(text.count(call), 1)
+        poisoned = f"""vec3 radiance = path_trace(get_camera_ray(image_position), seed);
+        if (pixel_index == {self.pixel}u && sample_index == {self.sample}u) radiance.g = uintBitsToFloat(0x7fc00000u);
+        add_sample(pixel, radiance);"""
+        shader.write_text(text.replace(call, poisoned), encoding="utf-8")
+        # Programs find the shaders above themselves.
+        self.poisoned = tree / "bin" / CHAPTER.name
+        self.poisoned.parent.mkdir()
+        shutil.copy(CHAPTER, self.poisoned)
+
+    def render_to(self, name, *arguments, program=CHAPTER, samples=samples):
+        """Renders to NAME.exr and more; returns that file and all that the program printed."""
+        command = self.command(f"--samples={samples}", *arguments, scene="quad.json", size=(self.width, self.height))
+        code, out, err = self.run_program(*command, f"--output={name}.exr", program=program)
+        self.assertEqual(code, 0, err)
+        return Exr(self.folder / f"{name}.exr"), out + err
+
+    def test_an_invalid_sample_is_counted_shown_and_reported(self):
+        clean, text = self.render_to("clean")
+        self.assertNotIn("invalid", text)
+        outputs = ("--output=poisoned.png", "--report=poisoned.json")
+        poisoned, text = self.render_to("poisoned_picture", *outputs, program=self.poisoned)
+        self.assertRegex(text, r"(?m)^invalid +1 of .* samples infinite or not a number")
+        _, text = self.render_to("quiet", "--quiet", program=self.poisoned)
+        self.assertRegex(text, r"\Anote: 1 of [^\n]*not a number[^\n]*\n\Z")
+        self.assertEqual(poisoned.text("invalid_samples"), "1")
+        report = json.loads((self.folder / "poisoned.json").read_text(encoding="utf-8"))
+        self.assertEqual(report["invalid_samples"], 1)
+
+        _, _, pixels = read_png(self.folder / "poisoned.png")
+        magenta = [i for i, pixel in enumerate(pixels) if pixel[:3] == (255, 0, 255)]
+        self.assertEqual(magenta, [self.pixel])
+        for channel in "RGB":
+            pairs = zip(clean.channels[channel], poisoned.channels[channel])
+            self.assertEqual([i for i, (a, b) in enumerate(pairs) if a != b], [self.pixel], channel)
+        self.record("other_pixels_that_change", f"0 of {self.width * self.height - 1}")
+
+    def test_resuming_and_merging_keep_the_count(self):
+        self.render_to("part", program=self.poisoned, samples=6)
+        resumed, text = self.render_to("resumed", "--resume=part.exr")
+        self.assertEqual(resumed.text("invalid_samples"), "1")
+        self.assertRegex(text, r"(?m)^invalid +1 of")
+        self.render_to("rest", "--first-sample=6", samples=3)
+        self.render("part.exr", "rest.exr", "-o", "merged.exr", program=MERGE)
+        merged = Exr(self.folder / "merged.exr")
+        self.assertEqual((merged.text("invalid_samples"), merged.text("samples")), ("1", "9"))
+
+
+if __name__ == "__main__":
+    unittest.main()
