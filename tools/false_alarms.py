@@ -7,16 +7,16 @@ Counts the first p-value of each test and seed, since others of a test may come 
 p-values a run has, which gives the rate of false alarms that it was designed for.
 """
 
-import json
 import math
 import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+import test_report
+
 ROOT = Path(__file__).resolve().parents[1]
-PROGRAMS = ["shaders_tests", "convergence_tests"]
+PROGRAMS = ["shaders_tests", "convergence_tests", "hard_cases_tests"]
 SIGNIFICANCE = 1e-6  # of an expectation, as in tests/support/expect_statistics.h
 
 
@@ -27,13 +27,13 @@ def run(seed, folder):
     failed = []
     for program in PROGRAMS:
         report = Path(folder) / f"{program}.json"
-        command = [ROOT / "build/bin" / program, "--gtest_brief=1", f"--gtest_output=json:{report}"]
-        subprocess.run(command, env=environment, stdout=sys.stderr, check=False)
-        for suite in json.loads(report.read_text(encoding="utf-8"))["testsuites"]:
-            for test in suite["testsuite"]:
-                # What a test could have found varies a little with the seed; that is no verdict on the estimator.
-                if any("too weak" not in failure["failure"] for failure in test.get("failures", [])):
-                    failed.append(f"{suite['name']}.{test['name']}")
+        test_report.run(ROOT / "build/bin" / program, report, "--gtest_brief=1", env=environment, stdout=sys.stderr)
+        # What a test could have found varies a little with the seed; that is no verdict on the estimator.
+        failed += [
+            test.full_name
+            for test in test_report.read(report)[0]
+            if any("too weak" not in failure for failure in test.failures)
+        ]
     return failed, [line.split("\t") for line in file.read_text(encoding="utf-8").splitlines()]
 
 

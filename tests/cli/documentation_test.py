@@ -7,6 +7,9 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools"))
+import make_numerics  # noqa: E402  (found by the line above)
+
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 
 
@@ -39,10 +42,22 @@ class DocumentationTest(unittest.TestCase):
                         continue
                     self.assertIn(last, text, f"{page.name}: `{code}` names {last}, which no source has")
 
-
     def test_results_are_what_the_records_say(self):
-        subprocess.run([sys.executable, "-B", ROOT / "tools" / "make_results.py", "--check"], check=True)
+        for tool in ("make_results.py", "make_numerics.py"):
+            subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--check"], check=True)
 
+    def test_every_numerical_trap_has_tests_that_exist(self):
+        cases = make_numerics.load_cases()
+        listed = {case["research"] for case in cases}
+        self.assertEqual([trap for trap in NUMERICAL_TRAPS if trap not in listed], [])
+        for case in cases:
+            self.assertEqual(bool(case["tests"]), case["research"] not in TRAPS_THAT_CANNOT_OCCUR, case["case"])
+        self.assertEqual(make_numerics.missing_tests(), [])
+
+
+# Section 3 of our survey of renderers; there is no sampling by solid angle (3.7) that could go wrong.
+NUMERICAL_TRAPS = [f"3.{number}" for number in range(1, 25)]
+TRAPS_THAT_CANNOT_OCCUR = {"3.7"}
 
 # What the pages quote from the slides, the blog and GLSL.
 KNOWN_ELSEWHERE = {"pixel_index", "frame_index", "my_model"}

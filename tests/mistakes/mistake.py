@@ -16,6 +16,9 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tools"))
+import test_report  # noqa: E402  (found by the line above)
+
 BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build" / "bin"))
 
 
@@ -47,17 +50,13 @@ def run(program, test, tree):
     shutil.copy(BINARIES / binary.name, binary)
     report = tree / "report.json"
     report.unlink(missing_ok=True)
-    command = [binary, f"--gtest_filter={test}", f"--gtest_output=json:{report}"]
     environment = {**os.environ, "XDG_CACHE_HOME": str(tree / "cache")}
-    result = subprocess.run(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    result = test_report.run(binary, report, f"--gtest_filter={test}", env=environment, **streams)
     if not report.exists():
         sys.exit(f"{program}_tests ended with {result.returncode} before its tests did:\n{result.stdout[-2000:]}")
-    suites = json.loads(report.read_text(encoding="utf-8"))["testsuites"]
-    return {
-        f"{suite['name']}.{case['name']}": [failure["failure"] for failure in case.get("failures", [])]
-        for suite in suites
-        for case in suite["testsuite"]
-    }
+    tests, _ = test_report.read(report)
+    return {test.full_name: test.failures for test in tests}
 
 
 def is_verdict(message):

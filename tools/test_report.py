@@ -1,0 +1,78 @@
+"""Runs GoogleTest programs and reads the reports that they write as JSON."""
+
+import json
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+# What GoogleTest itself tells of a test; everything else was recorded by the test.
+OWN_KEYS = {"name", "value_param", "type_param", "file", "line", "status", "result", "timestamp", "time", "classname"}
+OWN_KEYS |= {"failures", "skipped"}
+
+
+@dataclass
+class Test:
+    """A test that was run. Of "Backends/Textures.AreDecoded/query" the suite is "Textures" and the instance "query"."""
+
+    full_name: str
+    failures: list
+    skipped: bool
+    properties: dict  # name -> text, what the test recorded
+
+    @property
+    def name(self):
+        """Suite and test without what instantiates them, as tests are cited."""
+        return name_of(self.full_name)
+
+    @property
+    def instance(self):
+        """The parameter, or "" of a test without one."""
+        _, _, test = self.full_name.partition(".")
+        return test.partition("/")[2]
+
+
+def name_of(full_name):
+    """ "Textures.AreDecoded" of "Backends/Textures.AreDecoded/query"."""
+    suite, _, test = full_name.partition(".")
+    return f"{suite.rpartition('/')[2]}.{test.partition('/')[0]}"
+
+
+def run(binary, report, *arguments, **options):
+    """Runs a test program, which writes its report to that file; returns its subprocess."""
+    command = [binary, f"--gtest_output=json:{report}", *arguments]
+    return subprocess.run(command, check=False, **options)
+
+
+def read(report):
+    """The tests of a report and what was recorded of all of them (the device)."""
+    contents = json.loads(Path(report).read_text(encoding="utf-8"))
+    tests = [
+        Test(
+            f"{suite['name']}.{case['name']}",
+            [failure["failure"] for failure in case.get("failures", [])],
+            case["result"] == "SKIPPED",
+            {key: _text(value) for key, value in case.items() if key not in OWN_KEYS},
+        )
+        for suite in contents["testsuites"]
+        for case in suite["testsuite"]
+        if case["status"] == "RUN"
+    ]
+    return tests, {key: _text(value) for key, value in contents.items() if isinstance(value, str)}
+
+
+def _text(value):
+    """GoogleTest writes each byte of UTF-8 as a character of its own."""
+    return value.encode("latin-1").decode("utf-8")
+
+
+def list_tests(binary):
+    """Full names of all tests of a program."""
+    lines = subprocess.run([binary, "--gtest_list_tests"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    names, suite = [], ""
+    for line in lines.splitlines():
+        text = line.split("#")[0].rstrip()
+        if line.startswith("  "):
+            names.append(suite + text.strip())
+        elif text.endswith("."):
+            suite = text
+    return names
