@@ -18,7 +18,6 @@ using glm::dvec3;
 using std::numbers::pi;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr size_t argument_count = 1 << 18;
 
 // The spacing of floats at a number.
 double ulp_of(double number) {
@@ -98,13 +97,13 @@ const Function functions[] = {
      nothing_allowed},
 };
 
-FunctionError measure(const Device& device, const Function& function) {
+FunctionError measure(const Device& device, const Function& function, size_t count) {
     std::mt19937 generator(1);
     std::uniform_real_distribution<double> uniform(0, 1);
     std::vector<vec2> arguments;
     for (const double u : {0.0, 0.5, 1.0})
         for (const double v : {0.0, 0.25, 1.0}) arguments.push_back(function.arguments(u, v));
-    while (arguments.size() < argument_count)
+    while (arguments.size() < count)
         arguments.push_back(function.arguments(uniform(generator), uniform(generator)));
     const TestShader shader{.name = "device_arithmetic.comp",
                             .defines = {std::string("FUNCTION(x, y) ") + function.glsl}};
@@ -263,9 +262,9 @@ Scene placed(Scene scene, const mat3& linear, const vec3& translation) {
 
 }  // namespace
 
-std::vector<FunctionError> measure_functions(const Device& device) {
+std::vector<FunctionError> measure_functions(const Device& device, size_t count) {
     std::vector<FunctionError> errors;
-    for (const Function& function : functions) errors.push_back(measure(device, function));
+    for (const Function& function : functions) errors.push_back(measure(device, function, count));
     return errors;
 }
 
@@ -291,7 +290,9 @@ std::vector<HitPointError> measure_hit_points(const Device& device) {
 
 const Arithmetic& test_arithmetic() {
     static const Arithmetic measured = [] {
-        const auto error_of = [errors = measure_functions(test_device())](const std::string& name) {
+        // Every test program pays for this; tolerances are multiples of these errors.
+        constexpr size_t count = 1 << 15;
+        const auto error_of = [errors = measure_functions(test_device(), count)](const std::string& name) {
             return *std::find_if(errors.begin(), errors.end(),
                                  [&](const FunctionError& error) { return error.name == name; });
         };

@@ -18,7 +18,8 @@ struct FunctionError {
     double ulps = 0;                                // in units in the last place of the exact value
     double share_of_guarantee = 0;                  // above 1 the device breaks it; 0 where there is none
 };
-std::vector<FunctionError> measure_functions(const Device& device);
+// Looks at `count` arguments, spread over the range at random.
+std::vector<FunctionError> measure_functions(const Device& device, size_t count = 1 << 20);
 
 // The largest distance of what a sampler makes of random numbers from what it should be: directions of unit
 // length, barycentric coordinates.
