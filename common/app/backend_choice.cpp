@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "gpu/cache.h"
+#include "tracing/bvh.h"
 
 namespace lab {
 namespace {
@@ -29,10 +30,8 @@ double measure_speed(Backend backend, const Device& device, const GpuScene& scen
 }
 
 std::string cache_name(const Device& device, const GpuScene& scene) {
-    size_t triangles = 1;
-    for (const uint32_t mesh : scene.scene().instance_meshes)
-        triangles += scene.scene().meshes[mesh].triangle_count;
-    const auto decade = static_cast<int>(std::log10(static_cast<double>(triangles)));
+    const uint64_t triangles = instanced_triangle_count(scene.scene());
+    const auto decade = static_cast<int>(std::log10(static_cast<double>(std::max<uint64_t>(triangles, 1))));
     const auto& description = device.description();
     return "backend-" + std::to_string(hash_text(description.name + description.driver)) + "-" +
            std::to_string(decade);
@@ -60,8 +59,10 @@ Backend choose_backend(const std::string& name, const Device& device, const GpuS
         scene.scene().defaults.max_path_length;  // the choice serves later renders, too
     Backend fastest = Backend::compute;
     double highest_speed = 0;
+    const bool too_many_for_compute = instanced_triangle_count(scene.scene()) > max_bvh_triangles;
     for (const Backend backend : all_backends) {
         if (!device.description().supports(backend)) continue;
+        if (backend == Backend::compute && too_many_for_compute) continue;
         const double speed = measure_speed(backend, device, scene, estimator, parameters);
         if (speed > highest_speed) {
             highest_speed = speed;

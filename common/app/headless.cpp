@@ -47,7 +47,13 @@ class HeadlessRender {
         install_interrupt_handler();
         // If the device fails, what was last read from it is all there is.
         const auto keep = [&](const std::string& why) {
-            write_outputs();
+            if (snapshot_.min_samples() == 0 && snapshot_.has_equal_sample_counts())
+                throw DeviceFailure(why + ": there was nothing to write yet");
+            try {
+                write_outputs();
+            } catch (const UserError& error) {
+                throw DeviceFailure(why + "; " + error.what());
+            }
             throw DeviceFailure(why + ": the outputs hold " + std::to_string(snapshot_.min_samples()) +
                                 " samples a pixel; --resume continues");
         };

@@ -12,11 +12,13 @@
 namespace lab {
 namespace {
 
+// Empty where nobody says whose cache it is: in a folder that all users share, others could replace a shader.
 std::filesystem::path cache_folder() {
     if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
         return std::filesystem::path(folder) / "path_tracing_lab";
-    const char* home = std::getenv("HOME");
-    return std::filesystem::path(home && *home ? home : "/tmp") / ".cache" / "path_tracing_lab";
+    if (const char* home = std::getenv("HOME"); home && *home)
+        return std::filesystem::path(home) / ".cache" / "path_tracing_lab";
+    return {};
 }
 
 // The last eight bytes of an entry are the hash of the others.
@@ -38,7 +40,9 @@ std::string hexadecimal(uint64_t number) {
 }
 
 std::optional<std::vector<uint8_t>> read_cache(const std::string& name) {
-    std::ifstream stream(cache_folder() / name, std::ios::binary);
+    const auto folder = cache_folder();
+    if (folder.empty()) return std::nullopt;
+    std::ifstream stream(folder / name, std::ios::binary);
     std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
     uint64_t stored = 0;
     if (bytes.size() < sizeof stored) return std::nullopt;
@@ -50,8 +54,9 @@ std::optional<std::vector<uint8_t>> read_cache(const std::string& name) {
 }
 
 void write_cache(const std::string& name, const std::vector<uint8_t>& contents) {
-    std::error_code ignored;
     const auto folder = cache_folder();
+    if (folder.empty()) return;
+    std::error_code ignored;
     std::filesystem::create_directories(folder, ignored);
     const auto temporary = folder / (name + "." + std::to_string(getpid()));
     const uint64_t sum = checksum(contents.data(), contents.size());

@@ -82,6 +82,7 @@ void check_header(const std::filesystem::path& file, const EXRHeader& header, ui
     }
     if (static_cast<uint64_t>(width * height) * bytes_per_pixel > max_deflate_ratio * file_size)
         fail_truncated(file);
+    check_memory(file, static_cast<uint64_t>(width * height) * 3 * sizeof(float), file_size);
 }
 
 // Moves the decoded planes into an ExrFile.

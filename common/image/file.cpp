@@ -33,7 +33,8 @@ bool write_bytes(const fs::path& file, std::string_view bytes) {
     std::FILE* stream = std::fopen(file.c_str(), "wb");
     if (!stream) return false;
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
-    const bool flushed = std::fflush(stream) == 0;
+    // On the disk before the rename is: else a power failure could leave the new name with no contents.
+    const bool flushed = std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
     const int error = errno;
     const bool closed = std::fclose(stream) == 0;
     if (!written || !flushed) errno = error;
@@ -44,6 +45,10 @@ bool write_bytes(const fs::path& file, std::string_view bytes) {
 
 std::string read_file(const fs::path& file, uint64_t max_bytes) {
     const std::string name = file.string();
+    constexpr size_t max_name_length = 1000;
+    if (printable(name) != name || name.size() > max_name_length)
+        throw UserError(in_quotes(name) +
+                        ": a file name may have no control characters and at most 1000 others");
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (!fs::exists(status)) throw UserError(name + ": no such file");
@@ -91,12 +96,16 @@ void check_writable(const fs::path& file, const std::vector<std::string>& ending
     if (!writable) throw UserError(name + ": cannot be written: " + reason);
 }
 
+std::string printable(std::string_view text) {
+    std::string result(text);
+    std::replace_if(
+        result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+    return result;
+}
+
 std::string in_quotes(std::string_view name) {
     constexpr size_t max_length = 80;
-    std::string text(name.substr(0, max_length));
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
-    return '"' + text + (name.size() > max_length ? "...\"" : "\"");
+    return '"' + printable(name.substr(0, max_length)) + (name.size() > max_length ? "...\"" : "\"");
 }
 
 std::string lower_case_extension(const fs::path& file) {

@@ -1,12 +1,13 @@
 #include "image/image_checks.h"
 
 #include "error.h"
+#include "image/file.h"
 #include "image/image.h"
 
 namespace lab {
 
 void fail(const std::filesystem::path& file, const std::string& reason) {
-    throw UserError(file.string() + ": " + reason);
+    throw UserError(printable(file.string()) + ": " + reason);
 }
 
 void fail_truncated(const std::filesystem::path& file) {
@@ -17,6 +18,12 @@ void check_image_size(const std::filesystem::path& file, int64_t width, int64_t 
     if (width >= 1 && width <= max_image_extent && height >= 1 && height <= max_image_extent) return;
     fail(file, "an image of " + std::to_string(width) + " x " + std::to_string(height) +
                    " pixels: width and height must be from 1 to " + std::to_string(max_image_extent));
+}
+
+void check_memory(const std::filesystem::path& file, uint64_t bytes, uint64_t file_size) {
+    if (bytes > memory_limit(file_size))
+        fail(file, "its pixels need " + std::to_string(bytes >> 20) + " MiB, far more than a file of " +
+                       std::to_string(file_size >> 10) + " KiB should: make the image smaller");
 }
 
 }  // namespace lab

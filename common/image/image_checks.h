@@ -20,4 +20,7 @@ inline constexpr uint64_t max_deflate_ratio = 1032;
 // UserError unless both are in [1, max_image_extent].
 void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height);
 
+// UserError if an array of so many bytes is above memory_limit().
+void check_memory(const std::filesystem::path& file, uint64_t bytes, uint64_t file_size);
+
 }  // namespace lab

@@ -89,6 +89,7 @@ Image read_hdr(const std::filesystem::path& file) {
     const size_t pixel_count = static_cast<size_t>(image.width) * image.height;
     // A run of 127 equal values takes two bytes in each of the four channels.
     if (pixel_count > 16 * content.size()) fail_truncated(file);
+    check_memory(file, 3 * pixel_count * sizeof(float), content.size());
     image.pixels.reserve(3 * pixel_count);
     std::vector<uint8_t> row(4 * size_t{image.width});
     for (uint32_t y = 0; y < image.height; ++y) {

@@ -9,6 +9,7 @@
 #include "image/file.h"
 #include "image/image.h"
 #include "image/image_checks.h"
+#include "image/stb_memory.h"
 
 namespace lab {
 namespace {
@@ -46,9 +47,13 @@ struct ByteSource {
 
 constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSource::at_end};
 
-// stb_image up to version 2.27 writes past its array for a Huffman table of more than 256 codes. Walks over
-// the segments of a .jpg file, each a marker byte after 0xff and a length of two bytes, as stb_image does.
-bool has_valid_huffman_tables(std::string_view jpg) {
+// stb_image up to version 2.27 writes past its array for a Huffman table of more than 256 codes, and a
+// progressive file can let it pass over a large image in many scans of a few bytes each: encoders make about
+// ten. Walks over the segments of a .jpg file, each a marker byte after 0xff and a length of two bytes, as
+// stb_image does.
+bool is_harmless_jpg(std::string_view jpg) {
+    constexpr size_t max_scans = 64;
+    size_t scans = 0;
     const auto byte = [&](size_t i) { return i < jpg.size() ? static_cast<uint8_t>(jpg[i]) : 0u; };
     size_t position = 0;
     while ((position = jpg.find('\xff', position)) != std::string_view::npos) {
@@ -56,6 +61,7 @@ bool has_valid_huffman_tables(std::string_view jpg) {
         if (marker == 0xff) continue;                                                    // padding
         if (marker == 0 || marker == 1 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // have no length
         const size_t end = position + 1 + (byte(position + 1) << 8 | byte(position + 2));
+        if (marker == 0xda && ++scans > max_scans) return false;
         if (marker == 0xc4) {
             for (size_t table = position + 3; table < end;) {
                 uint32_t code_count = 0;
@@ -81,19 +87,24 @@ void check_written(int success, const std::filesystem::path& file) {
 
 Texture read_texture(const std::filesystem::path& file) {
     const std::string bytes = read_file(file, max_image_file_bytes);
-    if (bytes.starts_with('\xff') && !has_valid_huffman_tables(bytes))
+    if (bytes.starts_with('\xff') && !is_harmless_jpg(bytes))
         fail(file, "damaged image: copy or export it again");
     int width = 0, height = 0, channels = 0;
     ByteSource source{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels))
         fail(file, "not a texture: it must be a .png, .jpg, .bmp or .tga file");
     check_image_size(file, width, height);
-    // At most a bit a pixel, deflated: a file cannot hold more pixels, and memory is not allocated for them.
-    if (static_cast<uint64_t>(width) * height > 8 * max_deflate_ratio * bytes.size()) fail_truncated(file);
+    // A file cannot hold more pixels, and memory is not allocated for them: in .png a bit a pixel, deflated;
+    // elsewhere a bit for each 8 x 8 pixels of .jpg is the least.
+    const uint64_t max_pixels_a_byte = bytes.starts_with("\x89PNG") ? 8 * max_deflate_ratio : 8 * 64;
+    if (static_cast<uint64_t>(width) * height > max_pixels_a_byte * bytes.size()) fail_truncated(file);
 
     source = {bytes};
+    stb_memory = {.largest_block = memory_limit(bytes.size())};
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 4), stbi_image_free);
+    if (stb_memory.exceeded)
+        fail(file, "needs far more memory than a file of its size should: make the image smaller");
     if (source.exhausted) fail_truncated(file);
     if (!pixels) fail(file, "damaged image: copy or export it again");
     Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};

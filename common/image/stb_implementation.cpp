@@ -1,5 +1,10 @@
 // The one place where the code of the stb single-header libraries is compiled.
 // radiance.cpp reads .hdr itself: stb_image does not end on some truncated ones.
+#include "image/stb_memory.h"
+
+#define STBI_MALLOC(size) lab::stb_allocate(nullptr, size)
+#define STBI_REALLOC(block, size) lab::stb_allocate(block, size)
+#define STBI_FREE(block) std::free(block)
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_HDR
 #define STBI_NO_LINEAR

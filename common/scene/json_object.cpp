@@ -36,9 +36,9 @@ json parse_json(const std::string& file, const std::string& text) {
         // The part of the library's message that says what is wrong follows the position.
         std::string reason = error.what();
         if (const size_t start = reason.find(": "); start != std::string::npos) reason.erase(0, start + 2);
-        fail_at_line(file, static_cast<size_t>(line), "not valid JSON: " + reason.substr(0, 200));
+        fail_at_line(file, static_cast<size_t>(line), "not valid JSON: " + printable(reason.substr(0, 200)));
     } catch (const json::exception& error) {
-        throw UserError(file + ": not valid JSON: " + std::string(error.what()).substr(0, 200));
+        throw UserError(file + ": not valid JSON: " + printable(error.what()).substr(0, 200));
     }
 }
 

@@ -1,9 +1,12 @@
 #include "scene/light_table.h"
 
+#include "error.h"
 #include "scene/alias_table.h"
 
 namespace lab {
 namespace {
+
+constexpr uint64_t max_light_triangles = 1u << 24;
 
 // Of linear sRGB (ITU-R BT.709).
 double get_luminance(const vec3& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
@@ -18,21 +21,33 @@ double get_world_area(const Scene& scene, uint32_t instance, const uvec3& corner
 }  // namespace
 
 std::vector<LightTriangle> build_light_table(const Scene& scene) {
+    const auto luminance_of = [&](uint32_t triangle) {
+        return get_luminance(scene.materials[scene.triangle_materials[triangle]].emission);
+    };
+    std::vector<std::vector<uint32_t>> emissive_triangles;  // of each mesh, which may have many instances
+    for (const Mesh& mesh : scene.meshes) {
+        auto& triangles = emissive_triangles.emplace_back();
+        for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
+            if (luminance_of(i) > 0) triangles.push_back(i);
+    }
+    uint64_t count = 0;
+    for (const uint32_t mesh : scene.instance_meshes) count += emissive_triangles[mesh].size();
+    if (count > max_light_triangles)
+        throw UserError(
+            scene.file.string() + ": its instances have " + std::to_string(count) +
+            " emissive triangles together, more than 2^24: remove instances or use simpler lights");
+
     struct Place {
         uint32_t instance, triangle;
     };
     std::vector<Place> places;
     std::vector<double> areas, weights;
-    for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
-        const Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
-        for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i) {
-            const double luminance = get_luminance(scene.materials[scene.triangle_materials[i]].emission);
-            if (luminance == 0) continue;
-            places.push_back({instance, i});
-            areas.push_back(get_world_area(scene, instance, scene.triangles[i]));
-            weights.push_back(areas.back() * luminance);
+    for (uint32_t instance = 0; instance < scene.instances.size(); ++instance)
+        for (const uint32_t triangle : emissive_triangles[scene.instance_meshes[instance]]) {
+            places.push_back({instance, triangle});
+            areas.push_back(get_world_area(scene, instance, scene.triangles[triangle]));
+            weights.push_back(areas.back() * luminance_of(triangle));
         }
-    }
     if (places.empty()) return {};
     const AliasTable table = build_alias_table(weights);
     std::vector<LightTriangle> lights(places.size());

@@ -7,6 +7,7 @@
 namespace lab {
 
 // Chosen with probability proportional to area times luminance of the emission. Empty if nothing emits.
+// Throws UserError if the instances have more than 2^24 emissive triangles together.
 std::vector<LightTriangle> build_light_table(const Scene& scene);
 
 }  // namespace lab

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <streambuf>
 #include <unordered_map>
@@ -18,6 +19,7 @@ namespace {
 
 constexpr uint64_t max_obj_bytes = uint64_t{1} << 30;
 constexpr int max_polygon_corners = 256;
+constexpr size_t max_library_names = 256;
 constexpr size_t max_triangles = 1u << 28;  // what a leaf of the bounding volume hierarchy can refer to
 
 // Lets tinyobjloader read text in memory, and knows the line that it read last.
@@ -91,15 +93,19 @@ class ObjReader : public tinyobj::MaterialReader {
     // all words together are tried.
     bool operator()(const std::string& word, std::vector<tinyobj::material_t>*, std::map<std::string, int>*,
                     std::string*, std::string*) override {
+        if (++library_names_ > max_library_names) fail("more than 256 names of material files");
         std::string all(buffer_.last_line());
         all.erase(0, all.find_first_not_of(" \t", all.find("mtllib") + 6));
         all.erase(all.find_last_not_of(" \t") + 1);
         std::erase(all, '\\');  // escapes a space
         const std::filesystem::path folder = path_.parent_path();
+        std::error_code ignored;  // a name that the file system refuses is reported when it is read
         std::filesystem::path file = folder / all;
-        if (!std::filesystem::exists(file)) file = folder / word;
-        if (!std::filesystem::exists(file) && !all.ends_with(word))
+        if (!std::filesystem::exists(file, ignored)) file = folder / word;
+        if (!std::filesystem::exists(file, ignored) && !all.ends_with(word))
             return false;  // there are more words to try
+        if (!libraries_.insert(file.lexically_normal()).second)
+            return true;  // known: the first of a name counts
         for (MtlMaterial& material : read_mtl(file, folder, files_, warnings_)) {
             material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));
             obj_.materials.push_back(std::move(material));
@@ -190,6 +196,9 @@ class ObjReader : public tinyobj::MaterialReader {
 
     void add_triangle(uint32_t a, uint32_t b, uint32_t c) {
         if (obj_.triangle_materials.size() == max_triangles) fail("there are more than 2^28 triangles");
+        const size_t capacity = obj_.corners.capacity();  // doubles when it is used up
+        if (obj_.corners.size() == capacity && 2 * capacity * sizeof(ObjCorner) > memory_limit(text_.size()))
+            fail("its triangles need far more memory than a file of its size should");
         obj_.corners.insert(obj_.corners.end(), {face_[a], face_[b], face_[c]});
         obj_.triangle_materials.push_back(*material_);
     }
@@ -222,6 +231,8 @@ class ObjReader : public tinyobj::MaterialReader {
     std::unordered_map<std::string, uint32_t> material_indices_;
     std::optional<uint32_t> material_;  // of the next face, if usemtl named one
     std::optional<uint32_t> grey_;
+    std::set<std::filesystem::path> libraries_;  // material files that were read
+    size_t library_names_ = 0;                   // tried so far
     size_t faces_without_material_ = 0;
 };
 

@@ -52,6 +52,12 @@ std::vector<MaterialClassRange> material_class_ranges(const Mesh& mesh) {
     return ranges;
 }
 
+uint64_t instanced_triangle_count(const Scene& scene) {
+    uint64_t count = 0;
+    for (const uint32_t mesh : scene.instance_meshes) count += scene.meshes[mesh].triangle_count;
+    return count;
+}
+
 Bounds world_bounds(const Scene& scene) {
     std::vector<Bounds> mesh_bounds(scene.meshes.size());
     for (size_t i = 0; i < scene.meshes.size(); ++i) {

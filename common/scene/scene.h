@@ -72,6 +72,9 @@ struct Scene {
     uint64_t hash = 0;                  // FNV-1a of all files that the scene was read from
 };
 
+// Triangles of all instances together, each instance's counted; never overflows.
+uint64_t instanced_triangle_count(const Scene& scene);
+
 // Axis-aligned bounding box.
 struct Bounds {
     vec3 low{std::numeric_limits<float>::infinity()};

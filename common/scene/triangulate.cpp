@@ -1,5 +1,6 @@
 #include "scene/triangulate.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace lab {
@@ -43,13 +44,12 @@ std::vector<std::array<uint32_t, 3>> triangulate(std::span<const vec3> polygon) 
         for (size_t i = 1; i <= rest.size(); ++i) {
             const uint32_t a = rest[i - 1], b = rest[i % rest.size()], c = rest[(i + 1) % rest.size()];
             if (area(points[a], points[b], points[c]) <= 0) continue;
-            bool is_ear = true;
-            for (const uint32_t p : rest) {
-                if (points[p] == points[a] || points[p] == points[b] || points[p] == points[c]) continue;
-                is_ear = is_ear && !(area(points[a], points[b], points[p]) >= 0 &&
-                                     area(points[b], points[c], points[p]) >= 0 &&
-                                     area(points[c], points[a], points[p]) >= 0);
-            }
+            const bool is_ear = std::ranges::none_of(rest, [&](uint32_t p) {
+                return points[p] != points[a] && points[p] != points[b] && points[p] != points[c] &&
+                       area(points[a], points[b], points[p]) >= 0 &&
+                       area(points[b], points[c], points[p]) >= 0 &&
+                       area(points[c], points[a], points[p]) >= 0;
+            });
             if (is_ear) {
                 ear = i % rest.size();
                 break;

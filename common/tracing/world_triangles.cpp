@@ -7,9 +7,8 @@ namespace lab {
 static constexpr float largest_coordinate = 1e18f;
 
 std::vector<BvhTriangle> world_triangles(const Scene& scene) {
-    size_t count = 0;
-    for (const uint32_t mesh : scene.instance_meshes) count += scene.meshes[mesh].triangle_count;
-    if (count >= size_t{1} << bvh_leaf_shift)
+    const uint64_t count = instanced_triangle_count(scene);
+    if (count > max_bvh_triangles)
         throw UserError(scene.file.string() + ": its instances have " + std::to_string(count) +
                         " triangles together, more than 2^28 - 1; remove instances or use another backend");
     std::vector<BvhTriangle> triangles;

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "scene/light_table.h"
+#include "test_files.h"
 
 namespace lab {
 namespace {
@@ -187,6 +188,13 @@ TEST(LightTable, IsEmptyWithoutLights) {
     Scene scene = make_lights({1, 1}, {vec3(0), vec3(0)});
     add_instance(scene, mat4x3(1));
     EXPECT_TRUE(build_light_table(scene).empty());
+}
+
+// Their number, before anything is allocated for them.
+TEST(LightTable, RefusesMoreLightsThanItCanHold) {
+    Scene scene = make_lights(std::vector<float>(1000, 1), std::vector<vec3>(1000, vec3(1)));
+    for (int i = 0; i < (1 << 24) / 1000 + 1; ++i) add_instance(scene, mat4x3(1));
+    EXPECT_USER_ERROR(build_light_table(scene), "16778000 emissive triangles");
 }
 
 // With powers over 24 orders of magnitude each light has a probability, and its weight makes up for it.

@@ -255,5 +255,12 @@ TEST(WorldTriangles, RefusesWhatTheTraversalCannotHold) {
     EXPECT_THROW(world_triangles(scene), UserError);
 }
 
+TEST(InstancedTriangleCount, IsRightBeyond32Bits) {
+    Scene scene = two_instances();
+    scene.meshes[1].triangle_count = 1u << 28;
+    scene.instance_meshes.resize(1025, 1);
+    EXPECT_EQ(instanced_triangle_count(scene), (uint64_t{1} << 38) + 1);
+}
+
 }  // namespace
 }  // namespace lab

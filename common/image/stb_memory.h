@@ -1,0 +1,21 @@
+// The memory that stb_image takes: what a damaged file claims to need is not known before it is decoded.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+namespace lab {
+
+struct StbMemory {
+    size_t largest_block = SIZE_MAX;  // bytes; a larger one counts as out of memory
+    bool exceeded = false;            // whether one was asked for
+};
+inline thread_local StbMemory stb_memory;
+
+inline void* stb_allocate(void* block, size_t size) {
+    if (size <= stb_memory.largest_block) return std::realloc(block, size);
+    stb_memory.exceeded = true;
+    return nullptr;
+}
+
+}  // namespace lab
