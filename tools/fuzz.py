@@ -60,6 +60,8 @@ def main():
     parser.add_argument("--record", type=Path, help="where to write a record of the run")
     arguments = parser.parse_args()
 
+    git = ["git", "-C", ROOT, "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
+    commit = subprocess.run(git, capture_output=True, text=True, check=False).stdout.strip()
     totals = {name: {"executions": 0, "cpu_seconds": 0, "peak_mib": 0, "defects": 0} for name in FORMATS}
     budget = 60 * arguments.minutes / len(FORMATS)
     for name, total in totals.items():
@@ -74,9 +76,8 @@ def main():
         print(f"{name:8} {total['executions']:9} inputs in {total['cpu_seconds']} s, {total['defects']} defects", flush=True)
 
     if arguments.record:
-        git = ["git", "-C", ROOT, "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
         record = {
-            "commit": subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip(),
+            "commit": commit,
             "date": time.strftime("%Y-%m-%d"),
             "engine": "libFuzzer with AddressSanitizer and UndefinedBehaviorSanitizer",
             "limits": LIMITS,
