@@ -67,10 +67,12 @@ class ProgramTest(unittest.TestCase):
                 stream.write(json.dumps({name: value}) + "\n")
 
     def start(self, *arguments, environment=None, prepare=None, program=CHAPTER):
+        """Starts a program; variables of the environment that are None are taken away."""
+        variables = {**os.environ, **(environment or {})}
         return subprocess.Popen(
             [program, *map(str, arguments)],
             cwd=self.folder,
-            env={**os.environ, **(environment or {})},
+            env={name: value for name, value in variables.items() if value is not None},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -1,0 +1,196 @@
+// Renders for a long time while scenes are loaded again, cameras move and backends change: memory must stay
+// flat and every picture must be, to the bit, what it was when the program had just started. Exit code 1 if
+// not.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "app/renderer.h"
+#include "error.h"
+#include "gpu/cache.h"
+#include "gpu/shader_compiler.h"
+
+namespace lab {
+namespace {
+
+struct Case {
+    std::string scene;
+    std::string chapter;
+};
+const std::vector<Case> cases = {{"cornell_box", "03_next_event_estimation"},
+                                 {"textured", "01_uniform_sampling"},
+                                 {"glass", "06_dielectrics"}};
+constexpr uint32_t camera_count = 2;
+constexpr uvec2 image_size(32, 32);
+constexpr uint32_t samples = 2;
+
+// What the allocator keeps of freed memory varies.
+constexpr double tolerated_growth_mib = 4;
+
+// Memory of this process that is in use, on a CPU device the device's included.
+double resident_mib() {
+    std::ifstream stream("/proc/self/statm");
+    double total_pages = 0, resident_pages = 0;
+    stream >> total_pages >> resident_pages;
+    return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+uint64_t hash_of(const FilmImage& film) {
+    return hash_text(
+        {reinterpret_cast<const char*>(film.pixels.data()), film.pixels.size() * sizeof(FilmPixel)});
+}
+
+Scene load(const Case& item) {
+    return load_scene(project_folder() / "assets" / "scenes" / (item.scene + ".json"));
+}
+
+Estimator estimator_of(const Case& item) {
+    return {project_folder() / "chapters" / item.chapter / "path_trace.glsl"};
+}
+
+void render(Renderer& renderer, uint32_t target_samples) {
+    while (renderer.advance(target_samples)) {
+    }
+}
+
+class Soak {
+  public:
+    explicit Soak(const Device& device) : device_(device) {}
+
+    // All cases on all backends from all cameras, each from its files on.
+    void run_round() {
+        for (const Case& item : cases)
+            for (const Backend backend : all_backends)
+                if (device_.description().supports(backend)) run_case(item, backend);
+        resident_mib_.push_back(resident_mib());
+    }
+
+    size_t picture_count() const { return picture_count_; }
+    size_t wrong_picture_count() const { return wrong_picture_count_; }
+    const std::vector<double>& resident_mib_of_rounds() const { return resident_mib_; }
+
+  private:
+    void run_case(const Case& item, Backend backend) {
+        Scene scene = load(item);
+        const GpuScene gpu_scene(device_, scene);
+        const auto acceleration_structure = build_acceleration_structure(backend, device_, gpu_scene);
+        for (uint32_t camera = 0; camera < camera_count; ++camera) {
+            scene.camera.position += 0.1f * (scene.camera.target - scene.camera.position);
+            Renderer renderer(device_, *acceleration_structure, estimator_of(item),
+                              default_parameters(scene, image_size));
+            render(renderer, samples);
+            const std::string name = item.scene + " " + to_string(backend) + " " + std::to_string(camera);
+            const uint64_t hash = hash_of(renderer.film().read());
+            const auto [first, is_new] = first_hashes_.try_emplace(name, hash);
+            ++picture_count_;
+            if (first->second == hash) continue;
+            ++wrong_picture_count_;
+            std::fprintf(stderr, "round %zu: %s is not what it was at first\n", resident_mib_.size() + 1,
+                         name.c_str());
+        }
+    }
+
+    const Device& device_;
+    std::map<std::string, uint64_t> first_hashes_;  // of the films of the first round
+    std::vector<double> resident_mib_;              // at the end of each round
+    size_t picture_count_ = 0, wrong_picture_count_ = 0;
+};
+
+// A film that gets a sample now and then over the whole time, and one that gets all of them at once.
+class PatientFilm {
+  public:
+    explicit PatientFilm(const Device& device)
+        : device_(device),
+          scene_(load(cases.front())),
+          gpu_scene_(device, scene_),
+          acceleration_structure_(build_acceleration_structure(Backend::compute, device, gpu_scene_)),
+          renderer_(make_renderer()) {}
+
+    void add_sample() { render(renderer_, ++sample_count_); }
+
+    bool is_right() {
+        Renderer fresh = make_renderer();
+        render(fresh, sample_count_);
+        return hash_of(fresh.film().read()) == hash_of(renderer_.film().read());
+    }
+
+  private:
+    Renderer make_renderer() const {
+        return {device_, *acceleration_structure_, estimator_of(cases.front()),
+                default_parameters(scene_, image_size)};
+    }
+
+    const Device& device_;
+    Scene scene_;
+    GpuScene gpu_scene_;
+    std::unique_ptr<AccelerationStructure> acceleration_structure_;
+    Renderer renderer_;
+    uint32_t sample_count_ = 0;
+};
+
+// At most so many of the numbers, evenly chosen, for the record.
+std::vector<double> thinned(const std::vector<double>& numbers, size_t count) {
+    std::vector<double> chosen;
+    for (size_t i = 0; i < std::min(count, numbers.size()); ++i)
+        chosen.push_back(std::round(10 * numbers[i * numbers.size() / std::min(count, numbers.size())]) / 10);
+    return chosen;
+}
+
+int run(double seconds, const std::string& commit, const std::string& record_file) {
+    const Device device({});
+    Soak soak(device);
+    PatientFilm film(device);
+    const auto start = std::chrono::steady_clock::now();
+    const auto elapsed = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    constexpr size_t min_rounds = 4;  // so that both halves have some
+    while (elapsed() < seconds || soak.resident_mib_of_rounds().size() < min_rounds) {
+        soak.run_round();
+        film.add_sample();
+    }
+
+    const auto& resident = soak.resident_mib_of_rounds();
+    const auto middle = resident.begin() + static_cast<std::ptrdiff_t>(resident.size() / 2);
+    const double growth = *std::max_element(middle, resident.end()) - *(middle - 1);
+    const bool film_is_right = film.is_right();
+    const nlohmann::ordered_json record = {{"commit", commit},
+                                           {"device", device.description().name},
+                                           {"seconds", std::round(elapsed())},
+                                           {"rounds", resident.size()},
+                                           {"pictures", soak.picture_count()},
+                                           {"wrong_pictures", soak.wrong_picture_count()},
+                                           {"patient_film_is_right", film_is_right},
+                                           {"growth_in_second_half_mib", std::round(100 * growth) / 100},
+                                           {"tolerated_growth_mib", tolerated_growth_mib},
+                                           {"resident_mib", thinned(resident, 24)}};
+    std::printf("%s\n", record.dump(1).c_str());
+    if (!record_file.empty()) std::ofstream(record_file) << record.dump(1) << "\n";
+    return soak.wrong_picture_count() == 0 && film_is_right && growth <= tolerated_growth_mib ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace lab
+
+int main(int argument_count, char** arguments) {
+    CLI::App app("Renders for a long time and checks that memory stays flat and pictures stay right", "soak");
+    double seconds = 60;
+    std::string commit, record;
+    app.add_option("--seconds", seconds, "How long")->capture_default_str();
+    app.add_option("--commit", commit, "For the record: what is tested");
+    app.add_option("--record", record, "JSON file to write");
+    CLI11_PARSE(app, argument_count, arguments);
+    try {
+        return lab::run(seconds, commit, record);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "error: %s\n", error.what());
+        return 1;
+    }
+}
