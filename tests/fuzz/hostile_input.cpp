@@ -68,7 +68,7 @@ class Folder {
 };
 
 bool is_printable_line(const std::string& text) {
-    return !text.empty() && text.size() < 1000 &&
+    return !text.empty() && text.size() < 2500 &&
            std::none_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); });
 }
 
