@@ -48,10 +48,14 @@ std::optional<Backend> find_backend(const std::string& name) {
 Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
                        const Estimator& estimator, RenderParameters parameters) {
     if (const auto named = find_backend(name)) return *named;
+    const bool fits_compute = instanced_triangle_count(scene.scene()) <= max_bvh_triangles;
+    const auto is_usable = [&](Backend backend) {
+        return device.description().supports(backend) && (backend != Backend::compute || fits_compute);
+    };
     const std::string entry = cache_name(device, scene);
     if (const auto cached = read_cache(entry))
         if (const auto backend = find_backend({cached->begin(), cached->end()});
-            backend && device.description().supports(*backend))
+            backend && is_usable(*backend))
             return *backend;
 
     parameters.image_size = glm::min(parameters.image_size, uvec2(128));
@@ -59,10 +63,8 @@ Backend choose_backend(const std::string& name, const Device& device, const GpuS
         scene.scene().defaults.max_path_length;  // the choice serves later renders, too
     Backend fastest = Backend::compute;
     double highest_speed = 0;
-    const bool too_many_for_compute = instanced_triangle_count(scene.scene()) > max_bvh_triangles;
     for (const Backend backend : all_backends) {
-        if (!device.description().supports(backend)) continue;
-        if (backend == Backend::compute && too_many_for_compute) continue;
+        if (!is_usable(backend)) continue;
         const double speed = measure_speed(backend, device, scene, estimator, parameters);
         if (speed > highest_speed) {
             highest_speed = speed;
