@@ -18,6 +18,7 @@
 #include "error.h"
 #include "gpu/cache.h"
 #include "gpu/shader_compiler.h"
+#include "image/file.h"
 
 namespace lab {
 namespace {
@@ -184,7 +185,8 @@ class PrivateCaches {
     std::string folder_ = (std::filesystem::temp_directory_path() / "lab_soak_XXXXXX").string();
 };
 
-int run(double seconds, const std::string& commit, const std::string& record_file) {
+int run(double seconds, const std::string& commit, const std::filesystem::path& record_file) {
+    if (!record_file.empty()) check_writable(record_file, {".json"});
     const PrivateCaches caches;
     const Device device({});
     Soak soak(device);
@@ -217,7 +219,7 @@ int run(double seconds, const std::string& commit, const std::string& record_fil
                                            {"used_mib", chosen(rounds, &Memory::used_mib)},
                                            {"resident_mib", chosen(rounds, &Memory::resident_mib)}};
     std::printf("%s\n", record.dump(1).c_str());
-    if (!record_file.empty()) std::ofstream(record_file) << record.dump(1) << "\n";
+    if (!record_file.empty()) write_file(record_file, record.dump(1) + "\n");
     const bool is_flat =
         used_growth <= tolerated_growth_mib && resident_growth <= tolerated_resident_growth_mib;
     return soak.wrong_picture_count() == 0 && film_is_right && is_flat ? 0 : 1;
@@ -229,7 +231,8 @@ int run(double seconds, const std::string& commit, const std::string& record_fil
 int main(int argument_count, char** arguments) {
     CLI::App app("Renders for a long time and checks that memory stays flat and pictures stay right", "soak");
     double seconds = 60;
-    std::string commit, record;
+    std::string commit;
+    std::filesystem::path record;
     app.add_option("--seconds", seconds, "How long")->capture_default_str();
     app.add_option("--commit", commit, "For the record: what is tested");
     app.add_option("--record", record, "JSON file to write");
