@@ -85,6 +85,5 @@ def main():
         sys.exit(f"not detected: {mistake['test']} " + ("only finds itself too weak" if failures else "is green"))
 
 
-
 if __name__ == "__main__":
     main()
