@@ -44,8 +44,12 @@ SurfacePoint get_surface_point(Hit hit) {
     vec3 magnitude = interpolate(abs(x_0), abs(x_1), abs(x_2), w);
     // Counter-clockwise seen from the front: the scene's loader takes care of it.
     float size = max(max_component(x_1 - x_0), max_component(x_2 - x_0));
-    point.geometric_normal = cross((x_1 - x_0) / size, (x_2 - x_0) / size);
-    float slenderness = 1.0 / max_component(point.geometric_normal);  // about length over height
+    vec3 edge_1 = (x_1 - x_0) / size, edge_2 = (x_2 - x_0) / size;
+    point.geometric_normal = cross(edge_1, edge_2);
+    float slenderness = 1.0 / max(max_component(point.geometric_normal), 1.0 / 256.0);  // about length over height
+    // So narrow that it has no area in 32 bits: any normal of its longer edge will do.
+    if (point.geometric_normal == vec3(0.0))
+        point.geometric_normal = get_shading_space(normalize(max_component(edge_1) > 0.5 ? edge_1 : edge_2))[0];
 #ifdef FEATURE_TRANSFORMS
     Instance instance = instances[hit.instance];
     mat3 linear = mat3(instance.object_to_world);
@@ -57,7 +61,7 @@ SurfacePoint get_surface_point(Hit hit) {
     // Roundings of relative size 2^-24 in the position and in the next ray's intersection with the same triangle, also
     // where the surface itself is at coordinate 0. Measured: self-intersections end at a factor of 4. The intersection
     // with a slender triangle is less exact; the limit keeps rays from passing what is close to a very slender one.
-    point.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * min(slenderness, 256.0);
+    point.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
     return point;
 }
 

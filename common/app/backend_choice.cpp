@@ -48,7 +48,7 @@ std::optional<Backend> find_backend(const std::string& name) {
 Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
                        const Estimator& estimator, RenderParameters parameters) {
     if (const auto named = find_backend(name)) return *named;
-    const bool fits_compute = instanced_triangle_count(scene.scene()) <= max_bvh_triangles;
+    const bool fits_compute = instanced_triangle_count(scene.scene()) <= max_triangle_count;
     const auto is_usable = [&](Backend backend) {
         return device.description().supports(backend) && (backend != Backend::compute || fits_compute);
     };

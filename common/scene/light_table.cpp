@@ -1,5 +1,9 @@
 #include "scene/light_table.h"
 
+#include <algorithm>
+#include <array>
+#include <set>
+
 #include "error.h"
 #include "scene/alias_table.h"
 
@@ -16,6 +20,20 @@ double get_world_area(const Scene& scene, uint32_t instance, const uvec3& corner
     const glm::dvec3 origin(scene.positions[corners.x]);
     return 0.5 * glm::length(glm::cross(linear * (glm::dvec3(scene.positions[corners.y]) - origin),
                                         linear * (glm::dvec3(scene.positions[corners.z]) - origin)));
+}
+
+// The corners in the world, the least one first: equal for triangles in the same place that face the same
+// way.
+std::array<float, 9> get_place(const Scene& scene, uint32_t instance, const uvec3& corners) {
+    std::array<std::array<float, 3>, 3> world;
+    for (int i = 0; i < 3; ++i) {
+        const vec3 corner =
+            scene.instances[instance].object_to_world * glm::vec4(scene.positions[corners[i]], 1);
+        world[i] = {corner.x, corner.y, corner.z};
+    }
+    std::rotate(world.begin(), std::min_element(world.begin(), world.end()), world.end());
+    const auto& [a, b, c] = world;
+    return {a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]};
 }
 
 }  // namespace
@@ -42,8 +60,11 @@ std::vector<LightTriangle> build_light_table(const Scene& scene) {
     };
     std::vector<Place> places;
     std::vector<double> areas, weights;
+    std::set<std::array<float, 9>> taken;
     for (uint32_t instance = 0; instance < scene.instances.size(); ++instance)
         for (const uint32_t triangle : emissive_triangles[scene.instance_meshes[instance]]) {
+            // Rays find one of several emissive triangles in the same place: the table counts one, too.
+            if (!taken.insert(get_place(scene, instance, scene.triangles[triangle])).second) continue;
             places.push_back({instance, triangle});
             areas.push_back(get_world_area(scene, instance, scene.triangles[triangle]));
             weights.push_back(areas.back() * luminance_of(triangle));

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "error.h"
+#include "scene/scene.h"
 #include "scene/text_lines.h"
 #include "scene/triangulate.h"
 
@@ -20,7 +21,6 @@ namespace {
 constexpr uint64_t max_obj_bytes = uint64_t{1} << 30;
 constexpr int max_polygon_corners = 256;
 constexpr size_t max_library_names = 256;
-constexpr size_t max_triangles = 1u << 28;  // what a leaf of the bounding volume hierarchy can refer to
 
 // Lets tinyobjloader read text in memory, and knows the line that it read last.
 class TextBuffer : public std::streambuf {
@@ -195,7 +195,8 @@ class ObjReader : public tinyobj::MaterialReader {
     }
 
     void add_triangle(uint32_t a, uint32_t b, uint32_t c) {
-        if (obj_.triangle_materials.size() == max_triangles) fail("there are more than 2^28 triangles");
+        if (obj_.triangle_materials.size() == max_triangle_count)
+            fail("there are more than 2^28 - 1 triangles");
         const size_t capacity = obj_.corners.capacity();  // doubles when it is used up
         if (obj_.corners.size() == capacity && 2 * capacity * sizeof(ObjCorner) > memory_limit(text_.size()))
             fail("its triangles need far more memory than a file of its size should");

@@ -8,6 +8,7 @@
 #include "scene/dielectric_warnings.h"
 #include "scene/features.h"
 #include "scene/mesh_assembly.h"
+#include "scene/precision_warnings.h"
 #include "scene/scene_file.h"
 #include "scene/texture_warnings.h"
 
@@ -121,12 +122,12 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
     if (!std::isfinite(diagonal))
         throw UserError(name + ": its coordinates are too large for 32-bit numbers");
-    for (std::string& warning : dielectric_warnings(scene)) scene.warnings.push_back(std::move(warning));
-    for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));
     if (description.camera)
         scene.camera = *description.camera;
     else if (!scene.instances.empty())
         scene.camera = framing_pose(bounds);
+    for (const auto& find_warnings : {dielectric_warnings, texture_warnings, precision_warnings})
+        for (std::string& warning : find_warnings(scene)) scene.warnings.push_back(std::move(warning));
     scene.hash = sources.hash();
     return scene;
 }

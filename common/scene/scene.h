@@ -32,6 +32,10 @@ std::vector<MaterialClassRange> material_class_ranges(
 // Longest path that a scene or a flag may ask for: a sample must end in bounded time.
 inline constexpr uint32_t path_length_limit = 1000000;
 
+// Most triangles of a mesh file, and of all instances together where the tree of `compute` has to refer to
+// each.
+inline constexpr size_t max_triangle_count = (size_t{1} << 28) - 1;
+
 // What a scene asks for where neither a flag nor a key says otherwise.
 struct RenderDefaults {
     uint32_t width = 512;

@@ -29,7 +29,7 @@ static_assert(sizeof(BvhNode) == 128);
 inline constexpr float bvh_padding = 0x1p-20f;
 
 inline constexpr uint32_t bvh_leaf_shift = 28;
-inline constexpr uint32_t max_bvh_triangles = (1u << bvh_leaf_shift) - 1;
+static_assert(max_triangle_count < size_t{1} << bvh_leaf_shift);
 inline bool is_bvh_leaf(uint32_t reference) { return reference >> bvh_leaf_shift != 0; }
 
 // World-space coordinates of a triangle's vertices, one axis after the other, with its ids in the fourth

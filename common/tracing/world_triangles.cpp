@@ -8,7 +8,7 @@ static constexpr float largest_coordinate = 1e18f;
 
 std::vector<BvhTriangle> world_triangles(const Scene& scene) {
     const uint64_t count = instanced_triangle_count(scene);
-    if (count > max_bvh_triangles)
+    if (count > max_triangle_count)
         throw UserError(scene.file.string() + ": its instances have " + std::to_string(count) +
                         " triangles together, more than 2^28 - 1; remove instances or use another backend");
     std::vector<BvhTriangle> triangles;

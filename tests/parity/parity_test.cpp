@@ -7,8 +7,8 @@
 #include <map>
 
 #include "app/renderer.h"
-#include "parity/scenes.h"
 #include "support/gpu_test.h"
+#include "support/meshes.h"
 #include "support/render.h"
 
 namespace lab {

@@ -1,4 +1,4 @@
-// Scenes made in memory for the comparison of backends.
+// Meshes made in memory, and scenes of instances of them.
 #pragma once
 #include <filesystem>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "parity/scenes.h"
+#include "support/meshes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,77 @@
+// A light that touches what it lights. A point y of it, chosen uniformly by area, has the weight A cos θ cos
+// θ' / r², and near the edge where the two meet r goes to 0: at the distance h from the edge the standard
+// deviation grows as 1/h, and a pixel that contains the edge has an infinite variance. Its samples exceed t
+// with a probability of about t^(-3/2), so by the theory of stable laws the error of their mean falls as
+// N^(-1/3) only, and the mean is still right. Sampling by solid angle would end that.
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "hard_cases/probe.h"
+#include "support/error_slope.h"
+#include "support/expect_statistics.h"
+#include "support/lambert_polygon.h"
+#include "support/scenes.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+using std::numbers::pi;
+
+// A floor [0,1]² and a wall of light above its edge x = 0. The camera looks straight down to the floor: on
+// the pixels of a row as wide as the image is high lie the distances between `nearest` and `farthest` from
+// the edge.
+Scene floor_and_wall(double nearest, double farthest) {
+    Scene scene = make_scene({diffuse_material(vec3(1)), diffuse_material(vec3(0), vec3(1))},
+                             {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1}});
+    const double height = 0.5;
+    const auto middle = static_cast<float>(0.5 * (nearest + farthest));
+    scene.camera = {
+        .position = {middle, 0.5f, static_cast<float>(height)}, .target = {middle, 0.5f, 0}, .up = {1, 0, 0}};
+    scene.camera.vertical_fov =
+        static_cast<float>(2 * std::atan(0.5 * (farthest - nearest) / height) * 180 / pi);
+    return scene;
+}
+
+RenderSettings settings() {
+    RenderSettings settings{.max_path_length = 1};
+    settings.estimator = chapter_estimator("03_next_event_estimation");
+    return settings;
+}
+
+TEST(ContactEdge, IsLitAsLambertSaysWhereTheVarianceIsFinite) {
+    for (const auto& [h, samples, limit] : {std::tuple{0.1, 16u, 0.1}, {0.03, 64u, 0.2}, {0.01, 256u, 0.3}}) {
+        RenderSettings row = settings();
+        row.samples = samples;
+        const auto means = pixel_means(render(floor_and_wall(0.999 * h, 1.001 * h), row), 0);
+        const std::vector<dvec3> wall{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};
+        const double expected = polygon_irradiance(wall, {h, 0.5, 0}, {0, 0, 1}) / pi;
+        const MeanEstimate radiance = estimate_mean(means);
+        const double ratio = std::sqrt(radiance.variance * samples) / radiance.mean;
+        char name[48], text[16];
+        std::snprintf(name, sizeof name, "sd_over_mean_at_%g", h);
+        std::snprintf(text, sizeof text, "%.1f", ratio);
+        RecordProperty(name, text);
+        expect_mean(name + std::string(" ") + text, radiance, expected, limit, 3);
+    }
+}
+
+// Each pixel shows the whole view: 3136 independent estimates of its mean.
+TEST(ContactEdge, IsFlaggedByTheSlopeOfTheError) {
+    RenderSettings image = settings();
+    image.width = image.height = 56;
+    image.estimator = probe("view_in_each_pixel");
+    for (const bool has_edge : {true, false}) {
+        const ErrorSlope slope =
+            measure_error_slope(has_edge ? floor_and_wall(0, 1) : floor_and_wall(0.2, 1), image, 1024);
+        std::printf("  slope %.3f +- %.3f, variance of a sample, from 1, 4, 16 ... samples:%s\n", slope.value,
+                    slope.standard_error, slope.variances.c_str());
+        RecordProperty(has_edge ? "slope_with_the_edge" : "slope_without", std::to_string(slope.value));
+        const bool is_flagged = std::abs(slope.value + 0.5) > slope_tolerance;
+        EXPECT_EQ(is_flagged, has_edge) << slope.value;
+    }
+}
+
+}  // namespace
+}  // namespace lab

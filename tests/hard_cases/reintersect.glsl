@@ -1,0 +1,28 @@
+// Counts rays that hit the triangle which they start from: red counts them, green all that start. Each sample aims at
+// a random point of a random triangle, from a distance between 10^-4 times and once the triangle's size, and leaves
+// what it hits in a random direction.
+vec3 random_direction(inout uvec2 seed) {
+    vec2 u = get_random_numbers(seed);
+    float z = 2.0 * u.x - 1.0, radius = sqrt(max(1.0 - z * z, 0.0));
+    return vec3(radius * cos(2.0 * PI * u.y), radius * sin(2.0 * PI * u.y), z);
+}
+
+vec3 path_trace(Ray camera_ray, inout uvec2 seed) {
+    vec2 u = get_random_numbers(seed), v = get_random_numbers(seed);
+    Hit target;
+    target.instance = 0u;
+    target.triangle = min(uint(u.x * float(triangles.length())), uint(triangles.length()) - 1u);
+    target.barycentrics = vec2(sqrt(v.x) * (1.0 - v.y), sqrt(v.x) * v.y);
+    uvec3 corners = triangles[target.triangle];
+    float size = max(max_component(positions[corners.y] - positions[corners.x]),
+                     max_component(positions[corners.z] - positions[corners.x]));
+    vec3 direction = random_direction(seed);
+    vec3 origin = get_surface_point(target).position - size * pow(10.0, -4.0 * u.y) * direction;
+    Hit hit;
+    if (!trace_ray(Ray(origin, direction), NO_LIMIT, hit)) return vec3(0.0);
+    ShadingData s = get_shading_data(hit, direction);
+    Hit next;
+    bool is_self_hit =
+        trace_ray(get_ray_from_surface(s, random_direction(seed)), NO_LIMIT, next) && next.triangle == hit.triangle;
+    return vec3(is_self_hit, 1.0, 0.0);
+}

@@ -1,0 +1,9 @@
+// Chapter 3 with camera rays through the whole image instead of a pixel.
+#define path_trace path_trace_along
+#include "../chapters/03_next_event_estimation/path_trace.glsl"
+#undef path_trace
+
+vec3 path_trace(Ray ray, inout uvec2 seed) {
+    Ray camera_ray = get_camera_ray(get_random_numbers(seed));
+    return path_trace_along(camera_ray, seed);
+}
