@@ -17,6 +17,11 @@ glm::dvec3 probe_total(const Scene& scene, const RenderSettings& settings) {
     return total;
 }
 
+std::vector<std::string> chapters_for(Backend backend, std::vector<std::string> all) {
+    if (backend != Backend::compute) all.resize(1);
+    return all;
+}
+
 double light_probability_sum(const Scene& scene) {
     double sum = 0;
     for (const LightTriangle& light : build_light_table(scene)) {

@@ -12,6 +12,10 @@ Estimator probe(const std::string& name);
 // What the probe returned, added over all samples of all pixels.
 glm::dvec3 probe_total(const Scene& scene, const RenderSettings& settings);
 
+// All chapters for `compute`, the first for the other backends: what chapters do differently does not depend
+// on them.
+std::vector<std::string> chapters_for(Backend backend, std::vector<std::string> all);
+
 // Of all emissive triangles, as the estimators divide by them; for scenes of untransformed instances.
 double light_probability_sum(const Scene& scene);
 

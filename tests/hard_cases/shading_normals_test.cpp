@@ -13,7 +13,12 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-class ShadingNormals : public OnEachBackend {};
+class ShadingNormals : public OnEachBackend {
+  protected:
+    static std::vector<std::string> chapters() {
+        return chapters_for(GetParam(), {"02_cosine_sampling", "01_uniform_sampling", "05_russian_roulette"});
+    }
+};
 INSTANTIATE_TEST_SUITE_P(Backends, ShadingNormals, testing::ValuesIn(all_backends), backend_name);
 
 RenderSettings settings(const std::string& chapter, Backend backend, uint32_t max_path_length) {
@@ -30,16 +35,16 @@ RenderSettings settings(const std::string& chapter, Backend backend, uint32_t ma
 // Under a white sky a white surface whose shading normal is tilted by τ loses the directions that are below
 // the triangle: it shows (1 + cos τ)/2, seen from where both normals are.
 TEST_P(ShadingNormals, TiltedOnesLoseWhatIsBelowTheTriangleAndGainNothing) {
-    for (const int degrees : {0, 10, 20, 30, 40, 50, 60}) {
+    for (const int degrees : {0, 15, 30, 45, 60}) {
         const double tilt = degrees * pi / 180, expected = 0.5 * (1 + std::cos(tilt));
         Scene scene = make_scene({diffuse_material(vec3(1))}, {{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}});
         scene.normals.assign(scene.positions.size(), vec3(dvec3(std::sin(tilt), 0, std::cos(tilt))));
         scene.background = vec3(1);
         scene.camera = {.position = {0, 0, 1}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 40};
-        for (const char* chapter : {"01_uniform_sampling", "02_cosine_sampling"}) {
+        for (const std::string& chapter : chapters()) {
             const FilmImage film = render(scene, settings(chapter, GetParam(), 1));
             const MeanEstimate radiance = estimate_mean(pixel_means(film, 0));
-            expect_mean(std::to_string(degrees) + " degrees, " + chapter, radiance, expected, 0.05, 14);
+            expect_mean(std::to_string(degrees) + " degrees, " + chapter, radiance, expected, 0.05, 15);
             if (chapter[1] == '2')
                 RecordProperty("energy_loss_at_" + std::to_string(degrees) + "_degrees",
                                percent(1 - radiance.mean));
@@ -62,16 +67,16 @@ Scene furnace_with_normals(double largest_tilt) {
 
 TEST_P(ShadingNormals, OfAFurnaceNeverAddEnergy) {
     // In a closed box of albedo 1/2 and emission 1 every point shows 2 - 2^-m at most.
-    for (const int degrees : {0, 30, 60, 90, 120, 180}) {
+    for (const int degrees : {0, 30, 60, 120}) {
         const Scene scene = furnace_with_normals(degrees * pi / 180);
-        for (const char* chapter : {"02_cosine_sampling", "05_russian_roulette"}) {
+        for (const std::string& chapter : chapters()) {
             RenderSettings furnace = settings(chapter, GetParam(), 6);
             furnace.samples = 16;
             furnace.light_sampling = LightSampling::off;
             const double most = 2 - 1.0 / 64;
             const MeanEstimate radiance = estimate_mean(pixel_means(render(scene, furnace), 0));
             const double energy = radiance.mean / most;
-            std::printf("  %d degrees, %s: energy %.4f +- %.4f\n", degrees, chapter, energy,
+            std::printf("  %d degrees, %s: energy %.4f +- %.4f\n", degrees, chapter.c_str(), energy,
                         radiance.standard_error / most);
             EXPECT_LE(energy, 1 + 6 * radiance.standard_error / most + 1e-6);
             // At the least the emission is seen.
