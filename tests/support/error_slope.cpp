@@ -12,7 +12,7 @@ namespace {
 // the variance of a pixel. The mean over interleaved groups of pixels: a few bright pixels spoil one group
 // but not all, and the spread tells how exact it is.
 MeanEstimate log_error(const FilmImage& first, const FilmImage& second) {
-    constexpr size_t groups = 64;
+    constexpr size_t groups = 16;
     std::vector<double> sums(groups);
     for (int channel = 0; channel < 3; ++channel) {
         const auto a = pixel_means(first, channel), b = pixel_means(second, channel);
