@@ -60,7 +60,7 @@ SurfacePoint get_surface_point(Hit hit) {
     point.geometric_normal = normalize_scaled(point.geometric_normal);
     // Roundings of relative size 2^-24 in the position and in the next ray's intersection with the same triangle, also
     // where the surface itself is at coordinate 0. Measured: self-intersections end at a factor of 4. The intersection
-    // with a slender triangle is less exact; the limit keeps rays from passing what is close to a very slender one.
+    // with a slender triangle is less exact; its limit keeps rays from passing what is close to a very slender one.
     point.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
     return point;
 }

@@ -30,7 +30,7 @@ def load():
 
 def make(mistake, tree):
     """Copies what the test programs read into `tree`, with the mistake in it, if any."""
-    for folder in ("shaders", "chapters", "tests/shaders"):
+    for folder in ("shaders", "chapters", "tests/shaders", "tests/hard_cases"):
         shutil.copytree(ROOT / folder, tree / folder)
     (tree / "assets").symlink_to(ROOT / "assets")
     if not mistake:
