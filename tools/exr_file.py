@@ -1,5 +1,6 @@
 """OpenEXR files of one part: 32-bit float channels, compressed with ZIP a block of 16 rows, and string attributes."""
 import os
+import re
 import struct
 import zlib
 
@@ -54,14 +55,63 @@ def write_exr(path, channels, attributes):
     os.replace(unfinished, path)
 
 
-def read_attributes(path):
-    """The string attributes of an OpenEXR file; those before the damage in a damaged one."""
-    content = path.read_bytes()
-    position, attributes = len(MAGIC), {}
+def read_header(content):
+    """Raw values and kinds of the attributes up to the damage, if any, and where the header ends."""
+    position, values, kinds = len(MAGIC), {}, {}
     while content[position:position + 1] not in (b"", b"\0"):
         name, kind, rest = content[position:position + 1024].split(b"\0", 2)
         size = int.from_bytes(rest[:4], "little")
         position += len(name) + len(kind) + 6 + size
-        if kind == b"string":
-            attributes[name.decode()] = content[position - size:position].decode(errors="replace")
-    return attributes
+        values[name.decode()], kinds[name.decode()] = content[position - size:position], kind
+    return values, kinds, position + 1
+
+
+def read_attributes(path):
+    """The string attributes of an OpenEXR file; those before the damage in a damaged one."""
+    values, kinds, _ = read_header(path.read_bytes())
+    return {name: value.decode(errors="replace") for name, value in values.items() if kinds[name] == b"string"}
+
+
+def read_exr(path):
+    """Channels and string attributes of an OpenEXR file as written here or by the chapters: name -> array [row, column],
+    name -> text. ValueError if it is damaged or of another kind."""
+    content = path.read_bytes()
+    try:
+        return read_channels(content), read_attributes(path)
+    except (IndexError, KeyError, struct.error, zlib.error, ValueError) as error:
+        raise ValueError(f"not an OpenEXR file of 32-bit float scan lines, or damaged: {error}") from None
+
+
+def read_channels(content):
+    if content[:8] != MAGIC:
+        raise ValueError("it starts otherwise")
+    values, _, position = read_header(content)
+    left, top, right, bottom = struct.unpack("<4i", values["dataWindow"])
+    width, height = right - left + 1, bottom - top + 1
+    names = []
+    for entry in re.finditer(rb"([^\0]+)\0(.{16})", values["channels"], re.DOTALL):  # type and sampling
+        names.append(entry[1].decode())
+        if struct.unpack_from("<i", entry[2])[0] != FLOAT:
+            raise ValueError(f"channel {names[-1]} is of another type")
+    rows_per_block = {0: 1, 2: 1, ZIP: ROWS_PER_BLOCK}[values["compression"][0]]
+    rows = []
+    for offset in struct.unpack_from(f"<{-(-height // rows_per_block)}Q", content, position):
+        first, size = struct.unpack_from("<ii", content, offset)
+        block = content[offset + 8:offset + 8 + size]
+        shape = (min(rows_per_block, height - (first - top)), len(names), width)
+        rows.append(np.frombuffer(expand(block, 4 * np.prod(shape)), "<f4").reshape(shape))
+    pixels = np.concatenate(rows)
+    return {name: pixels[:, i, :] for i, name in enumerate(names)}
+
+
+def expand(block, size):
+    """The inverse of compress()."""
+    if len(block) == size:
+        return block
+    split = np.frombuffer(zlib.decompress(block), np.uint8).astype(int)
+    split[1:] -= 128
+    split = (np.cumsum(split) % 256).astype(np.uint8)
+    half = (len(split) + 1) // 2
+    content = np.empty_like(split)
+    content[0::2], content[1::2] = split[:half], split[half:]
+    return content.tobytes()

@@ -23,11 +23,12 @@ from pathlib import Path
 try:
     import numpy as np
     from exr_file import read_attributes, write_exr
+    from progress import show_progress
     from scene_reader import UserError, read_scene
     import drjit as dr
     import mitsuba as mi
 except ImportError as error:
-    sys.exit(f"error: {error}: references are rendered with Mitsuba 3: `pip install mitsuba`, in a virtual environment")
+    sys.exit(f"error: {error}: this needs Mitsuba 3: `pip install mitsuba`, in a virtual environment that is active here")
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -175,7 +176,7 @@ def make_diffuse_reflectance(material):
             "filter_type": "bilinear", "wrap_mode": "repeat"}
 
 
-def make_bsdf(surface):
+def make_bsdf(surface, own_normals):
     material = surface.material
     if material.refractive_index > 0:
         bsdf = {"type": "dielectric", "int_ior": material.refractive_index, "ext_ior": 1.0}
@@ -186,7 +187,8 @@ def make_bsdf(surface):
     else:
         bsdf = {"type": "twosided",
                 "nested": {"type": "diffuse", "reflectance": make_diffuse_reflectance(material)}}
-    return bsdf if surface.normals is None else {"type": "interpolated_normals", "nested": bsdf}
+    is_left_alone = surface.normals is None or own_normals
+    return bsdf if is_left_alone else {"type": "interpolated_normals", "nested": bsdf}
 
 
 # ---------------------------------------------------------------------------------------------- scenes
@@ -196,10 +198,10 @@ def unit_length(scene):
     return 1000 / np.linalg.norm(scene.camera["target"] - scene.camera["position"])
 
 
-def make_mesh(surface, unit):
-    """A mesh without shared vertices, whose normals are those of its triangles."""
+def make_mesh(surface, unit, own_normals):
+    """A mesh without shared vertices, whose normals are those of its triangles unless Mitsuba's own are wanted."""
     properties = mi.Properties()
-    properties["mesh_bsdf"] = mi.load_dict(make_bsdf(surface))
+    properties["mesh_bsdf"] = mi.load_dict(make_bsdf(surface, own_normals))
     material = surface.material
     if material.emission.any():
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": colour(material.emission)})
@@ -209,10 +211,14 @@ def make_mesh(surface, unit):
             "type": "homogeneous", "albedo": 0.0, "scale": float(strongest / unit),
             "sigma_t": colour(material.absorption / strongest)})
     count = len(surface.positions)
-    mesh = mi.Mesh(material.name, 3 * count, count, props=properties, has_vertex_texcoords=True)
-    if surface.normals is not None:
+    has_own_normals = own_normals and surface.normals is not None and not material.emission.any()
+    mesh = mi.Mesh(material.name, 3 * count, count, props=properties, has_vertex_normals=has_own_normals,
+                   has_vertex_texcoords=True)
+    if surface.normals is not None and not own_normals:
         mesh.add_attribute("vertex_shading_normal", 3, surface.normals.astype(np.float32).ravel())
     buffers = mi.traverse(mesh)
+    if has_own_normals:
+        buffers["vertex_normals"] = surface.normals.astype(np.float32).ravel()
     buffers["vertex_positions"] = (unit * surface.positions).astype(np.float32).ravel()
     buffers["vertex_texcoords"] = surface.texture_coordinates.astype(np.float32).ravel()
     buffers["faces"] = np.arange(3 * count, dtype=np.uint32)
@@ -250,15 +256,16 @@ def make_camera(scene, width, height, unit):
     }
 
 
-def make_mitsuba_scene(scene, width, height, max_path_length):
-    """The scene with its integrator, and that integrator's name."""
+def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False):
+    """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself
+    where nothing emits, and not at all on lights: nearly the same picture, without Python where it renders."""
     absorbs = any(surface.material.absorption.any() for surface in scene.surfaces)
     integrator = "volpath" if absorbs else "path"
     unit = unit_length(scene)
     content = {"type": "scene", "sensor": make_camera(scene, width, height, unit),
                "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30}}
     for i, surface in enumerate(scene.surfaces):
-        content[f"surface_{i}"] = make_mesh(surface, unit)
+        content[f"surface_{i}"] = make_mesh(surface, unit, own_normals)
     if scene.light_probe:
         content["background"] = make_light_probe(scene)
     elif scene.background.any():
@@ -267,15 +274,6 @@ def make_mitsuba_scene(scene, width, height, max_path_length):
 
 
 # ---------------------------------------------------------------------------------------------- rendering
-def show_progress(name, done, count, started):
-    left = (time.monotonic() - started) * (count - done) / max(done, 1)
-    text = f"{name}: {100 * done // count} %, {left / 60:.1f} minutes left"
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text}", end="\n" if done == count else "", file=sys.stderr, flush=True)
-    elif done in (1, count // 2, count):
-        print(text, file=sys.stderr, flush=True)
-
-
 def render_batches(scene, name, batches, samples_per_batch, seed):
     """Mean of the batches, variance of the mean, and the number of batches, less than asked for after Ctrl-C."""
     interrupts = []
@@ -361,6 +359,21 @@ def choose_variant(variant):
     define_bsdfs()
 
 
+def run_mitsuba(variant, work):
+    """Calls work() with Mitsuba's variant chosen; errors end the program in one line."""
+    try:
+        choose_variant(variant)
+        work()
+    except UserError as error:
+        sys.exit(f"error: {error}")
+    except (RuntimeError, ImportError) as error:
+        while error.__cause__:  # the first one says what is wrong
+            error = error.__cause__
+        sys.exit(f"error: Mitsuba with variant {variant}: {' '.join(str(error).split())[:300]}")
+    except KeyboardInterrupt:
+        sys.exit("interrupted")
+
+
 def main():
     parser = Parser(prog="./lab reference", description="Renders reference images with Mitsuba 3.")
     parser.add_argument("scene", nargs="?", type=Path, help="a .json or .obj file")
@@ -381,8 +394,7 @@ def main():
     if options.output and options.output.suffix != ".exr":
         parser.error(f"--output {options.output}: must end in .exr")
 
-    try:
-        choose_variant(options.variant)
+    def make():
         if options.all:
             for name, max_path_length, samples in SHIPPED:
                 make_reference(ROOT / f"assets/scenes/{name}.json",
@@ -392,14 +404,8 @@ def main():
             output = options.output or ROOT / f"output/references/{options.scene.stem}.exr"
             make_reference(options.scene, output, options.width, options.height, options.max_path_length,
                            options.samples, options.seed)
-    except UserError as error:
-        sys.exit(f"error: {error}")
-    except (RuntimeError, ImportError) as error:
-        while error.__cause__:  # the first one says what is wrong
-            error = error.__cause__
-        sys.exit(f"error: Mitsuba with variant {options.variant}: {' '.join(str(error).split())[:300]}")
-    except KeyboardInterrupt:
-        sys.exit("interrupted")
+
+    run_mitsuba(options.variant, make)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Writes docs/results.md from the records in docs/records. With --check it only tells whether that is up to date.
 
-Records come from `build/bin/hardware_record --output docs/records/backends/DEVICE.json` and `tools/measure_chapters.py`.
+Records come from `build/bin/hardware_record --output docs/records/backends/DEVICE.json` and `./lab report --record
+docs/records/chapters/DEVICE.json`.
 """
 
 import json
-import math
 import sys
 from pathlib import Path
+
+from report_numbers import estimate, last_rows, mean_of, products, ratio
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 
@@ -35,46 +37,39 @@ same rays once more, from memory: the difference is shading and what is kept ali
 """
 
 
-def mean_and_error(numbers):
-    """Mean and its relative standard error."""
-    mean = sum(numbers) / len(numbers)
-    variance = sum((x - mean) ** 2 for x in numbers) / (len(numbers) - 1)
-    return mean, math.sqrt(variance / len(numbers)) / mean
-
-
 def quotient(now, base):
-    """The quotient of two means as text, with its 95 % confidence interval (about 14 degrees of freedom)."""
-    ratio, error = now[0] / base[0], 2.14 * math.hypot(now[1], base[1])
-    return f"{ratio:.2g} ({ratio / (1 + error):.2g} – {ratio * (1 + error):.2g})"
+    """The quotient of two estimates as text, with its confidence interval."""
+    value, low, high = ratio(now, base)
+    return f"{value:.2g} ({low:.2g} – {high:.2g})"
 
 
-def group_of(row):
-    """Rows of a group stand in a table: scene and what is varied."""
-    kind = row["case"].rstrip("0123456789 ")
-    return row["scene"], "splitting at every hit" if kind == "the same with roulette" else kind
+def group_of(case):
+    """Cases of a group stand in a table: scene and what is varied."""
+    kind = case["case"].rstrip("0123456789 ")
+    return case["scene"], "splitting at every hit" if kind == "the same with roulette" else kind
 
 
 def chapter_tables(record):
-    """The Markdown tables of one device: one for each group of rows."""
-    size = record["size"]
-    lines = [f"\n### {record['device']}, `{record['backend']}`\n"]
+    """The Markdown tables of one device: one for each group of cases."""
+    lines = [f"\n### {record['environment']['device']}, `{record['cases'][0]['backend']}`\n"]
     group, base = None, None
-    for row in record["rows"]:
-        if group_of(row) != group:
-            group, base = group_of(row), None
+    for case in record["cases"]:
+        if group_of(case) != group:
+            group, base = group_of(case), None
+            scene = Path(case["scene_file"]).stem
             lines += [
-                f"\nScene `{row['scene']}`, {size} x {size} pixels:\n",
+                f"\nScene `{scene}`, {case['width']} x {case['height']} pixels:\n",
                 "| | options | rays a sample | µs a sample | error of one sample | error × rays | error × time |",
                 "|---|---|---:|---:|---:|---|---|",
             ]
-        runs = row["runs"]
-        count = runs[0]["samples"] * size * size
-        error = mean_and_error([run["rel_mse"] * run["samples"] for run in runs])
-        by_rays = mean_and_error([run["rel_mse"] * run["rays"] for run in runs])
-        by_time = mean_and_error([run["rel_mse"] * run["device_seconds"] for run in runs])
-        seconds = sum(run["device_seconds"] for run in runs) / len(runs)
+        rows = last_rows(case["runs"])
+        count = case["samples"] * case["width"] * case["height"]
+        error = case["samples"] * mean_of(rows, "rel_mse")
+        by_rays, by_time = (estimate(products(case["runs"], key)) for key in ("rays", "device_seconds"))
+        options = f"--samples {case['samples']} {case['options']}".strip()
         lines.append(
-            f"| {row['case']} | `{row['options']}` | {runs[0]['rays'] / count:.3g} | {1e6 * seconds / count:.3g} | {error[0]:.3g} "
+            f"| {case['case']} | `{options}` | {mean_of(rows, 'rays') / count:.3g} "
+            f"| {1e6 * mean_of(rows, 'device_seconds') / count:.3g} | {error:.3g} "
             f"| {quotient(by_rays, base[0]) if base else '1'} | {quotient(by_time, base[1]) if base else '1'} |"
         )
         if base is None or group[1] == "chapter":

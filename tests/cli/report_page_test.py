@@ -1,0 +1,176 @@
+"""./lab report from the command to the page: what it writes, how it goes on, what it refuses."""
+
+import csv
+import json
+import re
+import subprocess
+import sys
+import time
+import unittest
+
+from program import BINARIES, PROJECT, ProgramTest
+
+TOOLS = PROJECT / "tools"
+REFERENCE = PROJECT / "assets/references/cornell_box_1.exr"
+# The command, with a folder of the test's own where references are looked for.
+COMMAND = """import sys
+sys.path.insert(0, sys.argv.pop(1))
+from pathlib import Path
+import reference_image
+reference_image.FOLDERS.append(Path(sys.argv.pop(1)))
+import make_report
+make_report.main()"""
+# A chapter that loses its device at seed 2 as long as the file `broken` is there.
+LOSES_DEVICE = """#!/bin/sh
+case " $* " in *" --seed 2 "*) if [ -e '{broken}' ]; then echo 'error: the device is gone' >&2; exit 3; fi ;; esac
+exec '{program}' "$@"
+"""
+SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
+
+
+def find_python():
+    """One with numpy and matplotlib: Debian's are for its own Python."""
+    for python in (sys.executable, "/usr/bin/python3"):
+        if subprocess.run([python, "-c", "import numpy, matplotlib"], capture_output=True).returncode == 0:
+            return python
+    raise RuntimeError("no Python has numpy and matplotlib: install python3-numpy and python3-matplotlib")
+
+
+class ReportCommandTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.python = find_python()
+
+    def start_report(self, *arguments, environment=None):
+        return self.start("-B", "-c", COMMAND, TOOLS, self.folder, *arguments, program=self.python, environment=environment)
+
+    def report(self, *arguments, code=0, environment=None):
+        """Standard error of a run to the end."""
+        with self.start_report(*arguments, environment=environment) as process:
+            _, err = process.communicate(timeout=240)
+        self.assertEqual(process.returncode, code, err)
+        return err
+
+    def record(self):
+        return json.loads((self.folder / "report/record.json").read_text())
+
+    def runs(self):
+        return {case["case"]: case["runs"] for case in self.record()["cases"]}
+
+    def assert_report_refused(self, arguments, *words, environment=None):
+        arguments = ["-B", "-c", COMMAND, TOOLS, self.folder, *arguments]
+        self.assert_refused(arguments, *words, program=self.python, environment=environment)
+
+    def changed_reference(self, name, old, new):
+        """A copy of a reference in which bytes of the same number are replaced."""
+        contents = REFERENCE.read_bytes()
+        self.assertEqual(contents.count(old), 1)
+        self.write(name, contents.replace(old, new))
+
+    def test_device_loss_keeps_what_was_measured_and_the_page_is_whole(self):
+        """Two chapters, of which the second loses the device in the middle; then the command goes on."""
+        arguments = ["cornell_box_1", "1", "3", "--repetitions=2", *SMALL]
+        binaries = self.folder / "binaries"
+        binaries.mkdir()
+        (binaries / "01_uniform_sampling").symlink_to(BINARIES / "01_uniform_sampling")
+        program = self.write("binaries/03_next_event_estimation", LOSES_DEVICE.format(
+            broken=self.write("broken", ""), program=BINARIES / "03_next_event_estimation"))
+        program.chmod(0o755)
+        environment = {"LAB_BINARIES": str(binaries)}
+
+        err = self.report(*arguments, code=1, environment=environment)
+        self.assertRegex(err.splitlines()[-1], "cornell_box_1, chapter 3: the device was lost: the device is gone")
+        self.assertIn("Interrupted after 3 of 4 runs", (self.folder / "report/index.html").read_text())
+        before = self.runs()
+        self.assertEqual({case: len(runs) for case, runs in before.items()}, {"chapter 1": 2, "chapter 3": 1})
+
+        (self.folder / "broken").unlink()
+        self.assertIn("goes on after 3 runs", self.report(*arguments, environment=environment))
+        after = self.runs()
+        self.assertEqual(after["chapter 1"], before["chapter 1"])
+        self.assertEqual(after["chapter 3"][:1], before["chapter 3"])
+        self.assertEqual([run["seed"] for run in after["chapter 3"]], [1, 2])
+        self.assert_page_is_whole()
+
+    def assert_page_is_whole(self):
+        page = (self.folder / "report/index.html").read_text()
+        self.assertNotIn("Interrupted", page)
+        for address in re.findall(r"""(?:src|href)\s*=\s*["']([^"']*)|url\(([^)]*)\)""", page):
+            self.assertRegex("".join(address), r"^['\"]?(#|data:)", "refers to something outside")
+        self.assertNotRegex(page, r"@import|<script|<link|<iframe")
+        for word in ("cornell_box_1", "chapter 1", "chapter 3", "would have been found", "Equal time", "Equal error", "<svg"):
+            self.assertIn(word, page)
+        self.assertEqual(page.count("<img"), 2 * (1 + 2 * 2))  # at equal time and error the reference, pictures, differences
+        content = json.loads((self.folder / "report/report.json").read_text())
+        self.assertEqual([case["case"] for case in content["scenes"][0]["cases"]], ["chapter 1", "chapter 3"])
+        self.assertGreater(content["scenes"][0]["cases"][1]["efficiency"][0], 3)
+        self.assertIn("device", content["environment"])
+        with open(self.folder / "report/report.csv", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        self.assertEqual(len(rows), sum(len(run["rows"]) for runs in self.runs().values() for run in runs))
+
+    def test_an_interrupted_report_goes_on_and_a_complete_one_starts_anew(self):
+        arguments = ["cornell_box_1", "2", *SMALL, "--repetitions=5"]
+        with self.start_report(*arguments) as process:
+            self.wait_for_runs(process, 1)
+            process.kill()
+        first = self.runs()["chapter 2"]
+        with self.start_report(*arguments) as process:
+            self.wait_for_runs(process, len(first) + 1)
+            process.terminate()
+            _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("interrupted: the same command goes on", err)
+        self.assertNotIn("Traceback", err)
+        second = self.runs()["chapter 2"]
+        self.assertEqual(second[: len(first)], first)
+        self.report(*arguments)
+        third = self.runs()["chapter 2"]
+        self.assertEqual(third[: len(second)], second)
+        self.assertEqual([run["seed"] for run in third], [1, 2, 3, 4, 5])
+        self.assertEqual(len({run["rows"][-1]["samples"] for run in third}), 1)
+        self.assertTrue(self.record()["is_complete"])
+        self.assertNotIn("goes on after", self.report("cornell_box_1", "2", *SMALL, "--repetitions=1"))
+        self.assertEqual(len(self.runs()["chapter 2"]), 1)
+
+    def wait_for_runs(self, process, count):
+        end = time.monotonic() + 60
+        while not (self.folder / "report/record.json").exists() or len(self.runs()["chapter 2"]) < count:
+            self.assertIsNone(process.poll(), "ended too early")
+            self.assertLess(time.monotonic(), end, "took too long")
+            time.sleep(0.01)
+
+    def test_scenes_that_a_chapter_refuses_are_listed(self):
+        self.report("glass", "1", "6", *SMALL, "--repetitions=1")
+        content = json.loads((self.folder / "report/report.json").read_text())
+        self.assertEqual([case["case"] for case in content["scenes"][0]["cases"]], ["chapter 6"])
+        self.assertRegex((self.folder / "report/index.html").read_text(), "chapter 1 does not render it: .* dielectric")
+
+    def test_references_that_do_not_fit_are_refused(self):
+        self.changed_reference("stale.exr", b"4102f97faa8e9116", b"4102f97faa8e9117")
+        self.changed_reference("small.exr", b"width\0string\0\3\0\0\x00128", b"width\0string\0\3\0\0\x00127")
+        self.changed_reference("nameless.exr", b"max_path_length\0", b"max_path_lengths\0"[1:])
+        self.write("damaged.exr", REFERENCE.read_bytes()[:20000])
+        self.assert_report_refused(["small", *SMALL], r"small\.exr", "128 x 128", "127 x 128")
+        self.assert_report_refused(["nameless", *SMALL], r"nameless\.exr", "max_path_length", "lab reference")
+        self.assert_report_refused(["damaged", *SMALL], r"damaged\.exr", "cannot be read as a reference")
+        err = self.report("stale", "1", *SMALL, code=1)
+        self.assertRegex(err.splitlines()[-1], r"stale\.exr: is of another version of .*cornell_box\.json: .*lab reference")
+
+    def test_words_without_meaning_are_refused(self):
+        self.assert_report_refused(["no_such_scene"], "no_such_scene", "lab reference")
+        self.assert_report_refused(["quad.json"], "quad.json", "lab reference")
+        self.assert_report_refused(["missing.json"], "missing.json", "no such file")
+        self.assert_report_refused(["cornell_box", "9"], "no chapter 9")
+        self.assert_report_refused(["--seconds=0"], "seconds", "--help")
+        self.assert_report_refused(["--record=record.json", "torus"], "record", "no scenes")
+
+    def test_without_mitsuba_it_says_how_to_get_it(self):
+        (self.folder / "bin").mkdir()
+        self.write("bin/python3", f'#!/bin/sh\nexec "{self.python}" -S "$@"\n').chmod(0o755)
+        environment = {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
+        self.assert_report_refused(["cornell_box", "--peer=mitsuba"], "Mitsuba 3", "pip install mitsuba", environment=environment)
+
+
+if __name__ == "__main__":
+    unittest.main()
