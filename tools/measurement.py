@@ -273,5 +273,5 @@ class Measurement:
         """With as many samples as have the error of the scene's noisiest case, or one where that is less already."""
         others = [other for other in self.record["cases"] if other["scene"] == case["scene"] and other["runs"]]
         errors = {id(other): sum(run["rows"][-1]["rel_mse"] for run in other["runs"]) / len(other["runs"]) for other in others}
-        samples = max(1, round(case["samples"] * errors[id(case)] / max(errors.values())))
+        samples = max(1, round(case["samples"] * errors[id(case)] / (max(errors.values()) or 1)))
         self.render(case, seed, samples, "equal_error")

@@ -89,9 +89,12 @@ def interval(number):
 
 
 def ratio(now, base):
-    """[quotient, low, high] of two positive estimates. The interval is one of its logarithm."""
-    quotient = now.mean / base.mean if base.mean > 0 else math.inf
-    if now.error is None or base.error is None or not 0 < quotient < math.inf:
+    """[quotient, low, high] of two estimates; the interval is one of its logarithm. None where they are not positive:
+    an error may be lost in the noise of the reference."""
+    if now.mean <= 0 or base.mean <= 0:
+        return [None, None, None]
+    quotient = now.mean / base.mean
+    if now.error is None or base.error is None:
         return [quotient, None, None]
     parts = [((number.error / number.mean) ** 2, number.freedom) for number in (now, base)]
     error = math.sqrt(sum(square for square, _ in parts))

@@ -13,9 +13,10 @@ STYLE = """
 body { font: 18px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 1500px; margin: 2em auto; padding: 0 1.5em; }
 h1 { font-size: 2em; margin-bottom: 0.2em; } h2 { font-size: 1.6em; margin-top: 2.2em; border-top: 2px solid #ccc; padding-top: 0.6em; }
 h3 { font-size: 1.15em; margin: 1.4em 0 0.4em; } p, ul { max-width: 65em; } svg { width: 100%; height: auto; }
-table { border-collapse: collapse; margin: 0.8em 0; font-variant-numeric: tabular-nums; font-size: 0.9em; }
+.wide { overflow-x: auto; } table { border-collapse: collapse; margin: 0.8em 0; font-variant-numeric: tabular-nums; font-size: 0.9em; }
 th, td { padding: 0.25em 0.8em; text-align: right; border-bottom: 1px solid #ddd; vertical-align: baseline; }
 th { font-weight: 600; border-bottom: 2px solid #999; } th:first-child, td:first-child, td.text { text-align: left; }
+td:first-child { white-space: nowrap; }
 small, .range { color: #666; font-size: 0.85em; white-space: nowrap; } .bad { color: #b2182b; font-weight: 600; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(170px, 1fr)); gap: 0.8em; }
 figure { margin: 0; font-size: 0.8em; line-height: 1.3; } img { width: 100%; image-rendering: pixelated; display: block; margin-bottom: 0.25em; }
@@ -43,13 +44,17 @@ def short(value, digits=3):
     return f"{value:,.{decimals}f}"
 
 
-def ranged(values, factor=1.0, unit="", digits=2):
+def percent_of_root(error):
+    return f"{100 * math.sqrt(error):.3g}&nbsp;%"
+
+
+def ranged(values, digits=2):
     """[value, low, high] with its interval."""
     if values is None:
         return "–"
-    value, low, high = (None if number is None else factor * number for number in values)
+    value, low, high = values
     spread = "" if low is None else f' <span class="range">{short(low, digits)} – {short(high, digits)}</span>'
-    return f"{short(value, digits)}{unit}{spread}"
+    return f"{short(value, digits)}{spread}"
 
 
 def bias_text(result):
@@ -64,7 +69,7 @@ def bias_text(result):
 def table(head, rows):
     """Cells are HTML already."""
     lines = ["".join(f"<{kind}>{cell}</{kind}>" for cell in row) for kind, row in [("th", head), *(("td", row) for row in rows)]]
-    return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
+    return '<div class="wide"><table>' + "".join(f"<tr>{line}</tr>" for line in lines) + "</table></div>"
 
 
 def overview(scenes):
@@ -77,21 +82,21 @@ def overview(scenes):
         for name in names:
             case = found.get(name)
             is_biased = case and any(channel["is_biased"] for channel in case["bias"])
-            cells.append("–" if not case else ranged(case["efficiency"]) + (' <span class="bad">biased</span>' if is_biased else ""))
+            cells.append("–" if not case else ranged(case.get("efficiency")) + (' <span class="bad">biased</span>' if is_biased else ""))
         rows.append([f'<a href="#{escape(scene["scene"])}">{escape(scene["scene"])}</a>', *cells])
     return "<h3>Efficiency in wall time</h3>" + table(["scene", *map(escape, names)], rows)
 
 
 def speed_table(scene):
     rows = [[
-        escape(case["case"]), short(case["samples"]), ranged(case["error"]), f"{100 * math.sqrt(case['error'][0]):.3g} %",
+        escape(case["case"]), short(case["samples"]), ranged(case["error"], digits=3), percent_of_root(case["error"][0]),
         short(case.get("rays_per_path")), short(case["paths_per_second"] / 1e6),
         short(case["rays_per_second"] / 1e6) if case["rays"] else "–",
         short(case["rays_per_device_second"] / 1e6) if case["rays"] else "–",
         short(case["seconds"]), short(case["device_seconds"]), ranged(case["slope_samples"]), ranged(case["slope_seconds"]),
         ranged(case.get("efficiency")), ranged(case.get("device_efficiency"))] for case in scene["cases"]]
-    head = ["", "samples", "error", "its root", "rays a path", "Mpaths/s", "Mrays/s", "of device time", "wall s", "device s",
-            "slope against samples", "against seconds", "efficiency", "of device time"]
+    head = ["", "samples", "error", "its root", "rays a path", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
+            "slope against samples", "against seconds", "efficiency", "in device time"]
     return table(head, rows)
 
 
@@ -108,7 +113,7 @@ def peer_tables(scene):
     gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
     ours = [case for case in scene["cases"] if not case["is_peer"]]
     rows = [[escape(case["case"]), *(ranged(gains[case["case"], peer]) for peer in peers)] for case in ours]
-    best = max(ours, key=lambda case: gains[case["case"], peers[0]][0])
+    best = max(ours, key=lambda case: gains[case["case"], peers[0]][0] or 0)
     starts = [[escape(case["case"]), ranged(case["seconds_to_target"]), ranged(case["start_up_seconds"])] for case in scene["cases"]]
     notes = "".join(f"<p>{escape(case['case'])}: {escape(case['note'])}.</p>" for case in scene["cases"] if case["note"])
     return ("<h3>Time to equal error: how many times faster than Mitsuba</h3>"
@@ -131,7 +136,7 @@ def picture_rows(record, name, folder):
                 continue
             row = case["pictures"][kind]
             radiance = read_rgb(folder / row["file"])
-            caption = f"{row['samples']} samples, {short(row['seconds'])} s, error {100 * math.sqrt(row['rel_mse']):.3g} %"
+            caption = f"{row['samples']} samples, {short(row['seconds'])} s, error {percent_of_root(row['rel_mse'])}"
             figures.append(f'<figure><img src="{picture(radiance)}" alt="{escape(case["case"])}">'
                            f'<img src="{difference_picture(radiance, reference)}" alt="difference">'
                            f"<b>{escape(case['case'])}</b><br>{caption}</figure>")
