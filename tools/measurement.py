@@ -239,13 +239,14 @@ class Measurement:
         limits = ["--time-limit", limit] if case["is_peer"] else ["--time-limit", limit, "--samples", 2**32 - 1]
         try:
             report = run_case(case, settings, [*limits, "--seed", 0])
+            if not report["rows"]:  # not a single sample was done by then
+                report = run_case(case, settings, ["--samples", 1, "--seed", 0])
         except Refused as refusal:
             case["refused"] = str(refusal)
             return
-        case |= {"samples": 1, "backend": report["backend"], "note": report.get("note", "")}
-        if report["rows"]:
-            row = report["rows"][-1]
-            case["samples"] = max(1, round(row["samples"] * self.run_seconds() / row["seconds"]))
+        row = report["rows"][-1]
+        case |= {"samples": max(1, round(row["samples"] * self.run_seconds() / row["seconds"])),
+                 "backend": report["backend"], "note": report.get("note", "")}
         environment = self.record["environment"]
         if case["is_peer"]:
             environment["peer"] = report["device"]

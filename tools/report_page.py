@@ -10,7 +10,7 @@ from report_numbers import CONFIDENCE, FALSE_ALARMS, TARGET_ERROR, summarize
 from report_plots import DIFFERENCE_FACTOR, difference_picture, picture, plot_errors, style
 
 STYLE = """
-body { font: 18px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 1500px; margin: 2em auto; padding: 0 1.5em; }
+body { font: 18px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 1500px; box-sizing: border-box; margin: 2em auto; padding: 0 1.5em; }
 h1 { font-size: 2em; margin-bottom: 0.2em; } h2 { font-size: 1.6em; margin-top: 2.2em; border-top: 2px solid #ccc; padding-top: 0.6em; }
 h3 { font-size: 1.15em; margin: 1.4em 0 0.4em; } p, ul { max-width: 65em; } svg { width: 100%; height: auto; }
 .wide { overflow-x: auto; } table { border-collapse: collapse; margin: 0.8em 0; font-variant-numeric: tabular-nums; font-size: 0.9em; }
@@ -45,7 +45,7 @@ def short(value, digits=3):
 
 
 def percent_of_root(error):
-    return f"{100 * math.sqrt(error):.3g}&nbsp;%"
+    return "–" if error is None else f"{100 * math.sqrt(error):.3g}&nbsp;%"
 
 
 def ranged(values, digits=2):

@@ -110,6 +110,13 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertEqual(case["error"][1:], [None, None])
         self.assertAlmostEqual(case["error"][0], 1 / 64)
 
+    def test_an_error_lost_in_the_noise_of_the_reference_has_no_quotients(self):
+        first, second = summary(synthetic_case("a"), synthetic_case("b", error=0.0))["cases"]
+        self.assertEqual(second["error"], [None] * 3)
+        self.assertEqual(second["efficiency"], [None] * 3)
+        self.assertIsNone(second["slope_samples"])
+        self.assertEqual(second["curve"], [])
+
 
 if __name__ == "__main__":
     unittest.main()
