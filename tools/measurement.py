@@ -245,8 +245,10 @@ class Measurement:
             case["refused"] = str(refusal)
             return
         row = report["rows"][-1]
-        case |= {"samples": max(1, round(row["samples"] * self.run_seconds() / row["seconds"])),
-                 "backend": report["backend"], "note": report.get("note", "")}
+        samples = max(1, round(row["samples"] * self.run_seconds() / row["seconds"]))
+        if not case["reference_file"]:
+            samples = max(2, 1 << (samples.bit_length() - 1))  # both halves of them must be in the rows
+        case |= {"samples": samples, "backend": report["backend"], "note": report.get("note", "")}
         environment = self.record["environment"]
         if case["is_peer"]:
             environment["peer"] = report["device"]

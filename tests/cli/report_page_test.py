@@ -20,6 +20,13 @@ import reference_image
 reference_image.FOLDERS.append(Path(sys.argv.pop(1)))
 import make_report
 make_report.main()"""
+# --record with the last two cases alone, which have no reference.
+RECORD = """import sys
+sys.path.insert(0, sys.argv.pop(1))
+import make_report
+import measurement
+make_report.study_cases = lambda: measurement.study_cases()[-2:]
+make_report.main()"""
 # A chapter that loses its device at seed 2 as long as the file `broken` is there.
 LOSES_DEVICE = """#!/bin/sh
 case " $* " in *" --seed 2 "*) if [ -e '{broken}' ]; then echo 'error: the device is gone' >&2; exit 3; fi ;; esac
@@ -145,6 +152,16 @@ class ReportCommandTest(ProgramTest):
         content = json.loads((self.folder / "report/report.json").read_text())
         self.assertEqual([case["case"] for case in content["scenes"][0]["cases"]], ["chapter 6"])
         self.assertRegex((self.folder / "report/index.html").read_text(), "chapter 1 does not render it: .* dielectric")
+
+    def test_a_record_can_be_shown_in_the_results(self):
+        arguments = ["--record=record.json", "--backend=compute", "--seconds=0.2", "--repetitions=2"]
+        self.render("-B", "-c", RECORD, TOOLS, *arguments, program=self.python)
+        record = json.loads((self.folder / "record.json").read_text())
+        self.assertTrue(record["is_complete"])
+        self.assertNotIn(str(PROJECT), json.dumps(record))
+        show = "import json, sys; sys.path.insert(0, sys.argv[1]); import make_results; print(make_results.chapter_tables(json.load(open('record.json'))))"
+        table = self.render("-B", "-c", show, TOOLS, program=self.python)
+        self.assertRegex(table, r"\| the same with roulette \| `--samples \d+ --split-every-hit [^|]*` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(")
 
     def test_references_that_do_not_fit_are_refused(self):
         self.changed_reference("stale.exr", b"4102f97faa8e9116", b"4102f97faa8e9117")
