@@ -13,9 +13,13 @@ struct StbMemory {
 inline thread_local StbMemory stb_memory;
 
 inline void* stb_allocate(void* block, size_t size) {
-    if (size <= stb_memory.largest_block) return std::realloc(block, size);
-    stb_memory.exceeded = true;
-    return nullptr;
+    if (size > stb_memory.largest_block) {
+        stb_memory.exceeded = true;
+        return nullptr;
+    }
+    // New blocks hold zeros: stb_image up to version 2.27 decodes with tables that a damaged .jpg has not
+    // defined.
+    return block ? std::realloc(block, size) : std::calloc(1, size);
 }
 
 }  // namespace lab
