@@ -13,8 +13,10 @@ TriangleMesh bumpy_sphere(uint32_t rings) {
             const double theta = std::numbers::pi * ring / rings;
             const double phi = 2 * std::numbers::pi * segment / rings;
             const double radius = 1 + 0.1 * std::sin(7 * theta) * std::sin(5 * phi);
-            mesh.positions.emplace_back(radius * std::sin(theta) * std::cos(phi), radius * std::cos(theta),
-                                        radius * std::sin(theta) * std::sin(phi));
+            // All vertices of a pole in exactly the same place, else there is a hole of 10^-16 between them.
+            const double sine = ring % rings == 0 ? 0 : std::sin(theta);
+            mesh.positions.emplace_back(radius * sine * std::cos(phi), radius * std::cos(theta),
+                                        radius * sine * std::sin(phi));
         }
     for (uint32_t ring = 0; ring < rings; ++ring)
         for (uint32_t segment = 0; segment < rings; ++segment) {
