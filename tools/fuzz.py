@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lets libFuzzer attack the readers of all file formats with changed files, and sums up what happened.
 
-    ./lab fuzz [--minutes CPU_MINUTES] [--record FILE.json]
+    ./lab fuzz [FORMAT...] [--minutes CPU_MINUTES] [--record FILE.json]
 
 Inputs that reach new code are kept in build-fuzz/corpus and serve as a start of the next run; one that crashes, hangs or
 allocates too much is kept as build-fuzz/FORMAT-crash-..., and `build-fuzz/bin/fuzz_FORMAT FILE` shows why.
@@ -56,14 +56,18 @@ def run_slice(name, seconds):
 
 def main():
     parser = argparse.ArgumentParser(prog="./lab fuzz", description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("formats", nargs="*", metavar="FORMAT", help=f"{', '.join(FORMATS)} (default: all)")
     parser.add_argument("--minutes", type=float, default=6, help="CPU time for all formats together (default: %(default)s)")
-    parser.add_argument("--record", type=Path, help="where to write a record of the run")
+    parser.add_argument("--record", type=Path, help="record of the run; what it says of other formats stays")
     arguments = parser.parse_args()
+    if unknown := set(arguments.formats) - set(FORMATS):
+        parser.error(f"there is no format {', '.join(sorted(unknown))}; there are {', '.join(FORMATS)}")
 
     git = ["git", "-C", ROOT, "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]
     commit = subprocess.run(git, capture_output=True, text=True, check=False).stdout.strip()
-    totals = {name: {"executions": 0, "cpu_seconds": 0, "peak_mib": 0, "defects": 0} for name in FORMATS}
-    budget = 60 * arguments.minutes / len(FORMATS)
+    start = {"commit": commit, "date": time.strftime("%Y-%m-%d"), "executions": 0, "cpu_seconds": 0, "peak_mib": 0, "defects": 0}
+    totals = {name: dict(start) for name in arguments.formats or FORMATS}
+    budget = 60 * arguments.minutes / len(totals)
     for name, total in totals.items():
         while total["cpu_seconds"] < budget and total["defects"] == 0:
             result = run_slice(name, max(1, round(min(SLICE_SECONDS, budget - total["cpu_seconds"]))))
@@ -76,13 +80,11 @@ def main():
         print(f"{name:8} {total['executions']:9} inputs in {total['cpu_seconds']} s, {total['defects']} defects", flush=True)
 
     if arguments.record:
+        previous = json.loads(arguments.record.read_text(encoding="utf-8"))["formats"] if arguments.record.exists() else {}
         record = {
-            "commit": commit,
-            "date": time.strftime("%Y-%m-%d"),
             "engine": "libFuzzer with AddressSanitizer and UndefinedBehaviorSanitizer",
             "limits": LIMITS,
-            "cpu_minutes": round(sum(total["cpu_seconds"] for total in totals.values()) / 60, 1),
-            "formats": totals,
+            "formats": previous | totals,
         }
         arguments.record.parent.mkdir(parents=True, exist_ok=True)
         arguments.record.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
