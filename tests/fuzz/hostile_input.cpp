@@ -12,6 +12,7 @@
 #include "image/file.h"
 #include "scene/features.h"
 #include "scene/light_table.h"
+#include "tests/support/temporary_folder.h"
 #include "tracing/bvh.h"
 
 // Of the sanitizers' run-time library; GCC does not ship the header.
@@ -45,26 +46,19 @@ void check_allocation(const volatile void*, size_t size) {
 // A folder in memory, with the seeds of all formats in it for an input to refer to; removed at the end.
 class Folder {
   public:
-    Folder() {
-        const bool in_memory = fs::is_directory("/dev/shm");
-        std::string name = (in_memory ? fs::path("/dev/shm") : fs::temp_directory_path()) / "lab_fuzz_XXXXXX";
-        require(mkdtemp(name.data()) != nullptr, "no temporary folder");
-        path_ = name;
+    Folder() : folder_(fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) {
         for (const auto& seed : fs::recursive_directory_iterator(LAB_FUZZ_SEEDS))
-            if (seed.is_regular_file()) fs::copy_file(seed.path(), path_ / seed.path().filename());
+            if (seed.is_regular_file()) fs::copy_file(seed.path(), folder_.path() / seed.path().filename());
     }
-    ~Folder() { fs::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
 
     fs::path write(const char* name, const uint8_t* bytes, size_t size) const {
-        std::ofstream(path_ / name, std::ios::binary)
+        std::ofstream(folder_.path() / name, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(size));
-        return path_ / name;
+        return folder_.path() / name;
     }
 
   private:
-    fs::path path_;
+    TemporaryFolder folder_;
 };
 
 bool is_printable_line(const std::string& text) {

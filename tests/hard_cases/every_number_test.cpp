@@ -5,6 +5,7 @@
 #include "support/bounce.h"
 #include "support/device_arithmetic.h"
 #include "support/gpu_test.h"
+#include "support/hemisphere.h"
 
 namespace lab {
 namespace {
@@ -31,22 +32,11 @@ void for_all_numbers(const Check& check) {
 }
 
 TEST(EveryNumber, MakesACosineSampleAboveTheHorizon) {
-    struct Query {
-        vec2 numbers;
-        vec3 unused{0};
-    };
-    struct Answer {
-        vec3 direction;
-        float unused;
-    };
-    TestShader shader{.name = "hemisphere.comp"};
-    shader.named_includes = {
-        {"path_trace.glsl", project_folder() / "chapters/02_cosine_sampling/path_trace.glsl"}};
     double lowest = 1, worst_length = 0;
     for_all_numbers([&](const auto& numbers) {
-        std::vector<Query> queries;
+        std::vector<HemisphereQuery> queries;
         for (const auto& [x, y] : numbers) queries.push_back({vec2(x, y)});
-        for (const Answer& answer : run_shader<Answer>(shader, queries)) {
+        for (const auto& answer : evaluate_hemisphere("02_cosine_sampling", queries)) {
             lowest = std::min(lowest, double{answer.direction.z});
             worst_length = std::max(worst_length, std::abs(glm::length(dvec3(answer.direction)) - 1));
         }

@@ -1,6 +1,8 @@
 // Counts rays that hit the triangle which they start from: red counts them, green all that start. Each sample aims at
 // a random point of a random triangle, from a distance between 10^-4 times and once the triangle's size, and leaves
 // what it hits in a random direction.
+#include "random_hit.glsl"
+
 vec3 random_direction(inout uvec2 seed) {
     vec2 u = get_random_numbers(seed);
     float z = 2.0 * u.x - 1.0, radius = sqrt(max(1.0 - z * z, 0.0));
@@ -9,10 +11,7 @@ vec3 random_direction(inout uvec2 seed) {
 
 vec3 path_trace(Ray camera_ray, inout uvec2 seed) {
     vec2 u = get_random_numbers(seed), v = get_random_numbers(seed);
-    Hit target;
-    target.instance = 0u;
-    target.triangle = min(uint(u.x * float(triangles.length())), uint(triangles.length()) - 1u);
-    target.barycentrics = vec2(sqrt(v.x) * (1.0 - v.y), sqrt(v.x) * v.y);
+    Hit target = get_random_hit(u, v);
     uvec3 corners = triangles[target.triangle];
     float size = max(max_component(positions[corners.y] - positions[corners.x]),
                      max_component(positions[corners.z] - positions[corners.x]));

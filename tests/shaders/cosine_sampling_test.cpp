@@ -8,7 +8,7 @@
 #include "support/device_arithmetic.h"
 #include "support/directions.h"
 #include "support/expect_statistics.h"
-#include "support/gpu_test.h"
+#include "support/hemisphere.h"
 
 namespace lab {
 namespace {
@@ -24,27 +24,10 @@ std::vector<Bounce> sample(const std::string& chapter, const dvec3& normal, size
     return sample_bounces(chapter, {vec3(normal), vec3(normal), white_material()}, count, run);
 }
 
-// sample_hemisphere() and get_hemisphere_density(), see hemisphere.comp.
-struct Query {
-    vec2 numbers;
-    vec3 direction;
-};
-struct Answer {
-    vec3 direction;
-    float density;
-};
-std::vector<Answer> evaluate(const std::string& chapter, const std::vector<Query>& queries) {
-    TestShader shader{.name = "hemisphere.comp"};
-    shader.named_includes = {
-        {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
-    if (chapter == chapter_2) shader.defines = {"DENSITY"};
-    return run_shader<Answer>(shader, queries);
-}
-
 // The corners of the unit square, what is next to them, and a grid.
 constexpr float below_one = 1 - 0x1p-24f;
-std::vector<Query> grid_and_corners() {
-    std::vector<Query> queries;
+std::vector<HemisphereQuery> grid_and_corners() {
+    std::vector<HemisphereQuery> queries;
     for (const float x : {0.0f, 0x1p-24f, 0.25f, 0.5f, 0.75f, below_one})
         for (const float y : {0.0f, 0x1p-24f, 0x1p-12f, 0.5f, 1 - 0x1p-12f, below_one})
             queries.push_back({{x, y}, vec3(0)});
@@ -74,7 +57,7 @@ TEST(CosineSampling, HasTheCellProbabilitiesOfTheDensityFunction) {
     // equals the exact probabilities, so sampler and density cannot be wrong together. Below the horizon it
     // is 0.
     constexpr size_t rows = 51, columns = 8;
-    std::vector<Query> queries;
+    std::vector<HemisphereQuery> queries;
     for (const double side : {1.0, -1.0})
         for (size_t row = 0; row < rows; ++row)
             for (size_t column = 0; column < columns; ++column) {
@@ -82,7 +65,7 @@ TEST(CosineSampling, HasTheCellProbabilitiesOfTheDensityFunction) {
                              phi = 2 * pi * (static_cast<double>(column) + 0.5) / columns;
                 queries.push_back({vec2(0), vec3(dvec3(std::cos(phi) * s, std::sin(phi) * s, side * c))});
             }
-    const auto answers = evaluate(chapter_2, queries);
+    const auto answers = evaluate_hemisphere(chapter_2, queries);
     const auto exact = cell_probabilities(rows, columns, [](double c) { return c * c; });
     const double solid_angle = 2 * pi / (rows * columns);
     double sum = 0;
@@ -96,7 +79,7 @@ TEST(CosineSampling, HasTheCellProbabilitiesOfTheDensityFunction) {
 
 TEST(CosineSampling, MapsNumbersToUnitDirectionsAboveTheHorizon) {
     const auto queries = grid_and_corners();
-    const auto answers = evaluate(chapter_2, queries);
+    const auto answers = evaluate_hemisphere(chapter_2, queries);
     double worst = 0, worst_length = 0, lowest = 1;
     for (size_t i = 0; i < queries.size(); ++i) {
         const double phi = 2 * pi * queries[i].numbers.x - pi, y = queries[i].numbers.y;
@@ -116,9 +99,9 @@ TEST(CosineSampling, MapsNumbersToUnitDirectionsAboveTheHorizon) {
 
 TEST(CosineSampling, IsTheSameInLaterChapters) {
     const auto queries = grid_and_corners();
-    const auto expected = evaluate(chapter_2, queries);
+    const auto expected = evaluate_hemisphere(chapter_2, queries);
     for (const std::string& chapter : chapters) {
-        const auto answers = evaluate(chapter, queries);
+        const auto answers = evaluate_hemisphere(chapter, queries);
         for (size_t i = 0; i < queries.size(); ++i)
             ASSERT_EQ(answers[i].direction, expected[i].direction) << chapter;
     }
@@ -129,16 +112,16 @@ TEST(CosineSampling, HasTheDensityOfTheJacobian) {
     // the coordinates φ and cos² θ the map is linear, so differences of any size give the derivatives, up to
     // the corners: dω = dφ d(cos² θ) / (2 cos θ).
     const float steps[] = {0, 0x1p-24f, 0x1p-10f, 0.25f, 0.5f, 0.75f, 1 - 0x1p-10f, below_one};
-    std::vector<Query> queries;
+    std::vector<HemisphereQuery> queries;
     for (const float x : steps)
         for (const float y : steps)
             for (const vec2 shift : {vec2(0), vec2(0.125f, 0), vec2(0, 0.125f)}) {
                 const vec2 corner(x, y), sign(x < 0.5f ? 1 : -1, y < 0.5f ? 1 : -1);
                 queries.push_back({corner + sign * shift, vec3(0)});
             }
-    auto answers = evaluate(chapter_2, queries);
+    auto answers = evaluate_hemisphere(chapter_2, queries);
     for (size_t i = 0; i < queries.size(); ++i) queries[i].direction = answers[i].direction;
-    answers = evaluate(chapter_2, queries);
+    answers = evaluate_hemisphere(chapter_2, queries);
     double worst = 0;
     for (size_t i = 0; i < queries.size(); i += 3) {
         const auto phi = [&](size_t k) {

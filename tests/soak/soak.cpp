@@ -19,6 +19,7 @@
 #include "gpu/cache.h"
 #include "gpu/shader_compiler.h"
 #include "image/file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lab {
 namespace {
@@ -172,19 +173,10 @@ nlohmann::ordered_json chosen(const std::vector<Memory>& rounds, double Memory::
 // compile a shader in the middle of the run, which takes memory.
 class PrivateCaches {
   public:
-    PrivateCaches() {
-        if (!mkdtemp(folder_.data())) throw std::runtime_error("no temporary folder");
-        setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
-    }
-    ~PrivateCaches() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-    PrivateCaches(const PrivateCaches&) = delete;
-    PrivateCaches& operator=(const PrivateCaches&) = delete;
+    PrivateCaches() { setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
 
   private:
-    std::string folder_ = (std::filesystem::temp_directory_path() / "lab_soak_XXXXXX").string();
+    TemporaryFolder folder_;
 };
 
 int run(double seconds, const std::string& commit, const std::filesystem::path& record_file) {

@@ -9,6 +9,7 @@
 
 #include "support/bounce.h"
 #include "support/gpu_test.h"
+#include "support/hemisphere.h"
 #include "support/scenes.h"
 
 namespace lab {
@@ -152,24 +153,10 @@ double uniform_angles_error(const Device& device) {
     return worst;
 }
 
-std::filesystem::path chapter_shader(const std::string& chapter) {
-    return project_folder() / "chapters" / chapter / "path_trace.glsl";
-}
-
 double cosine_sampling_error(const Device& device) {
-    struct Query {
-        vec2 numbers;
-        vec3 unused{0};
-    };
-    struct Answer {
-        vec3 direction;
-        float unused;
-    };
-    std::vector<Query> queries;
+    std::vector<HemisphereQuery> queries;
     for (const auto& [x, y] : random_numbers()) queries.push_back({vec2(x, y)});
-    TestShader shader{.name = "hemisphere.comp"};
-    shader.named_includes = {{"path_trace.glsl", chapter_shader("02_cosine_sampling")}};
-    const auto answers = run_shader<Answer>(shader, queries, device);
+    const auto answers = evaluate_hemisphere("02_cosine_sampling", queries, device);
     double worst = 0;
     for (size_t i = 0; i < queries.size(); ++i) {
         const double phi = 2 * pi * queries[i].numbers.x - pi, y = queries[i].numbers.y;
@@ -193,7 +180,8 @@ double light_point_error(const Device& device) {
         append(std::as_bytes(std::span(state)));
     }
     TestShader shader{.name = "light_point.comp"};
-    shader.named_includes = {{"path_trace.glsl", chapter_shader("03_next_event_estimation")}};
+    shader.named_includes = {
+        {"path_trace.glsl", project_folder() / "chapters/03_next_event_estimation/path_trace.glsl"}};
     std::vector<vec2> points(numbers.size());
     run_shader(shader, points.size(), std::as_writable_bytes(std::span(points)), inputs, device);
     double worst = 0;

@@ -2,7 +2,6 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -11,38 +10,27 @@
 #include <string>
 
 #include "error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace lab {
 
 // A new empty folder, removed at the end of its scope.
-class TestFolder {
+class TestFolder : public TemporaryFolder {
   public:
-    TestFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lab_test_XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-        path_ = name;
-    }
-    ~TestFolder() { std::filesystem::remove_all(path_); }
-    TestFolder(const TestFolder&) = delete;
-    TestFolder& operator=(const TestFolder&) = delete;
-
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::filesystem::path operator/(const std::string& name) const { return path() / name; }
 
     // Writes a file and returns its path.
     std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        std::filesystem::create_directories((path_ / name).parent_path());
-        std::filesystem::remove(path_ /
-                                name);  // some file systems wait for the disk when a file is overwritten
-        std::ofstream(path_ / name, std::ios::binary) << bytes;
-        return path_ / name;
+        std::filesystem::create_directories((path() / name).parent_path());
+        // Some file systems wait for the disk when a file is overwritten.
+        std::filesystem::remove(path() / name);
+        std::ofstream(path() / name, std::ios::binary) << bytes;
+        return path() / name;
     }
 
     size_t file_count() const {
-        return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
+        return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(path()), {}));
     }
-
-  private:
-    std::filesystem::path path_;
 };
 
 inline std::string file_bytes(const std::filesystem::path& file) {
