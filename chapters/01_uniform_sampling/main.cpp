@@ -1,5 +1,5 @@
 // Chapter 1: uniform sampling of inclination and azimuth. The path tracer itself is path_trace.glsl.
-#include "app/chapter.h"
+#include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
     return lab::run_chapter(

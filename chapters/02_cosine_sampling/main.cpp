@@ -1,5 +1,5 @@
 // Chapter 2: cosine sampling: directions where the light counts. The path tracer itself is path_trace.glsl.
-#include "app/chapter.h"
+#include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
     return lab::run_chapter(

@@ -1,6 +1,6 @@
 // Chapter 3: next event estimation: a point on the lights at every hit. The path tracer itself is
 // path_trace.glsl.
-#include "app/chapter.h"
+#include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
     return lab::run_chapter({.name = "03_next_event_estimation",

@@ -1,5 +1,5 @@
 // Chapter 5: Russian roulette: dim paths end early, without bias. The path tracer itself is path_trace.glsl.
-#include "app/chapter.h"
+#include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
     return lab::run_chapter({.name = "05_russian_roulette",

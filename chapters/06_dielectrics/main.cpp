@@ -1,5 +1,5 @@
 // Chapter 6: dielectrics: reflection and refraction by glass. The path tracer itself is path_trace.glsl.
-#include "app/chapter.h"
+#include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
     return lab::run_chapter({.name = "06_dielectrics",

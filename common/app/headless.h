@@ -1,9 +1,9 @@
 // Rendering without a window: from the options to the written files.
 #pragma once
-#include "app/options.h"
-#include "app/renderer.h"
 #include "app/report.h"
 #include "film/film_file.h"
+#include "rendering/options.h"
+#include "rendering/renderer.h"
 
 namespace lab {
 

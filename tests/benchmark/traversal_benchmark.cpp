@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "app/renderer.h"
 #include "box_scene.h"
 #include "error.h"
+#include "rendering/renderer.h"
 #ifdef EMBREE_VERSION
 #include "embree_twin.h"
 #endif

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/renderer.h"
 #include "hard_cases/probe.h"
+#include "rendering/renderer.h"
 #include "support/gpu_test.h"
 #include "support/pcg2d.h"
 #include "support/scenes.h"

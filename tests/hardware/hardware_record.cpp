@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "app/renderer.h"
 #include "benchmark/box_scene.h"
 #include "hardware/recorded_ray.h"
 #include "image/file.h"
+#include "rendering/renderer.h"
 
 namespace lab {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "app/renderer.h"
+#include "rendering/renderer.h"
 #include "support/gpu_test.h"
 #include "support/meshes.h"
 #include "support/render.h"

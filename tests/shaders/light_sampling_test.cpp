@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "app/renderer.h"
+#include "rendering/renderer.h"
 #include "scene/alias_table.h"
 #include "support/bounce.h"
 #include "support/expect_statistics.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/renderer.h"
+#include "rendering/renderer.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
 #include "support/pcg2d.h"

@@ -14,11 +14,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "app/renderer.h"
 #include "error.h"
 #include "gpu/cache.h"
 #include "gpu/shader_compiler.h"
 #include "image/file.h"
+#include "rendering/renderer.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lab {

@@ -1,6 +1,6 @@
 #include "support/bounce.h"
 
-#include "app/renderer.h"
+#include "rendering/renderer.h"
 
 namespace lab {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "app/options.h"
+#include "rendering/options.h"
 #include "support/gpu_test.h"
 
 namespace lab {

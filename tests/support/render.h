@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "app/renderer.h"
+#include "rendering/renderer.h"
 #include "scene/scene.h"
 
 namespace lab {

@@ -1,4 +1,4 @@
-#include "app/renderer.h"
+#include "rendering/renderer.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,15 +1,15 @@
-#include "app/chapter.h"
+#include "app/run_chapter.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
 
-#include "app/backend_choice.h"
 #include "app/headless.h"
-#include "app/settings.h"
 #include "error.h"
 #include "gpu/cache.h"
 #include "image/file.h"
+#include "rendering/backend_choice.h"
+#include "rendering/settings.h"
 
 namespace lab {
 namespace {

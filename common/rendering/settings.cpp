@@ -1,4 +1,4 @@
-#include "app/settings.h"
+#include "rendering/settings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// A chapter is data and a shader; this runs it as a complete program.
+// A chapter is data and a shader.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -50,9 +50,5 @@ inline const ChapterOption roulette_start{.name = "--roulette-start",
                                           .default_value = 3,
                                           .low = 1,
                                           .high = 1000000};
-
-// The whole program: reads the command line, renders, writes. Returns the exit code: 0 done, 1 bad input or
-// usage, 2 no usable device, 3 device lost or out of memory.
-int run_chapter(const Chapter& chapter, int argument_count, char** arguments);
 
 }  // namespace lab

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "app/renderer.h"
+#include "rendering/renderer.h"
 
 namespace lab {
 

@@ -1,4 +1,4 @@
-#include "app/backend_choice.h"
+#include "rendering/backend_choice.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // From a scene and the command line to what is rendered. Flags win over the scene file.
 #pragma once
-#include "app/options.h"
-#include "app/renderer.h"
+#include "rendering/options.h"
+#include "rendering/renderer.h"
 #include "tracing/gpu_scene.h"
 
 namespace lab {

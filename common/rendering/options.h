@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "app/chapter.h"
 #include "film/display.h"
+#include "rendering/chapter.h"
 #include "scene/scene.h"
 
 namespace lab {
