@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the statistical tests with other seeds: none may fail, and their p-values together must be uniform.
 
-    tools/false_alarms.py [SEEDS]        default: 5 seeds
+    tools/false_alarms.py [SEEDS] [JOBS]        default: 5 seeds, 1 at a time
 
 Counts the first p-value of each test and seed, since others of a test may come from the same paths. Prints how many
 p-values a run has, which gives the rate of false alarms that it was designed for.
@@ -11,6 +11,7 @@ import math
 import os
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import test_report
@@ -26,7 +27,7 @@ def run(seed, folder):
     environment = {**os.environ, "LAB_TEST_SEED": str(seed), "LAB_TEST_P_VALUES": str(file)}
     failed = []
     for program in PROGRAMS:
-        report = Path(folder) / f"{program}.json"
+        report = Path(folder) / f"{seed}.{program}.json"
         test_report.run(ROOT / "build/bin" / program, report, "--gtest_brief=1", env=environment, stdout=sys.stderr)
         # What a test could have found varies a little with the seed; that is no verdict on the estimator.
         failed += [
@@ -47,10 +48,10 @@ def kolmogorov_smirnov(numbers):
 
 def main():
     seeds = range(1, 1 + (int(sys.argv[1]) if len(sys.argv) > 1 else 5))
+    jobs = int(sys.argv[2]) if len(sys.argv) > 2 else 1
     failures, first_p_values = 0, []
-    with tempfile.TemporaryDirectory() as folder:
-        for seed in seeds:
-            failed, lines = run(seed, folder)
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(jobs) as pool:
+        for seed, (failed, lines) in zip(seeds, pool.map(lambda seed: run(seed, folder), seeds)):
             failures += len(failed)
             first = {}
             for test, _, p_value in lines:
