@@ -104,8 +104,9 @@ SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height
               vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
                                   vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
                                   vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst)};
-    memory_ =
-        allocate(device, image_.getMemoryRequirements(), {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
+    const auto requirements = image_.getMemoryRequirements();
+    bytes_ = requirements.size;
+    memory_ = allocate(device, requirements, {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
     image_.bindMemory(*memory_, 0);
 
     Buffer staging(device, pixels.size(), {}, Buffer::Location::host);

@@ -56,8 +56,10 @@ class SampledImage {
     vk::DescriptorImageInfo info() const {
         return {*sampler_, *view_, vk::ImageLayout::eShaderReadOnlyOptimal};
     }
+    size_t bytes() const { return bytes_; }  // of device memory
 
   private:
+    size_t bytes_ = 0;
     vk::raii::Image image_ = nullptr;
     vk::raii::DeviceMemory memory_ = nullptr;
     vk::raii::ImageView view_ = nullptr;

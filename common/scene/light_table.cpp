@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <utility>
 
 #include "error.h"
 #include "scene/alias_table.h"
@@ -36,6 +36,23 @@ std::array<float, 9> get_place(const Scene& scene, uint32_t instance, const uvec
     return {a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]};
 }
 
+// Rays find one of several emissive triangles in the same place: the table counts the first, too, and keeps
+// the order.
+void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& lights) {
+    std::vector<std::pair<std::array<float, 9>, size_t>> places;
+    places.reserve(lights.size());
+    for (const LightTriangle& light : lights)
+        places.emplace_back(get_place(scene, light.instance, scene.triangles[light.triangle]), places.size());
+    std::sort(places.begin(), places.end());
+    std::vector<bool> is_first(lights.size(), true);
+    for (size_t i = 1; i < places.size(); ++i)
+        is_first[places[i].second] = places[i].first != places[i - 1].first;
+    size_t kept = 0;
+    for (size_t i = 0; i < lights.size(); ++i)
+        if (is_first[i]) lights[kept++] = lights[i];
+    lights.resize(kept);
+}
+
 }  // namespace
 
 std::vector<LightTriangle> build_light_table(const Scene& scene) {
@@ -55,29 +72,24 @@ std::vector<LightTriangle> build_light_table(const Scene& scene) {
             scene.file.string() + ": its instances have " + std::to_string(count) +
             " emissive triangles together, more than 2^24: remove instances or use simpler lights");
 
-    struct Place {
-        uint32_t instance, triangle;
-    };
-    std::vector<Place> places;
-    std::vector<double> areas, weights;
-    std::set<std::array<float, 9>> taken;
+    std::vector<LightTriangle> lights;
+    lights.reserve(count);
     for (uint32_t instance = 0; instance < scene.instances.size(); ++instance)
-        for (const uint32_t triangle : emissive_triangles[scene.instance_meshes[instance]]) {
-            // Rays find one of several emissive triangles in the same place: the table counts one, too.
-            if (!taken.insert(get_place(scene, instance, scene.triangles[triangle])).second) continue;
-            places.push_back({instance, triangle});
-            areas.push_back(get_world_area(scene, instance, scene.triangles[triangle]));
-            weights.push_back(areas.back() * luminance_of(triangle));
-        }
-    if (places.empty()) return {};
+        for (const uint32_t triangle : emissive_triangles[scene.instance_meshes[instance]])
+            lights.push_back({instance, triangle, 0, 0, 0});
+    keep_one_in_each_place(scene, lights);
+    if (lights.empty()) return {};
+    std::vector<double> areas, weights;
+    for (const LightTriangle& light : lights) {
+        areas.push_back(get_world_area(scene, light.instance, scene.triangles[light.triangle]));
+        weights.push_back(areas.back() * luminance_of(light.triangle));
+    }
     const AliasTable table = build_alias_table(weights);
-    std::vector<LightTriangle> lights(places.size());
-    for (size_t i = 0; i < lights.size(); ++i)
-        lights[i] = {.instance = places[i].instance,
-                     .triangle = places[i].triangle,
-                     .threshold = table.entries[i].threshold,
-                     .alias = table.entries[i].alias,
-                     .inverse_density = static_cast<float>(areas[i] / table.probabilities[i])};
+    for (size_t i = 0; i < lights.size(); ++i) {
+        lights[i].threshold = table.entries[i].threshold;
+        lights[i].alias = table.entries[i].alias;
+        lights[i].inverse_density = static_cast<float>(areas[i] / table.probabilities[i]);
+    }
     return lights;
 }
 

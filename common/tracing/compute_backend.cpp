@@ -10,11 +10,16 @@ class ComputeBackend : public AccelerationStructure {
     ComputeBackend(const Device& device, const GpuScene& scene)
         : device_(&device), scene_(&scene), bvh_(device, build_bvh(world_triangles(scene.scene()))) {}
 
-    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
-                                        std::span<const Binding> bindings) const override {
+    std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
         ShaderSource source = shader_source("render.comp", ShaderStage::compute, *scene_, estimator);
         for (const auto& define : bvh_.defines()) source.defines.push_back(define);
-        return make_compute_tracer(*device_, source, join({bindings, scene_->bindings(), bvh_.bindings()}));
+        return {source};
+    }
+
+    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
+                                        std::span<const Binding> bindings) const override {
+        return make_compute_tracer(*device_, shaders(estimator).front(),
+                                   join({bindings, scene_->bindings(), bvh_.bindings()}));
     }
 
     size_t bytes() const override { return bvh_.bytes(); }

@@ -9,11 +9,12 @@ void GpuScene::add_buffer(const Device& device, uint32_t binding, const std::vec
                           vk::BufferUsageFlags usage) {
     buffers_.emplace_back(device, std::span<const T>(data), usage);
     bindings_.push_back(storage_binding(binding, buffers_.back()));
+    bytes_[binding] = buffers_.back().size();
 }
 
-GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling)
-    : scene_(&scene), defines_(features_of(scene).defines()) {
+GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling) : scene_(&scene) {
     const SceneFeatures features = features_of(scene);
+    defines_ = features.defines();
     buffers_.reserve(8);  // the bindings refer to the buffers
     // The driver builds its acceleration structure from these two.
     vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer;
@@ -37,8 +38,10 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
 void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
     const auto bind = [&](uint32_t binding, size_t first_image) {
         bindings_.push_back({.index = binding, .type = vk::DescriptorType::eCombinedImageSampler});
-        for (size_t i = first_image; i < images_.size(); ++i)
+        for (size_t i = first_image; i < images_.size(); ++i) {
             bindings_.back().images.push_back(images_[i].info());
+            bytes_[binding] += images_[i].bytes();
+        }
     };
     if (features.textures) {
         for (const auto& texture : scene_->textures)

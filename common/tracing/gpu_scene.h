@@ -1,5 +1,6 @@
 // A scene's arrays on the device. What the scene has not got is not allocated.
 #pragma once
+#include <map>
 #include <vector>
 
 #include "gpu/compute_kernel.h"
@@ -23,6 +24,9 @@ class GpuScene {
     const std::vector<Binding>& bindings() const { return bindings_; }
     const std::vector<std::string>& defines() const { return defines_; }
 
+    // Bytes of the array or the images behind each binding.
+    const std::map<uint32_t, size_t>& bytes() const { return bytes_; }
+
   private:
     template <typename T>
     void add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data,
@@ -34,6 +38,7 @@ class GpuScene {
     std::vector<SampledImage> images_;
     std::vector<Binding> bindings_;
     std::vector<std::string> defines_;
+    std::map<uint32_t, size_t> bytes_;
 };
 
 }  // namespace lab

@@ -19,16 +19,30 @@ vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) {
 constexpr uint32_t first_miss_group = 1;
 constexpr uint32_t first_hit_group = 3;
 
+vk::ShaderStageFlagBits stage_flag(ShaderStage stage) {
+    switch (stage) {
+        case ShaderStage::ray_generation:
+            return vk::ShaderStageFlagBits::eRaygenKHR;
+        case ShaderStage::miss:
+            return vk::ShaderStageFlagBits::eMissKHR;
+        case ShaderStage::closest_hit:
+            return vk::ShaderStageFlagBits::eClosestHitKHR;
+        case ShaderStage::compute:
+            break;
+    }
+    return vk::ShaderStageFlagBits::eCompute;
+}
+
 class PipelineTracer : public Tracer {
   public:
-    PipelineTracer(const Device& device, const GpuScene& scene, const Estimator& estimator,
+    PipelineTracer(const Device& device, const std::vector<ShaderSource>& shaders,
                    const std::vector<Binding>& bindings)
         : descriptors_(device, bindings, all_stages) {
         const auto set_layout = descriptors_.layout();
         const vk::PushConstantRange range(all_stages, 0, sizeof(DispatchParameters));
         layout_ = {device.handle(), vk::PipelineLayoutCreateInfo({}, set_layout, range)};
-        const uint32_t group_count = create_pipeline(device, scene, estimator);
-        fill_shader_binding_table(device, group_count);
+        create_pipeline(device, shaders);
+        fill_shader_binding_table(device, static_cast<uint32_t>(shaders.size()));
     }
 
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
@@ -43,38 +57,27 @@ class PipelineTracer : public Tracer {
     }
 
   private:
-    // Returns the number of shader groups.
-    uint32_t create_pipeline(const Device& device, const GpuScene& scene, const Estimator& estimator) {
+    void create_pipeline(const Device& device, const std::vector<ShaderSource>& shaders) {
         std::vector<vk::raii::ShaderModule> modules;
         std::vector<vk::PipelineShaderStageCreateInfo> stages;
         std::vector<vk::RayTracingShaderGroupCreateInfoKHR> groups;
-        const auto add = [&](const ShaderSource& source, vk::ShaderStageFlagBits stage) {
+        for (const ShaderSource& source : shaders) {
             const auto words = compile_shader(source);
             modules.emplace_back(device.handle(), vk::ShaderModuleCreateInfo({}, words));
             const auto index = static_cast<uint32_t>(stages.size());
-            stages.emplace_back(vk::PipelineShaderStageCreateFlags(), stage, *modules.back(), "main");
-            const bool is_hit = stage == vk::ShaderStageFlagBits::eClosestHitKHR;
+            stages.emplace_back(vk::PipelineShaderStageCreateFlags(), stage_flag(source.stage),
+                                *modules.back(), "main");
+            const bool is_hit = source.stage == ShaderStage::closest_hit;
             groups.emplace_back(is_hit ? vk::RayTracingShaderGroupTypeKHR::eTrianglesHitGroup
                                        : vk::RayTracingShaderGroupTypeKHR::eGeneral,
                                 is_hit ? VK_SHADER_UNUSED_KHR : index, is_hit ? index : VK_SHADER_UNUSED_KHR,
                                 VK_SHADER_UNUSED_KHR, VK_SHADER_UNUSED_KHR);
-        };
-        add(shader_source("render.rgen", ShaderStage::ray_generation, scene, estimator),
-            vk::ShaderStageFlagBits::eRaygenKHR);
-        for (const char* miss : {"trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"})
-            add(shader_source(miss, ShaderStage::miss, scene, estimator), vk::ShaderStageFlagBits::eMissKHR);
-        for (const uint32_t material_class : material_classes(scene.scene())) {
-            ShaderSource hit =
-                shader_source("trace_ray/closest_hit.rchit", ShaderStage::closest_hit, scene, estimator);
-            hit.defines.push_back("MATERIAL_CLASS " + std::to_string(material_class) + "u");
-            add(hit, vk::ShaderStageFlagBits::eClosestHitKHR);
         }
         // Rays are traced from the ray generation shader alone: the loop over a path needs no recursion.
         constexpr uint32_t max_recursion_depth = 1;
         const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {},
                                                        *layout_);
         pipeline_ = {device.handle(), nullptr, device.pipeline_cache(), info};
-        return static_cast<uint32_t>(groups.size());
     }
 
     // The table of shader handles that the driver reads. A record is a handle padded to the device's
@@ -134,9 +137,24 @@ class PipelineBackend : public AccelerationStructure {
     PipelineBackend(const Device& device, const GpuScene& scene)
         : device_(&device), scene_(&scene), bvh_(device, scene) {}
 
+    std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
+        std::vector<ShaderSource> sources;
+        const auto add = [&](const char* name, ShaderStage stage) {
+            sources.push_back(shader_source(name, stage, *scene_, estimator));
+        };
+        add("render.rgen", ShaderStage::ray_generation);
+        add("trace_ray/miss.rmiss", ShaderStage::miss);
+        add("trace_ray/shadow_miss.rmiss", ShaderStage::miss);
+        for (const uint32_t material_class : material_classes(scene_->scene())) {
+            add("trace_ray/closest_hit.rchit", ShaderStage::closest_hit);
+            sources.back().defines.push_back("MATERIAL_CLASS " + std::to_string(material_class) + "u");
+        }
+        return sources;
+    }
+
     std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                         std::span<const Binding> bindings) const override {
-        return std::make_unique<PipelineTracer>(*device_, *scene_, estimator,
+        return std::make_unique<PipelineTracer>(*device_, shaders(estimator),
                                                 join({bindings, scene_->bindings(), bvh_.bindings()}));
     }
 

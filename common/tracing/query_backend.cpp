@@ -10,11 +10,16 @@ class QueryBackend : public AccelerationStructure {
     QueryBackend(const Device& device, const GpuScene& scene)
         : device_(&device), scene_(&scene), bvh_(device, scene) {}
 
-    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
-                                        std::span<const Binding> bindings) const override {
+    std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
         ShaderSource source = shader_source("render.comp", ShaderStage::compute, *scene_, estimator);
         source.defines.emplace_back("BACKEND_QUERY");
-        return make_compute_tracer(*device_, source, join({bindings, scene_->bindings(), bvh_.bindings()}));
+        return {source};
+    }
+
+    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
+                                        std::span<const Binding> bindings) const override {
+        return make_compute_tracer(*device_, shaders(estimator).front(),
+                                   join({bindings, scene_->bindings(), bvh_.bindings()}));
     }
 
     size_t bytes() const override { return bvh_.bytes(); }

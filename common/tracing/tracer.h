@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu/shader_compiler.h"
 #include "tracing/gpu_scene.h"
 
 namespace lab {
@@ -30,6 +31,8 @@ class Tracer {
 class AccelerationStructure {
   public:
     virtual ~AccelerationStructure() = default;
+    // What make_tracer() compiles for an estimator, the main program first.
+    virtual std::vector<ShaderSource> shaders(const Estimator& estimator) const = 0;
     // `bindings`: render parameters, film and ray counters. Throws UserError if the estimator does not
     // compile.
     virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,

@@ -1,0 +1,150 @@
+// What a scene has not got costs nothing: no instruction in the shaders, no binding, no byte. Every feature
+// is switched on alone, and the code and the buffers must have what it needs and nothing else.
+#include "rendering/renderer.h"
+#include "support/gpu_test.h"
+#include "support/render.h"
+#include "support/scene_features.h"
+#include "support/scenes.h"
+#include "support/shader_code.h"
+
+namespace lab {
+namespace {
+
+// What a scene makes of a chapter's shaders, and the memory that it takes on the device.
+struct Footprint {
+    ShaderCode code;
+    std::map<uint32_t, size_t> bytes;
+};
+
+// What a feature adds to those of the bare scene.
+struct Needs {
+    std::set<uint32_t> bindings = {};
+    std::set<std::string> functions = {}, material_members = {}, parameter_members = {};
+    bool samples_images = false;
+};
+
+const std::map<std::string, Needs>& needs_of_features() {
+    static const Needs dielectric{.functions = {"sample_dielectric", "get_fresnel_reflectance"},
+                                  .material_members = {"refractive_index"}};
+    static const std::map<std::string, Needs> needs{
+        {"vertex normals", {.bindings = {BINDING_NORMALS}}},
+        {"textures",
+         {.bindings = {BINDING_TEXTURE_COORDINATES, BINDING_TEXTURES},
+          .functions = {"get_texture_colour"},
+          .material_members = {"albedo_texture"},
+          .samples_images = true}},
+        {"sky", {.parameter_members = {"background"}}},
+        {"light probe",
+         {.bindings = {BINDING_LIGHT_PROBE},
+          .functions = {"get_light_probe_radiance"},
+          .parameter_members = {"background", "probe_rotation"},
+          .samples_images = true}},
+        {"area lights", {.bindings = {BINDING_LIGHT_TRIANGLES}, .functions = {"choose_light_triangle"}}},
+        {"Phong lobe", {.material_members = {"specular_albedo", "specular_exponent"}}},
+        {"dielectrics", dielectric},
+        {"absorption",
+         {.functions = dielectric.functions, .material_members = {"refractive_index", "absorption"}}},
+        {"transforms", {.bindings = {BINDING_INSTANCES}}}};
+    return needs;
+}
+
+// Walls without light.
+Scene bare_scene() { return closed_box(diffuse_material(vec3(0.5f))); }
+
+class FeatureCode : public testing::TestWithParam<std::string> {
+  protected:
+    bool samples_lights() const { return chapter_number(GetParam()) >= 3; }
+    bool knows_dielectrics() const { return chapter_number(GetParam()) >= 6; }
+
+    Footprint footprint(const Scene& scene, Backend backend) const {
+        const GpuScene gpu_scene(test_device(), scene,
+                                 samples_lights() ? LightSampling::on : LightSampling::off);
+        const auto structure = build_acceleration_structure(backend, test_device(), gpu_scene);
+        std::set<std::string> functions;
+        for (const auto& [name, needs] : needs_of_features())
+            functions.insert(needs.functions.begin(), needs.functions.end());
+        Footprint result{.code = {}, .bytes = gpu_scene.bytes()};
+        for (const auto& shader : structure->shaders(chapter_estimator(GetParam())))
+            result.code.merge(read_code(shader, functions));
+        return result;
+    }
+
+    void expect_no_feature_in_bare_scene(Backend backend) const;
+    void expect_each_feature_alone(Backend backend) const;
+};
+
+template <typename T>
+std::set<T> joined(std::set<T> a, const std::set<T>& b) {
+    a.insert(b.begin(), b.end());
+    return a;
+}
+
+std::set<uint32_t> bindings_of(const Footprint& footprint) {
+    std::set<uint32_t> bindings;
+    for (const auto& [binding, bytes] : footprint.bytes) bindings.insert(binding);
+    return bindings;
+}
+
+void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
+    const Footprint bare = footprint(bare_scene(), backend);
+    const std::set<uint32_t> arrays{BINDING_POSITIONS, BINDING_TRIANGLES, BINDING_TRIANGLE_MATERIALS,
+                                    BINDING_MATERIALS};
+    std::set<uint32_t> others{BINDING_RENDER_PARAMETERS, BINDING_FILM, BINDING_RAY_COUNTERS};
+    if (backend == Backend::compute)
+        others.insert({BINDING_BVH_NODES, BINDING_BVH_TRIANGLES});
+    else
+        others.insert({BINDING_ACCELERATION_STRUCTURE, BINDING_GEOMETRY_FIRST_TRIANGLES});
+    EXPECT_EQ(bindings_of(bare), arrays);
+    EXPECT_EQ(bare.code.bindings, joined(arrays, others));
+    EXPECT_FALSE(bare.code.samples_images);
+    EXPECT_EQ(bare.code.functions, std::set<std::string>{});
+    EXPECT_EQ(bare.code.material_members, (std::set<std::string>{"diffuse_albedo", "emission"}));
+    EXPECT_FALSE(bare.code.parameter_members.contains("background"));
+    EXPECT_TRUE(bare.code.parameter_members.contains("max_path_length"))
+        << "too weak: parameters are not found";
+    EXPECT_GT(bare.code.instructions, 100u);
+}
+
+void FeatureCode::expect_each_feature_alone(Backend backend) const {
+    const Footprint bare = footprint(bare_scene(), backend);
+    for (const SceneFeature& feature : all_scene_features()) {
+        SCOPED_TRACE(feature.name);
+        Needs needs = needs_of_features().at(feature.name);
+        if (!needs.functions.empty() && needs.functions.contains("sample_dielectric") && !knows_dielectrics())
+            continue;
+        if (feature.name == "area lights" && !samples_lights()) needs = {};
+        Scene scene = bare_scene();
+        feature.add(scene);
+        const Footprint actual = footprint(scene, backend);
+        EXPECT_EQ(bindings_of(actual), joined(bindings_of(bare), needs.bindings));
+        EXPECT_EQ(actual.code.bindings, joined(bare.code.bindings, needs.bindings));
+        EXPECT_EQ(actual.code.functions, needs.functions);
+        EXPECT_EQ(actual.code.material_members, joined(bare.code.material_members, needs.material_members));
+        EXPECT_EQ(actual.code.parameter_members,
+                  joined(bare.code.parameter_members, needs.parameter_members));
+        EXPECT_EQ(actual.code.samples_images, needs.samples_images);
+        if (feature.name != "area lights") {
+            EXPECT_GT(actual.code.instructions, bare.code.instructions);
+        }
+    }
+}
+
+TEST_P(FeatureCode, OfABareSceneIsOfNoFeature) {
+    for (const Backend backend : all_backends) {
+        SCOPED_TRACE(to_string(backend));
+        if (test_device().description().supports(backend)) expect_no_feature_in_bare_scene(backend);
+    }
+}
+
+// So the test above would find each of them.
+TEST_P(FeatureCode, HasWhatEachFeatureNeedsAndNothingElse) {
+    for (const Backend backend : all_backends) {
+        SCOPED_TRACE(to_string(backend));
+        if (test_device().description().supports(backend)) expect_each_feature_alone(backend);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Chapters, FeatureCode, testing::ValuesIn(all_chapters), chapter_name);
+
+}  // namespace
+}  // namespace lab
