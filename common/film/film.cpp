@@ -45,10 +45,15 @@ std::array<double, 3> FilmImage::mean_radiance() const {
     return mean;
 }
 
+MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
+    return {"image's pixels", size_t{width} * height * sizeof(FilmPixel),
+            vk::BufferUsageFlagBits::eStorageBuffer};
+}
+
 Film::Film(const Device& device, uint32_t width, uint32_t height)
     : width_(width),
       height_(height),
-      buffer_(device, size_t{width} * height * sizeof(FilmPixel), vk::BufferUsageFlagBits::eStorageBuffer) {
+      buffer_(device, memory_need(width, height).bytes, memory_need(width, height).usage) {
     clear();
 }
 

@@ -24,6 +24,9 @@ struct FilmImage {
 
 class Film {
   public:
+    // What a film of this size allocates.
+    static MemoryNeed memory_need(uint32_t width, uint32_t height);
+
     // Starts without samples.
     Film(const Device& device, uint32_t width, uint32_t height);
 

@@ -42,18 +42,39 @@ Allocation allocate(const Device& device, const vk::MemoryRequirements& requirem
     throw DeviceError("the device has no suitable kind of memory");
 }
 
+// Bytes that a buffer of this usage may have.
+size_t size_limit(const Device& device, vk::BufferUsageFlags usage) {
+    if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
+        return size_t{16} * device.limits().maxTexelBufferElements;
+    if (usage & vk::BufferUsageFlagBits::eStorageBuffer) return device.limits().maxStorageBufferRange;
+    return SIZE_MAX;
+}
+
 }  // namespace
+
+void require_memory(const Device& device, std::span<const MemoryNeed> needs) {
+    size_t sum = 0, memory = 0;
+    for (const MemoryNeed& need : needs) {
+        if (const size_t limit = size_limit(device, need.usage); need.bytes > limit)
+            throw DeviceFailure("too large for the device: " + need.what + ", a buffer of " +
+                                mebibytes(need.bytes) + " where it allows " + mebibytes(limit) +
+                                ": use a smaller image or scene");
+        sum += need.bytes;
+    }
+    const auto heaps = device.physical().getMemoryProperties();
+    for (uint32_t i = 0; i < heaps.memoryHeapCount; ++i)
+        memory = std::max<size_t>(memory, heaps.memoryHeaps[i].size);
+    if (sum <= memory) return;
+    const auto largest = std::ranges::max_element(needs, {}, &MemoryNeed::bytes);
+    throw DeviceFailure("too large for the device: " + largest->what + " of " + mebibytes(largest->bytes) +
+                        ", " + mebibytes(sum) + " in all, and it has " + mebibytes(memory) +
+                        ": use a smaller image or scene");
+}
 
 Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location)
     : device_(&device), size_(std::max<size_t>(size, 16)) {
-    size_t limit = SIZE_MAX;
-    if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
-        limit = size_t{16} * device.limits().maxTexelBufferElements;
-    else if (usage & vk::BufferUsageFlagBits::eStorageBuffer)
-        limit = device.limits().maxStorageBufferRange;
-    if (size_ > limit)
-        throw DeviceFailure("the scene or image needs a buffer of " + mebibytes(size_) +
-                            ", the device allows " + mebibytes(limit) + ": use a smaller one");
+    const MemoryNeed need{"image or scene", size_, usage};
+    require_memory(device, {&need, 1});
     usage |= vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     buffer_ = {device.handle(), vk::BufferCreateInfo({}, size_, usage)};
     const auto required = location == Location::host ? host_visible : vk::MemoryPropertyFlags();

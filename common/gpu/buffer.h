@@ -6,6 +6,17 @@
 
 namespace lab {
 
+// Something that is about to be allocated.
+struct MemoryNeed {
+    std::string what;  // "positions"
+    size_t bytes;
+    vk::BufferUsageFlags usage = {};
+};
+
+// Throws DeviceFailure, with the sizes, for a buffer that is larger than the device allows and for more bytes
+// together than its memory has: so that nothing is allocated in vain.
+void require_memory(const Device& device, std::span<const MemoryNeed> needs);
+
 class Buffer {
   public:
     enum class Location {

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "error.h"
 #include "gpu/cache.h"
-#include "tracing/bvh.h"
+#include "tracing/gpu_bvh.h"
 
 namespace lab {
 namespace {
@@ -43,14 +44,26 @@ std::optional<Backend> find_backend(const std::string& name) {
     return std::nullopt;
 }
 
+// Whether the device can hold the tree of the `compute` backend, which has every triangle of every instance.
+bool fits_compute(const Device& device, const Scene& scene) {
+    const uint64_t count = instanced_triangle_count(scene);
+    const MemoryNeed need = GpuBvh::memory_need(count);
+    try {
+        require_memory(device, {&need, 1});
+        return count <= max_triangle_count;
+    } catch (const DeviceFailure&) {
+        return false;
+    }
+}
+
 }  // namespace
 
 Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
                        const Estimator& estimator, RenderParameters parameters) {
     if (const auto named = find_backend(name)) return *named;
-    const bool fits_compute = instanced_triangle_count(scene.scene()) <= max_triangle_count;
     const auto is_usable = [&](Backend backend) {
-        return device.description().supports(backend) && (backend != Backend::compute || fits_compute);
+        return device.description().supports(backend) &&
+               (backend != Backend::compute || fits_compute(device, scene.scene()));
     };
     const std::string entry = cache_name(device, scene);
     if (const auto cached = read_cache(entry))

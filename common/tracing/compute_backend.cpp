@@ -5,10 +5,17 @@
 namespace lab {
 namespace {
 
+// The tree, unless the device cannot hold it: building it in vain would take minutes.
+Bvh build(const Device& device, const Scene& scene) {
+    const MemoryNeed need = GpuBvh::memory_need(instanced_triangle_count(scene));
+    require_memory(device, {&need, 1});
+    return build_bvh(world_triangles(scene));
+}
+
 class ComputeBackend : public AccelerationStructure {
   public:
     ComputeBackend(const Device& device, const GpuScene& scene)
-        : device_(&device), scene_(&scene), bvh_(device, build_bvh(world_triangles(scene.scene()))) {}
+        : device_(&device), scene_(&scene), bvh_(device, build(device, scene.scene())) {}
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
         ShaderSource source = shader_source("render.comp", ShaderStage::compute, *scene_, estimator);

@@ -8,6 +8,11 @@ GpuBvh::Texels::Texels(const Device& device, const std::vector<T>& data)
       view(device.handle(),
            vk::BufferViewCreateInfo({}, buffer.handle(), vk::Format::eR32G32B32A32Uint, 0, VK_WHOLE_SIZE)) {}
 
+MemoryNeed GpuBvh::memory_need(uint64_t triangle_count) {
+    return {"triangles of all instances", triangle_count * sizeof(BvhTriangle),
+            vk::BufferUsageFlagBits::eUniformTexelBuffer};
+}
+
 GpuBvh::GpuBvh(const Device& device, const Bvh& bvh)
     : nodes_(device, bvh.nodes),
       triangles_(device, bvh.triangles),

@@ -7,6 +7,9 @@ namespace lab {
 
 class GpuBvh {
   public:
+    // Of a tree, before it is built: its triangles alone.
+    static MemoryNeed memory_need(uint64_t triangle_count);
+
     // Throws DeviceFailure if the device cannot hold or address it. The device must outlive the result.
     GpuBvh(const Device& device, const Bvh& bvh);
 

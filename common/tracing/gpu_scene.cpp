@@ -4,50 +4,76 @@
 
 namespace lab {
 
-template <typename T>
-void GpuScene::add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data,
-                          vk::BufferUsageFlags usage) {
-    buffers_.emplace_back(device, std::span<const T>(data), usage);
-    bindings_.push_back(storage_binding(binding, buffers_.back()));
-    bytes_[binding] = buffers_.back().size();
-}
+namespace {
+
+// An array that is to be copied to the device.
+struct Array {
+    std::string name;
+    uint32_t binding;
+    std::span<const std::byte> data;
+    vk::BufferUsageFlags usage;
+};
+
+size_t bytes_of(const Image& probe) { return probe.pixels.size() / 3 * 4 * sizeof(float); }
+
+}  // namespace
 
 GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling) : scene_(&scene) {
     const SceneFeatures features = features_of(scene);
     defines_ = features.defines();
-    buffers_.reserve(8);  // the bindings refer to the buffers
-    // The driver builds its acceleration structure from these two.
-    vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer;
+    std::vector<Array> arrays;
+    const auto add = [&](const char* name, uint32_t binding, const auto& data,
+                         vk::BufferUsageFlags usage = {}) {
+        arrays.push_back(
+            {name, binding, std::as_bytes(std::span(data)), usage | vk::BufferUsageFlagBits::eStorageBuffer});
+    };
+    // The driver builds its acceleration structure from the first two.
+    vk::BufferUsageFlags build_input;
     if (device.has_acceleration_structures())
-        usage |= vk::BufferUsageFlagBits::eAccelerationStructureBuildInputReadOnlyKHR |
-                 vk::BufferUsageFlagBits::eShaderDeviceAddress;
-    add_buffer(device, BINDING_POSITIONS, scene.positions, usage);
-    add_buffer(device, BINDING_TRIANGLES, scene.triangles, usage);
-    add_buffer(device, BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
-    add_buffer(device, BINDING_MATERIALS, scene.materials);
-    if (features.vertex_normals) add_buffer(device, BINDING_NORMALS, scene.normals);
-    if (features.textures) add_buffer(device, BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
-    if (features.transforms) add_buffer(device, BINDING_INSTANCES, scene.instances);
+        build_input = vk::BufferUsageFlagBits::eAccelerationStructureBuildInputReadOnlyKHR |
+                      vk::BufferUsageFlagBits::eShaderDeviceAddress;
+    add("positions", BINDING_POSITIONS, scene.positions, build_input);
+    add("triangles", BINDING_TRIANGLES, scene.triangles, build_input);
+    add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
+    add("materials", BINDING_MATERIALS, scene.materials);
+    if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);
+    if (features.textures) add("texture coordinates", BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
+    if (features.transforms) add("instances", BINDING_INSTANCES, scene.instances);
+    std::vector<LightTriangle> lights;
     if (features.area_lights && light_sampling == LightSampling::on) {
-        add_buffer(device, BINDING_LIGHT_TRIANGLES, build_light_table(scene));
+        lights = build_light_table(scene);
+        add("light triangles", BINDING_LIGHT_TRIANGLES, lights);
         defines_.emplace_back("FEATURE_LIGHT_SAMPLING");
+    }
+
+    std::vector<MemoryNeed> needs;
+    for (const Array& array : arrays) needs.push_back({array.name, array.data.size(), array.usage});
+    for (const auto& texture : scene.textures) needs.push_back({"textures", texture.pixels.size()});
+    if (features.light_probe) needs.push_back({"light probe's texels", bytes_of(*scene.light_probe)});
+    require_memory(device, needs);
+    buffers_.reserve(arrays.size());  // the bindings refer to the buffers
+    for (const Array& array : arrays) {
+        buffers_.emplace_back(device, array.data, array.usage);
+        bindings_.push_back(storage_binding(array.binding, buffers_.back()));
+        allocations_.push_back({array.name, array.binding, buffers_.back().size()});
     }
     add_images(device, features);
 }
 
 void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
-    const auto bind = [&](uint32_t binding, size_t first_image) {
+    const auto bind = [&](const char* name, uint32_t binding, size_t first_image) {
         bindings_.push_back({.index = binding, .type = vk::DescriptorType::eCombinedImageSampler});
+        allocations_.push_back({name, binding, 0});
         for (size_t i = first_image; i < images_.size(); ++i) {
             bindings_.back().images.push_back(images_[i].info());
-            bytes_[binding] += images_[i].bytes();
+            allocations_.back().bytes += images_[i].bytes();
         }
     };
     if (features.textures) {
         for (const auto& texture : scene_->textures)
             images_.emplace_back(device, texture.width, texture.height, vk::Format::eR8G8B8A8Unorm,
                                  std::as_bytes(std::span(texture.pixels)));
-        bind(BINDING_TEXTURES, 0);
+        bind("textures", BINDING_TEXTURES, 0);
         defines_.push_back("TEXTURE_COUNT " + std::to_string(scene_->textures.size()));
     }
     if (features.light_probe) {
@@ -61,7 +87,7 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
         const size_t first = images_.size();
         images_.emplace_back(device, probe.width, probe.height, vk::Format::eR32G32B32A32Sfloat,
                              std::as_bytes(std::span(rgba)));
-        bind(BINDING_LIGHT_PROBE, first);
+        bind("light probe", BINDING_LIGHT_PROBE, first);
     }
 }
 

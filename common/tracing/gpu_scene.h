@@ -1,6 +1,5 @@
 // A scene's arrays on the device. What the scene has not got is not allocated.
 #pragma once
-#include <map>
 #include <vector>
 
 #include "gpu/compute_kernel.h"
@@ -14,6 +13,14 @@ enum class LightSampling { off, on };
 
 class GpuScene {
   public:
+    // Memory that the scene takes: an array, or images.
+    struct Allocation {
+        std::string name;
+        uint32_t binding;
+        size_t bytes;
+    };
+
+    // Throws DeviceFailure before it allocates anything if the device cannot hold the scene.
     GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling = LightSampling::on);
 
     const Scene& scene() const { return *scene_; }
@@ -24,13 +31,9 @@ class GpuScene {
     const std::vector<Binding>& bindings() const { return bindings_; }
     const std::vector<std::string>& defines() const { return defines_; }
 
-    // Bytes of the array or the images behind each binding.
-    const std::map<uint32_t, size_t>& bytes() const { return bytes_; }
+    const std::vector<Allocation>& allocations() const { return allocations_; }
 
   private:
-    template <typename T>
-    void add_buffer(const Device& device, uint32_t binding, const std::vector<T>& data,
-                    vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer);
     void add_images(const Device& device, const SceneFeatures& features);
 
     const Scene* scene_;
@@ -38,7 +41,7 @@ class GpuScene {
     std::vector<SampledImage> images_;
     std::vector<Binding> bindings_;
     std::vector<std::string> defines_;
-    std::map<uint32_t, size_t> bytes_;
+    std::vector<Allocation> allocations_;
 };
 
 }  // namespace lab

@@ -117,6 +117,11 @@ class FailingDevice(RenderTest):
             words = r"\d+ MiB more are needed", r"the device has \d+ MiB"
             self.assert_refused(arguments, "out of device memory", *words, code=3, environment=fault)
 
+    def test_what_does_not_fit_is_refused_before_anything_is_allocated(self):
+        """Without any memory: to allocate the scene would be another error."""
+        arguments = ["instances", "--width=16384", "--height=16384", "--backend=compute"]
+        self.assert_refused(arguments, "too large for the device", "8192 MiB", code=3, environment={**FAULT_LAYER, "FAULT_MEMORY_MIB": "0"})
+
 
 class SharedCache(RenderTest):
     def setUp(self):

@@ -13,7 +13,7 @@ namespace {
 // What a scene makes of a chapter's shaders, and the memory that it takes on the device.
 struct Footprint {
     ShaderCode code;
-    std::map<uint32_t, size_t> bytes;
+    std::vector<GpuScene::Allocation> allocations;
 };
 
 // What a feature adds to those of the bare scene.
@@ -63,7 +63,7 @@ class FeatureCode : public testing::TestWithParam<std::string> {
         std::set<std::string> functions;
         for (const auto& [name, needs] : needs_of_features())
             functions.insert(needs.functions.begin(), needs.functions.end());
-        Footprint result{.code = {}, .bytes = gpu_scene.bytes()};
+        Footprint result{.code = {}, .allocations = gpu_scene.allocations()};
         for (const auto& shader : structure->shaders(chapter_estimator(GetParam())))
             result.code.merge(read_code(shader, functions));
         return result;
@@ -81,7 +81,7 @@ std::set<T> joined(std::set<T> a, const std::set<T>& b) {
 
 std::set<uint32_t> bindings_of(const Footprint& footprint) {
     std::set<uint32_t> bindings;
-    for (const auto& [binding, bytes] : footprint.bytes) bindings.insert(binding);
+    for (const auto& allocation : footprint.allocations) bindings.insert(allocation.binding);
     return bindings;
 }
 

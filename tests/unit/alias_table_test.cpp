@@ -184,6 +184,22 @@ TEST(LightTable, NeverChoosesDegenerateTriangles) {
         EXPECT_EQ(probabilities[i], lights[i].triangle == 1 ? 1 : 0) << "light " << i;
 }
 
+// Rays find one of them only. The first stands in the table, and the others keep their order.
+TEST(LightTable, CountsOneOfSeveralInTheSamePlace) {
+    Scene scene = make_lights({1, 3, 2}, {vec3(1), vec3(2), vec3(1)});
+    const uvec3 corners = scene.triangles[2];
+    scene.triangles[1] = {corners.y, corners.z, corners.x};  // the third once more, from another corner
+    add_instance(scene, mat4x3(1));
+    add_instance(scene, mat4x3(glm::translate(glm::mat4(1), vec3(0, 0, 1))));
+    add_instance(scene, mat4x3(1));
+    const auto lights = build_light_table(scene);
+    ASSERT_EQ(lights.size(), 4u);
+    for (uint32_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(lights[i].instance, i / 2);
+        EXPECT_EQ(lights[i].triangle, i % 2);
+    }
+}
+
 TEST(LightTable, IsEmptyWithoutLights) {
     Scene scene = make_lights({1, 1}, {vec3(0), vec3(0)});
     add_instance(scene, mat4x3(1));

@@ -1,0 +1,78 @@
+// What does not fit the device is refused with its size, before any time or memory is spent on it.
+#include <functional>
+
+#include "error.h"
+#include "film/film.h"
+#include "rendering/backend_choice.h"
+#include "support/gpu_test.h"
+#include "support/meshes.h"
+#include "support/render.h"
+#include "tracing/gpu_bvh.h"
+
+namespace lab {
+namespace {
+
+constexpr uint32_t mebibyte = 1 << 20;
+
+// The message with which the device refuses.
+std::string refusal(const std::function<void()>& allocate) {
+    try {
+        allocate();
+    } catch (const DeviceFailure& failure) {
+        return failure.what();
+    }
+    return "";
+}
+
+std::string in_mebibytes(size_t bytes) { return std::to_string((bytes + mebibyte - 1) / mebibyte) + " MiB"; }
+
+TEST(Memory, RefusesBuffersThatTheDeviceDoesNotAllow) {
+    const auto& limits = test_device().limits();
+    const auto usage = vk::BufferUsageFlagBits::eStorageBuffer;
+    const size_t limit = limits.maxStorageBufferRange;
+    const MemoryNeed fits{"positions", limit, usage}, too_large{"positions", limit + 1, usage};
+    if (limit < size_t{1} << 30) {
+        EXPECT_EQ(refusal([&] { require_memory(test_device(), {&fits, 1}); }), "");
+    }
+    const std::string text = refusal([&] { require_memory(test_device(), {&too_large, 1}); });
+    EXPECT_NE(text.find("positions, a buffer of " + in_mebibytes(limit + 1)), std::string::npos) << text;
+    EXPECT_NE(text.find(in_mebibytes(limit)), std::string::npos) << text;
+}
+
+// Each of the parts may be allocated, all together may not.
+TEST(Memory, RefusesMoreThanTheDeviceHas) {
+    const auto memory = test_device().physical().getMemoryProperties();
+    size_t largest = 0;
+    for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+        largest = std::max<size_t>(largest, memory.memoryHeaps[i].size);
+    std::vector<MemoryNeed> parts(8, {"textures", largest / 8});
+    EXPECT_EQ(refusal([&] { require_memory(test_device(), parts); }), "");
+    parts.push_back({"light probe", 8 * mebibyte});
+    const std::string text = refusal([&] { require_memory(test_device(), parts); });
+    EXPECT_NE(text.find("textures of " + in_mebibytes(largest / 8)), std::string::npos) << text;
+    EXPECT_NE(text.find("has " + in_mebibytes(largest)), std::string::npos) << text;
+}
+
+TEST(Memory, OfFilmsIsWhatTheyAllocate) {
+    const MemoryNeed need = Film::memory_need(48, 40);
+    EXPECT_EQ(need.bytes, 48u * 40u * sizeof(FilmPixel));
+    const std::string text = refusal([] { Film(test_device(), 65535, 65535); });
+    EXPECT_NE(text.find(in_mebibytes(size_t{65535} * 65535 * sizeof(FilmPixel))), std::string::npos) << text;
+}
+
+// A tree over so many instances would take minutes to build, and much of the host's memory.
+TEST(Memory, RefusesTheTreeBeforeItIsBuilt) {
+    Scene scene = lit_scene(bumpy_sphere(100));
+    const size_t texels = test_device().limits().maxTexelBufferElements;
+    const size_t fitting = 16 * texels / sizeof(BvhTriangle) / scene.triangles.size();
+    if (fitting * scene.triangles.size() > max_triangle_count) GTEST_SKIP() << "the device holds any tree";
+    for (size_t i = 0; i <= fitting; ++i) place(scene, mat4x3(1));
+    const GpuScene gpu_scene(test_device(), scene);
+    const std::string text =
+        refusal([&] { build_acceleration_structure(Backend::compute, test_device(), gpu_scene); });
+    // Once it is built, buffers are refused without a name of their own.
+    EXPECT_NE(text.find("triangles of all instances, a buffer of "), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace lab
