@@ -1,46 +1,115 @@
-"""The pages name files and code: what they name must exist."""
+"""The pages name files, pieces of code, tests and commands: all of them must exist, and the commands must run.
 
+What is checked: a link to a source file whose text is `code` quotes that file; a heading after # is one of the page;
+`Suite.Test` is a test; a line or a `piece` that starts with ./lab is a command.
+"""
+
+import os
 import re
+import shlex
 import subprocess
 import sys
+import tempfile
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+
+from program import BINARIES
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tools"))
 import make_numerics  # noqa: E402  (found by the line above)
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
+CHAPTERS = sorted(path.name for path in ROOT.glob("chapters/[0-9]*"))
+SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
+SIZE = ("--width", "--height")
+SMALL_RENDER = {"--width": "8", "--height": "8", "--samples": "1", "--backend": "compute", "--output": "picture.png"}
 
 
-def sources():
+def text_of(path):
+    return path.read_text(encoding="utf-8")
+
+
+def sources(folders, suffixes=SOURCE_SUFFIXES):
     """The text of all code, where identifiers of the pages are looked up."""
-    files = [
-        path
-        for folder in ("common", "shaders", "chapters", "tools", "tests")
-        for path in (ROOT / folder).rglob("*")
-        if path.suffix in {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
-    ]
-    return "\n".join(path.read_text(encoding="utf-8") for path in [*files, ROOT / "lab"])
+    files = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix in suffixes]
+    return "\n".join(map(text_of, files))
+
+
+def anchors(page):
+    """Of all headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", text_of(page), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def has_piece(text, piece):
+    """Whether a source quotes right: names and calls() anywhere, longer pieces in exactly one place."""
+    if re.fullmatch(r"\w+", piece):
+        return re.search(rf"\b{piece}\b", text) is not None
+    if re.fullmatch(r"\w+\(\)", piece):
+        return re.search(rf"\b{piece[:-2]}\(", text) is not None
+    return text.count(piece) == 1
+
+
+def commands(page):
+    """The words of all commands that a page shows, without `./lab` and comments."""
+    text = text_of(page)
+    lines = re.findall(r"`\./lab ([^`\n]+)`", text) + re.findall(r"^ {4,}\./lab (.+)$", text, re.MULTILINE)
+    return [tuple(shlex.split(line, comments=True)) for line in lines]
+
+
+def small_render(words):
+    """Chapter and arguments of `./lab run ...`, changed so that it takes no time."""
+    number, *arguments = words
+    # A reference has a size of its own.
+    small = {name: value for name, value in SMALL_RENDER.items() if name not in SIZE or "--reference" not in arguments}
+    kept, words = [], iter(arguments)
+    for word in words:
+        if word in small:
+            next(words)
+        else:
+            kept.append(str(ROOT / "assets/meshes/torus.obj") if word == "my_model.obj" else word)
+    chapter = next(name for name in CHAPTERS if int(name[:2]) == int(number))
+    return [BINARIES / chapter, *kept, *(word for option in small.items() for word in option)]
 
 
 class DocumentationTest(unittest.TestCase):
-    def test_links_lead_to_files(self):
+    def test_links_lead_to_files_and_headings(self):
         for page in PAGES:
-            for target in re.findall(r"\]\(([^)#]+)\)", page.read_text(encoding="utf-8")):
-                if "://" not in target:
-                    self.assertTrue((page.parent / target).exists(), f"{page.name}: no file {target}")
+            for target in re.findall(r"\]\(([^)\s]+)\)", text_of(page)):
+                if "://" in target:
+                    continue
+                name, _, anchor = target.partition("#")
+                path = page.parent / name if name else page
+                self.assertTrue(path.exists(), f"{page.relative_to(ROOT)}: no file {name}")
+                if anchor:
+                    self.assertIn(anchor, anchors(path), f"{page.relative_to(ROOT)}: {target}")
+
+    def test_quoted_code_is_in_the_file(self):
+        for page in PAGES:
+            for piece, target in re.findall(r"\[`([^`]+)`\]\(([^)#\s]+)\)", text_of(page)):
+                path = page.parent / target
+                if path.suffix in SOURCE_SUFFIXES and "://" not in target:
+                    quoted = has_piece(text_of(path), piece.replace("\\|", "|"))
+                    self.assertTrue(quoted, f"{page.relative_to(ROOT)}: {target} has no, or more than one, `{piece}`")
 
     def test_code_that_is_named_exists(self):
-        text = sources()
+        text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab")
         for page in PAGES:
-            for code in re.findall(r"`([^`\n]+)`", page.read_text(encoding="utf-8")):
+            for code in re.findall(r"`([^`\n]+)`", text_of(page)):
                 # Names with an underscore or a scope, and calls, are taken for identifiers of ours or of Vulkan's.
                 for name in re.findall(r"\b[A-Za-z]\w*(?:::\w+)+|\b[a-z]\w*_\w+\b|\b\w+(?=\()", code):
                     last = name.split("::")[-1]
                     if last.startswith("VK_") or last in KNOWN_ELSEWHERE:
                         continue
-                    self.assertIn(last, text, f"{page.name}: `{code}` names {last}, which no source has")
+                    self.assertTrue(last in text, f"{page.name}: `{code}` names {last}, which no source has")
+
+    def test_tests_that_are_named_exist(self):
+        known = re.findall(r"^TEST(?:_[PF])?\((\w+), (\w+)\)", sources(["tests"], {".cpp"}), re.MULTILINE)
+        for page in PAGES:
+            for suite, test in re.findall(r"`([A-Z]\w+)\.([A-Z]\w+)`", text_of(page)):
+                self.assertTrue((suite, test) in known, f"{page.relative_to(ROOT)}: no test {suite}.{test}")
 
     def test_results_are_what_the_records_say(self):
         for tool in ("make_results.py", "make_numerics.py"):
@@ -53,6 +122,32 @@ class DocumentationTest(unittest.TestCase):
         for case in cases:
             self.assertEqual(bool(case["tests"]), case["research"] not in TRAPS_THAT_CANNOT_OCCUR, case["case"])
         self.assertEqual(make_numerics.missing_tests(), [])
+
+
+class DocumentedCommandsTest(unittest.TestCase):
+    def test_commands_exist(self):
+        lab, options = text_of(ROOT / "lab"), text_of(ROOT / "lab") + sources(["tools"], {".py", ".cpp"})
+        for page in PAGES:
+            for name, *arguments in commands(page):
+                self.assertTrue(f"\ncommand_{name}()" in lab, f"{page.relative_to(ROOT)}: ./lab {name}")
+                for argument in arguments if name != "run" else []:
+                    if argument.startswith("--"):
+                        self.assertTrue(argument in options, f"{page.relative_to(ROOT)}: ./lab {name} {argument}")
+
+    def test_renders_run(self):
+        renders = {words[1:]: page for page in PAGES for words in commands(page) if words[0] == "run"}
+        complete = [words for words in renders if words and words[0].isdigit() and not {"...", "--help"} & set(words)]
+        self.assertGreater(len(complete), 20)
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "assets").symlink_to(ROOT / "assets")
+
+            def run(words):
+                return subprocess.run(small_render(words), cwd=folder, capture_output=True, text=True, timeout=60)
+
+            with ThreadPoolExecutor(os.cpu_count()) as pool:
+                for words, result in zip(complete, pool.map(run, complete)):
+                    command = f"{renders[words].relative_to(ROOT)}: ./lab run {' '.join(words)}"
+                    self.assertEqual(result.returncode, 0, f"{command}: {result.stderr}")
 
 
 # Section 3 of our survey of renderers; there is no sampling by solid angle (3.7) that could go wrong.
