@@ -1,17 +1,25 @@
 #!/usr/bin/env python3
-"""Writes docs/results.md from the records in docs/records. With --check it only tells whether that is up to date.
+"""Writes docs/results.md and the tables of other pages from the records in docs/records. With --check it only tells
+whether they are up to date.
+
+In a page, what stands between the lines <!-- table: NAME --> and <!-- end of table --> is replaced by that table.
 
 Records come from `build/bin/hardware_record --output docs/records/backends/DEVICE.json` and `./lab report --record
 docs/records/chapters/DEVICE.json`.
 """
 
 import json
+import os
+import re
 import sys
 from pathlib import Path
 
 from report_numbers import estimate, last_rows, mean_of, products, ratio
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs"
+PAGES = [*sorted(DOCS.glob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
+TABLE = re.compile(r"(<!-- table: ([\w ]+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 HEADER = """# Results
 
@@ -43,38 +51,81 @@ def quotient(now, base):
     return f"{value:.2g} ({low:.2g} – {high:.2g})"
 
 
-def group_of(case):
-    """Cases of a group stand in a table: scene and what is varied."""
+def kind_of(case):
+    """Cases of a kind and a scene stand in a table: those between which one thing is varied."""
     kind = case["case"].rstrip("0123456789 ")
-    return case["scene"], "splitting at every hit" if kind == "the same with roulette" else kind
+    if case["case"].startswith("light sampling"):
+        return "light sampling"
+    return "splitting at every hit" if kind == "the same with roulette" else kind
+
+
+def kind_tables(record):
+    """Of one device, the rows of each kind and scene: {(kind, scene): rows}; a row has the case's name first."""
+    tables, base = {}, None
+    for case in record["cases"]:
+        kind = kind_of(case)
+        rows = tables.setdefault((kind, case["scene"]), [])
+        options = f"--samples {case['samples']} {case['options']}".strip()
+        last = last_rows(case["runs"])
+        count = case["samples"] * case["width"] * case["height"]
+        by_rays, by_time = (estimate(products(case["runs"], key)) for key in ("rays", "device_seconds"))
+        rows.append([
+            case["case"],
+            f"`{options}`",
+            f"{mean_of(last, 'rays') / count:.3g}",
+            f"{1e6 * mean_of(last, 'device_seconds') / count:.3g}",
+            f"{case['samples'] * mean_of(last, 'rel_mse'):.3g}",
+            quotient(by_rays, base[0]) if rows else "1",
+            quotient(by_time, base[1]) if rows else "1",
+        ])
+        if len(rows) == 1 or kind == "chapter":
+            base = (by_rays, by_time)
+    return tables
+
+
+def markdown(header, alignment, rows):
+    return "".join("| " + " | ".join(row) + " |\n" for row in [header, alignment, *rows])
+
+
+COLUMNS = ["rays a sample", "µs a sample", "error of one sample", "error × rays", "error × time"]
+ALIGNMENT = ["---:", "---:", "---:", "---", "---"]
 
 
 def chapter_tables(record):
-    """The Markdown tables of one device: one for each group of cases."""
-    lines = [f"\n### {record['environment']['device']}, `{record['cases'][0]['backend']}`\n"]
-    group, base = None, None
-    for case in record["cases"]:
-        if group_of(case) != group:
-            group, base = group_of(case), None
-            scene = Path(case["scene_file"]).stem
-            lines += [
-                f"\nScene `{scene}`, {case['width']} x {case['height']} pixels:\n",
-                "| | options | rays a sample | µs a sample | error of one sample | error × rays | error × time |",
-                "|---|---|---:|---:|---:|---|---|",
-            ]
-        rows = last_rows(case["runs"])
-        count = case["samples"] * case["width"] * case["height"]
-        error = case["samples"] * mean_of(rows, "rel_mse")
-        by_rays, by_time = (estimate(products(case["runs"], key)) for key in ("rays", "device_seconds"))
-        options = f"--samples {case['samples']} {case['options']}".strip()
-        lines.append(
-            f"| {case['case']} | `{options}` | {mean_of(rows, 'rays') / count:.3g} "
-            f"| {1e6 * mean_of(rows, 'device_seconds') / count:.3g} | {error:.3g} "
-            f"| {quotient(by_rays, base[0]) if base else '1'} | {quotient(by_time, base[1]) if base else '1'} |"
-        )
-        if base is None or group[1] == "chapter":
-            base = (by_rays, by_time)
-    return "\n".join(lines) + "\n"
+    """The Markdown tables of one device for docs/results.md."""
+    text = f"\n### {record['environment']['device']}, `{record['cases'][0]['backend']}`\n\n"
+    sizes = {case["scene"]: case for case in record["cases"]}
+    for (_, scene), rows in kind_tables(record).items():
+        case = sizes[scene]
+        text += f"\nScene `{Path(case['scene_file']).stem}`, {case['width']} x {case['height']} pixels:\n\n"
+        text += markdown(["", "options", *COLUMNS], ["---", "---", *ALIGNMENT], rows)
+    return text
+
+
+def page_table(name, record):
+    """What a page shows of one device: a kind of cases, or of kind "chapter" one and that before it."""
+    kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
+    rows = []
+    for (other, scene), cases in kind_tables(record).items():
+        if other == kind:
+            chosen = [row for row in cases if not number or int(row[0].split()[1]) in (int(number) - 1, int(number))]
+            if number:  # the first row is the one to compare with
+                chosen[0] = chosen[0][:-2] + ["1", "1"]
+            rows += [[f"`{scene.rstrip('_0123456789')}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]
+    if not rows:
+        sys.exit(f"no record has the table '{name}'")
+    return markdown(["scene", "", *COLUMNS], ["---", "---", *ALIGNMENT], rows)
+
+
+def page_tables(name, page):
+    """The table of all devices, with what it says."""
+    results = os.path.relpath(DOCS / "results.md", page.parent)
+    text = ""
+    for record in load_records("chapters"):
+        environment = record["environment"]
+        text += f"{environment['device']}; below 1 means that it pays, see [results]({results}#chapters):\n\n"
+        text += page_table(name, record) + "\n"
+    return text
 
 
 def backend_table(record):
@@ -97,19 +148,28 @@ def backend_table(record):
     return "\n".join(lines) + "\n"
 
 
+def load_records(folder):
+    return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(DOCS.glob(f"records/{folder}/*.json"))]
+
+
 def section(header, folder, table):
     """A header and a table for each record of a folder."""
-    records = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(DOCS.glob(f"records/{folder}/*.json"))]
+    records = load_records(folder)
     return header + "".join(table(record) for record in records) if records else ""
 
 
 def main():
-    text = HEADER + section(CHAPTERS, "chapters", chapter_tables) + section(BACKENDS, "backends", backend_table)
-    results = DOCS / "results.md"
-    if "--check" not in sys.argv:
-        results.write_text(text, encoding="utf-8")
-    elif not results.exists() or results.read_text(encoding="utf-8") != text:
-        sys.exit("docs/results.md is not what tools/make_results.py writes: run it")
+    texts = {DOCS / "results.md": HEADER + section(CHAPTERS, "chapters", chapter_tables) +
+             section(BACKENDS, "backends", backend_table)}
+    for page in PAGES:
+        if page not in texts:
+            texts[page] = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3],
+                                    page.read_text(encoding="utf-8"))
+    for page, text in texts.items():
+        if "--check" not in sys.argv:
+            page.write_text(text, encoding="utf-8")
+        elif not page.exists() or page.read_text(encoding="utf-8") != text:
+            sys.exit(f"{page.relative_to(ROOT)} is not what tools/make_results.py writes: run it")
 
 
 if __name__ == "__main__":

@@ -83,6 +83,8 @@ def study_cases():
             add(scene, length, f"splitting factor {factor}", 4, "--splitting-factor", str(factor))
         for start in (1, 2, 3, 4):
             add(scene, length, f"roulette start {start}", 5, "--roulette-start", str(start))
+    for switch in ("on", "off"):
+        add("glass", 8, f"light sampling {switch}", 6, "--light-sampling", switch)
     # The blog's setting: two branches at every hit, light that is reflected up to five times. It has no reference:
     # there the error is estimated from two halves of the samples.
     blog = ("--split-every-hit", "--splitting-factor", "2", "--max-path-length", "5")

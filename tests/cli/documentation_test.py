@@ -21,7 +21,7 @@ sys.path.append(str(ROOT / "tools"))
 import make_numerics  # noqa: E402  (found by the line above)
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
-CHAPTERS = sorted(path.name for path in ROOT.glob("chapters/[0-9]*"))
+CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 SIZE = ("--width", "--height")
 SMALL_RENDER = {"--width": "8", "--height": "8", "--samples": "1", "--backend": "compute", "--output": "picture.png"}
@@ -70,8 +70,7 @@ def small_render(words):
             next(words)
         else:
             kept.append(str(ROOT / "assets/meshes/torus.obj") if word == "my_model.obj" else word)
-    chapter = next(name for name in CHAPTERS if int(name[:2]) == int(number))
-    return [BINARIES / chapter, *kept, *(word for option in small.items() for word in option)]
+    return [BINARIES / CHAPTERS[int(number)], *kept, *(word for option in small.items() for word in option)]
 
 
 class DocumentationTest(unittest.TestCase):
