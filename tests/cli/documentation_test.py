@@ -129,6 +129,8 @@ class DocumentedCommandsTest(unittest.TestCase):
         for page in PAGES:
             for name, *arguments in commands(page):
                 self.assertTrue(f"\ncommand_{name}()" in lab, f"{page.relative_to(ROOT)}: ./lab {name}")
+                if name == "sample" and arguments:
+                    self.assertIn(f'    "{arguments[0]}": Playground(', text_of(ROOT / "tools/sample.py"))
                 for argument in arguments if name != "run" else []:
                     if argument.startswith("--"):
                         self.assertTrue(argument in options, f"{page.relative_to(ROOT)}: ./lab {name} {argument}")

@@ -5,6 +5,7 @@ import os
 import re
 import resource
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -41,6 +42,14 @@ MERGE_ULPS = 2
 TIMEOUT_SECONDS = 120
 BAD_INPUT_SECONDS = 20
 BAD_INPUT_MEMORY = 8 << 30
+
+
+def python_with_plots():
+    """One with numpy and matplotlib: Debian's are for its own Python."""
+    for python in (sys.executable, "/usr/bin/python3"):
+        if subprocess.run([python, "-c", "import numpy, matplotlib"], capture_output=True).returncode == 0:
+            return python
+    raise RuntimeError("no Python has numpy and matplotlib: install python3-numpy and python3-matplotlib")
 
 
 class ProgramTest(unittest.TestCase):

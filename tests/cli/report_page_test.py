@@ -3,12 +3,10 @@
 import csv
 import json
 import re
-import subprocess
-import sys
 import time
 import unittest
 
-from program import BINARIES, PROJECT, ProgramTest
+from program import BINARIES, PROJECT, ProgramTest, python_with_plots
 
 TOOLS = PROJECT / "tools"
 REFERENCE = PROJECT / "assets/references/cornell_box_1.exr"
@@ -35,18 +33,10 @@ exec '{program}' "$@"
 SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
 
 
-def find_python():
-    """One with numpy and matplotlib: Debian's are for its own Python."""
-    for python in (sys.executable, "/usr/bin/python3"):
-        if subprocess.run([python, "-c", "import numpy, matplotlib"], capture_output=True).returncode == 0:
-            return python
-    raise RuntimeError("no Python has numpy and matplotlib: install python3-numpy and python3-matplotlib")
-
-
 class ReportCommandTest(ProgramTest):
     @classmethod
     def setUpClass(cls):
-        cls.python = find_python()
+        cls.python = python_with_plots()
 
     def start_report(self, *arguments, environment=None):
         return self.start("-B", "-c", COMMAND, TOOLS, self.folder, *arguments, program=self.python, environment=environment)

@@ -1,0 +1,74 @@
+"""./lab sample: points of the shaders' samplers, their density and what they integrate."""
+
+import re
+import shutil
+import sys
+import unittest
+
+from program import BINARIES, PROJECT, ProgramTest, python_with_plots
+
+sys.path.append(str(PROJECT / "tests/mistakes"))
+import mistake  # noqa: E402  (found by the line above)
+
+NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-point"]
+
+
+class SampleTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.python = python_with_plots()
+
+    def sample(self, *arguments, binaries=BINARIES):
+        command = ["-B", PROJECT / "tools/sample.py", *arguments]
+        return self.render(*command, program=self.python, environment={"LAB_BINARIES": str(binaries)})
+
+    def refuse(self, arguments, *words):
+        self.assert_refused(["-B", PROJECT / "tools/sample.py", *arguments], *words, program=self.python)
+
+    def test_names_are_listed(self):
+        self.assertEqual(re.findall(r"^  ([\w-]+)  ", self.sample(), re.MULTILINE), NAMES)
+
+    def test_every_sampler_follows_its_density_and_finds_its_integral(self):
+        for name in NAMES:
+            with self.subTest(name=name):
+                out = self.sample(name, "--output=picture.png", "--seed=2")
+                self.assertNotIn("too large", out)
+                # The last row of each integral: N, estimate, half of the 95 % interval, error.
+                rows = re.findall(r"^ +4096 +([\d.]+) +± ([\d.]+) +([+-][\d.]+)$", out, re.MULTILINE)
+                self.assertEqual(len(rows), out.count("∫"))
+                for _, half, error in rows:
+                    self.assertLess(abs(float(error)), 2.5 * float(half) + 1e-5)
+                self.assertEqual((self.folder / "picture.png").read_bytes()[:4], b"\x89PNG")
+
+    def test_cosine_sampling_is_exact_for_the_cosine(self):
+        out = self.sample("cosine", "--output=picture.png")
+        self.assertRegex(out, r"(?m)^ +4096 +3\.141593 +± 0\.000000 +[+-]0\.000000$")
+
+    def test_a_grid_is_worse_in_more_dimensions(self):
+        """Corners of a grid err by about 1/(2n) with n points along each axis, so that 2^12 of them err by 2^(-12/k) / 2."""
+        for dimensions in (2, 4):
+            out = self.sample("kd", f"--dimensions={dimensions}", "--output=picture.png")
+            error = float(re.findall(r"^ +4096 +([\d.]+) +[\d.]+$", out, re.MULTILINE)[0])
+            self.assertAlmostEqual(error * 2 ** (1 + 12 / dimensions), 1, delta=0.1)
+
+    def test_a_mistake_in_the_chapter_shows(self):
+        tree = self.folder / "tree"
+        mistake.make(mistake.load()["flat-hemisphere"], tree)
+        for name in ("tools/sample_points.comp", "bin/sample_points"):
+            (tree / name).parent.mkdir(exist_ok=True)
+        shutil.copy(PROJECT / "tools/sample_points.comp", tree / "tools")
+        shutil.copy(BINARIES / "sample_points", tree / "bin")
+        self.assertIn("too large for chance", self.sample("cosine", "--output=picture.png", binaries=tree / "bin"))
+
+    def test_other_words_are_refused(self):
+        self.refuse(["nothing"], "'nothing'", "cosine")
+        self.refuse(["cosine", "--count=0"], "--count", "0")
+        self.refuse(["cosine", "--count=1e9"], "--count")
+        self.refuse(["kd", "--dimensions=9"], "--dimensions")
+        self.refuse(["cosine", "--dimensions=2"], "kd")
+        self.refuse(["cosine", "--output=picture.bmp"], "png")
+        self.refuse(["cosine", "--output=/proc/picture.png"], "cannot be written")
+
+
+if __name__ == "__main__":
+    unittest.main()

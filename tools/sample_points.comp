@@ -1,0 +1,79 @@
+#version 460
+// One point of a sampler an invocation, as COLUMNS numbers. A define says which sampler.
+#ifdef LIGHT_POINTS
+#define FEATURE_LIGHT_SAMPLING
+#endif
+#include "../tests/shaders/estimator_stub.glsl"
+
+layout(scalar, binding = 0) writeonly buffer Results { float results[]; };
+layout(scalar, binding = 1) readonly buffer Inputs {
+    uvec2 key;             // of the random start states
+    uint max_path_length;  // 1; set_surface() says why it is no constant
+    LightTriangle light_triangles[1];
+};
+
+#if defined(DIRECTIONS) || defined(LIGHT_POINTS)
+#include "lights.glsl"
+bool is_occluded(Ray ray, float t_max) { return false; }
+
+// Notes where on the light the estimator chooses its point.
+vec2 light_barycentrics;
+LightPoint get_and_note_light_point(LightTriangle light, vec2 barycentrics) {
+    light_barycentrics = barycentrics;
+    return get_light_point(light, barycentrics);
+}
+#define get_light_point get_and_note_light_point
+#include "path_trace.glsl"
+
+// Runs the estimator at a white floor under a white sky.
+vec3 run_estimator(uvec2 seed) {
+    Material white = Material(vec3(1.0), -1, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0));
+    set_surface(vec3(0.0, 0.0, 1.0), white, max_path_length);
+    // What lights.glsl looks up: a triangle above the floor that faces it.
+    positions[3] = vec3(0.0, 0.0, 1.0);
+    positions[4] = vec3(0.0, 1.0, 1.0);
+    positions[5] = vec3(1.0, 0.0, 1.0);
+    materials[1] = white;
+    return path_trace(Ray(vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, -1.0)), seed);
+}
+#endif
+
+#if defined(DIRECTIONS)
+// A direction and its weight. One that the estimator has dropped has none.
+void write_point(uint i, uvec2 seed) {
+    float weight = run_estimator(seed).r;
+    vec3 direction = ray_count == 2u ? traced_direction : vec3(0.0);
+    for (int axis = 0; axis < 3; ++axis) results[COLUMNS * i + axis] = direction[axis];
+    results[COLUMNS * i + 3u] = weight;
+}
+#elif defined(LIGHT_POINTS)
+// The barycentric coordinates w_1 and w_2.
+void write_point(uint i, uvec2 seed) {
+    run_estimator(seed);
+    for (int axis = 0; axis < 2; ++axis) results[COLUMNS * i + axis] = light_barycentrics[axis];
+}
+#elif defined(BLOG_HASH)
+// The hash that the blog takes for random numbers, at hit points 0.02 apart on a floor, 256 in a row.
+float hash(vec3 p) { return fract(sin(dot(p, vec3(12.9898, 78.233, 45.164))) * 43758.5453123); }
+void write_point(uint i, uvec2 seed) {
+    vec3 position = 0.02 * vec3(i % 256u, 0.0, i / 256u);
+    results[COLUMNS * i] = hash(position);
+    results[COLUMNS * i + 1u] = hash(position + vec3(1.0, 0.0, 0.0));
+}
+#else
+// The first random numbers of a path.
+void write_point(uint i, uvec2 seed) {
+    for (uint column = 0u; column < COLUMNS; column += 2u) {
+        vec2 u = get_random_numbers(seed);
+        results[COLUMNS * i + column] = u.x;
+        if (column + 1u < COLUMNS) results[COLUMNS * i + column + 1u] = u.y;
+    }
+}
+#endif
+
+layout(local_size_x = 128) in;
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (COLUMNS * i < results.length()) write_point(i, random_start_state(i, 0u, key));
+}
