@@ -53,13 +53,14 @@ def parse():
 
 
 def chosen_cases(options):
-    chapters = [word for word in options.words if word.isdigit()]
-    for number in chapters:
-        if not 1 <= int(number) <= len(CHAPTERS):
-            raise UserError(f"there is no chapter {number}; ./lab run lists them")
+    programs, chapters = {int(name[:2]): name for name in CHAPTERS}, []
+    for word in filter(str.isdigit, options.words):
+        if int(word) not in programs:
+            raise UserError(f"there is no chapter {word}; ./lab run lists them")
+        chapters.append(programs[int(word)])
     scenes = find_references([word for word in options.words if not word.isdigit()])
     variants = working_variants() if options.peer else []
-    return report_cases(scenes, [CHAPTERS[int(number) - 1] for number in sorted(set(chapters))] or CHAPTERS, variants)
+    return report_cases(scenes, sorted(set(chapters)) or CHAPTERS, variants)
 
 
 def make_record(options, settings):

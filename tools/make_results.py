@@ -9,6 +9,7 @@ docs/records/chapters/DEVICE.json`.
 """
 
 import json
+import math
 import os
 import re
 import sys
@@ -117,8 +118,25 @@ def page_table(name, record):
     return markdown(["scene", "", *COLUMNS], ["---", "---", *ALIGNMENT], rows)
 
 
+def expected_table(width=512, height=512, samples=64):
+    """For each device, the seconds and the error of the Cornell box at the default resolution and number of samples."""
+    rows = []
+    for record in load_records("chapters"):
+        cases = [case for case in record["cases"] if kind_of(case) == "chapter" and case["scene"].startswith("cornell_box")]
+        cells = []
+        for case in cases:
+            last = last_rows(case["runs"])
+            seconds = mean_of(last, "device_seconds") / (case["samples"] * case["width"] * case["height"])
+            error = case["samples"] * mean_of(last, "rel_mse")
+            cells.append(f"{seconds * width * height * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
+        rows.append([record["environment"]["device"], *cells])
+    return markdown(["device", *(case["case"] for case in cases)], ["---"] * (len(cases) + 1), rows) + "\n"
+
+
 def page_tables(name, page):
     """The table of all devices, with what it says."""
+    if name == "expected":
+        return expected_table()
     results = os.path.relpath(DOCS / "results.md", page.parent)
     text = ""
     for record in load_records("chapters"):

@@ -66,10 +66,14 @@ def png_uri(pixels):
     return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
 
 
-def picture(radiance):
-    """As the chapters' PNG files: sRGB, what is brighter than white cut off."""
+def encode_srgb(radiance):
+    """As the chapters' PNG files: sRGB, what is brighter than white cut off. Numbers in [0, 1]."""
     linear = np.clip(radiance, 0, 1)
-    return png_uri(np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055))
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def picture(radiance):
+    return png_uri(encode_srgb(radiance))
 
 
 def difference_picture(radiance, reference):

@@ -2,7 +2,6 @@
 #include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
-    return lab::run_chapter(
-        {.name = "01_uniform_sampling", .title = "Uniform sampling: the path tracer of the slides"},
-        argument_count, arguments);
+    return lab::run_chapter({.name = LAB_CHAPTER, .title = "Uniform sampling: the path tracer of the slides"},
+                            argument_count, arguments);
 }

@@ -3,6 +3,6 @@
 
 int main(int argument_count, char** arguments) {
     return lab::run_chapter(
-        {.name = "02_cosine_sampling", .title = "Cosine sampling: directions where the light counts"},
-        argument_count, arguments);
+        {.name = LAB_CHAPTER, .title = "Cosine sampling: directions where the light counts"}, argument_count,
+        arguments);
 }

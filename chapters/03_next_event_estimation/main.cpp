@@ -3,7 +3,7 @@
 #include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
-    return lab::run_chapter({.name = "03_next_event_estimation",
+    return lab::run_chapter({.name = LAB_CHAPTER,
                              .title = "Next event estimation: a point on the lights at every hit",
                              .light_sampling = true},
                             argument_count, arguments);

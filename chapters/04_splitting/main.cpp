@@ -2,7 +2,7 @@
 #include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
-    return lab::run_chapter({.name = "04_splitting",
+    return lab::run_chapter({.name = LAB_CHAPTER,
                              .title = "Splitting: several branches from the first hit",
                              .light_sampling = true,
                              .split_every_hit = true,

@@ -2,7 +2,7 @@
 #include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
-    return lab::run_chapter({.name = "05_russian_roulette",
+    return lab::run_chapter({.name = LAB_CHAPTER,
                              .title = "Russian roulette: dim paths end early, without bias",
                              .light_sampling = true,
                              .split_every_hit = true,

@@ -2,7 +2,7 @@
 #include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
-    return lab::run_chapter({.name = "06_dielectrics",
+    return lab::run_chapter({.name = LAB_CHAPTER,
                              .title = "Dielectrics: reflection and refraction by glass",
                              .default_scene = "glass",
                              .light_sampling = true,

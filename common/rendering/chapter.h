@@ -20,7 +20,7 @@ struct ChapterOption {
 };
 
 struct Chapter {
-    std::string name;                           // of its folder, "01_uniform_sampling"
+    std::string name;                           // of its folder: LAB_CHAPTER
     std::string title;                          // shown by --help
     std::string default_scene = "cornell_box";  // in assets/scenes
     bool light_sampling = false;                // has --light-sampling

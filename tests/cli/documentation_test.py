@@ -22,6 +22,7 @@ import make_numerics  # noqa: E402  (found by the line above)
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
+CHAPTERS.setdefault(7, CHAPTERS[3])  # the pages call a student's copy of a chapter 7
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 SIZE = ("--width", "--height")
 SMALL_RENDER = {"--width": "8", "--height": "8", "--samples": "1", "--backend": "compute", "--output": "picture.png"}
@@ -94,7 +95,7 @@ class DocumentationTest(unittest.TestCase):
                     self.assertTrue(quoted, f"{page.relative_to(ROOT)}: {target} has no, or more than one, `{piece}`")
 
     def test_code_that_is_named_exists(self):
-        text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab")
+        text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab") + text_of(ROOT / "tools/fresh_machine")
         for page in PAGES:
             for code in re.findall(r"`([^`\n]+)`", text_of(page)):
                 # Names with an underscore or a scope, and calls, are taken for identifiers of ours or of Vulkan's.
