@@ -21,6 +21,7 @@ except ImportError as error:
     sys.exit(f"error: {error}: ./lab figures needs the Python packages numpy and matplotlib")
 
 PICTURES = ROOT / "docs/pictures"
+CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
 RAYS_PER_PIXEL = 400  # of the chapters' pictures
 SECONDS = 4  # of the renders that are compared at equal time
 
@@ -122,7 +123,7 @@ def parse():
 
 
 def make(names, output):
-    folder = ROOT / "output/figures" / digest_of_sources([])
+    folder = CACHE / digest_of_sources([])
     steps = [(name, render) for name in names for render in [*FIGURES[name][0], None]]
     started = time.monotonic()
     for done, (name, render) in enumerate(steps, 1):

@@ -1,0 +1,77 @@
+"""./lab figures: what it makes, that it goes on where it was, what it refuses."""
+
+import re
+import subprocess
+import unittest
+
+from program import PROJECT, ProgramTest, python_with_plots
+
+TOOLS = PROJECT / "tools"
+# The command with its renders in a folder of the test's own, and with one small figure of two renders.
+COMMAND = """import sys
+sys.path.insert(0, sys.argv.pop(1))
+from pathlib import Path
+import make_figures
+make_figures.CACHE = Path("renders").resolve()
+renders = [make_figures.Render(name, 1, "cornell_box", 16, ("--samples", 4, "--max-path-length", length))
+           for name, length in (("only_0", 0), ("only_1", 1))]
+make_figures.FIGURES["small"] = (renders, make_figures.figure_plots.path_lengths)
+make_figures.main()"""
+MOST_BYTES = 20 * 2**20
+
+
+class FiguresTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.python = python_with_plots()
+
+    def figures(self, *arguments):
+        """Standard error of a run; the pictures are in the folder `pictures`."""
+        command = ["-B", "-c", COMMAND, TOOLS, "--output=pictures", *arguments]
+        code, _, err = self.run_program(*command, program=self.python)
+        self.assertEqual(code, 0, err)
+        return err
+
+    def test_goes_on_after_what_is_there(self):
+        self.assertIn("100 %", self.figures("small"))
+        renders = {path.name: path for path in self.folder.glob("renders/*/small/*.exr")}
+        self.assertEqual(sorted(renders), ["only_0.exr", "only_1.exr"])
+        names = [path.name for path in (self.folder / "pictures").iterdir()]
+        self.assertEqual(sorted(names), ["path_length_at_most.jpg", "path_length_exactly.jpg"])
+        # As if the first run had been interrupted in the second render.
+        kept, lost = (renders[name] for name in sorted(renders))
+        lost.rename(lost.with_name("only_1.unfinished.exr"))
+        before = kept.stat().st_mtime_ns
+        self.figures("small")
+        self.assertTrue(lost.exists())
+        self.assertEqual(kept.stat().st_mtime_ns, before)
+
+    def test_points_need_no_renders(self):
+        self.figures("sampler_points", "random_numbers")
+        names = sorted(path.name for path in (self.folder / "pictures").iterdir())
+        self.assertEqual(names, ["random_numbers.png", "sampler_points.png"])
+
+    def test_makes_all_pictures_of_the_pages(self):
+        made = (TOOLS / "figure_plots.py").read_text(encoding="utf-8")
+        chapters = {path.name for path in (PROJECT / "chapters").iterdir()}
+        pictures = list((PROJECT / "docs/pictures").iterdir())
+        for picture in pictures:
+            self.assertTrue(picture.stem in made or picture.stem in chapters, picture.name)
+        self.assertLess(sum(picture.stat().st_size for picture in pictures), MOST_BYTES)
+        pages = "".join(page.read_text(encoding="utf-8") for page in [*PROJECT.glob("*.md"), *PROJECT.glob("*/*.md"), *PROJECT.glob("*/*/*.md")])
+        shown = set(re.findall(r"\]\([^)]*pictures/([^)]*)\)", pages))
+        self.assertEqual(sorted(picture.name for picture in pictures), sorted(shown), "made but not shown, or the other way")
+
+    def test_other_names_are_refused(self):
+        self.assert_refused(["-B", TOOLS / "make_figures.py", "nothing"], "'nothing'", "convergence", program=self.python)
+
+    def test_a_failing_render_is_told(self):
+        command = COMMAND.replace('"cornell_box"', '"no_such_scene"')
+        result = subprocess.run([self.python, "-B", "-c", command, TOOLS, "--output=pictures", "small"], cwd=self.folder,
+                                capture_output=True, text=True)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"\Aerror: only_0: [^\n]*no_such_scene[^\n]*\n\Z")
+
+
+if __name__ == "__main__":
+    unittest.main()
