@@ -130,7 +130,14 @@ def expected_table(width=512, height=512, samples=64):
             error = case["samples"] * mean_of(last, "rel_mse")
             cells.append(f"{seconds * width * height * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
         rows.append([record["environment"]["device"], *cells])
-    return markdown(["device", *(case["case"] for case in cases)], ["---"] * (len(cases) + 1), rows) + "\n"
+    text = markdown(["device", *(case["case"] for case in cases)], ["---"] * (len(cases) + 1), rows) + "\n"
+    for record in load_records("backends"):
+        rates = record["scenes"][0]["backends"]
+        best = max(rates, key=lambda name: rates[name]["paths_per_second"])
+        paths = rates[best]["paths_per_second"]
+        text += (f"{record['device']}, `{best}`: {paths / 1e6:.0f} million paths a second in a Cornell box, so "
+                 f"{1e3 * width * height * samples / paths:.2g} ms for as many samples by next event estimation with Russian roulette.\n\n")
+    return text
 
 
 def page_tables(name, page):

@@ -1,0 +1,37 @@
+"""./lab install and the container: what they would install. Whether it works, tools/fresh_machine tries."""
+
+import re
+import subprocess
+import unittest
+
+from program import PROJECT
+
+LAB = (PROJECT / "lab").read_text(encoding="utf-8")
+
+
+def lab(*arguments):
+    return subprocess.run([PROJECT / "lab", *arguments], capture_output=True, text=True)
+
+
+class InstallTest(unittest.TestCase):
+    def test_lists_every_package_that_the_commands_ask_for(self):
+        """All lists at the top of lab but that of ./lab fuzz."""
+        lists = dict(re.findall(r"^packages_to_(\w+)='\n(.*?)'$", LAB, re.MULTILINE | re.DOTALL))
+        del lists["fuzz"]
+        self.assertEqual(set(lists), {"run", "test", "report"})
+        names = [name for text in lists.values() for line in text.splitlines() for name in line.split("|")[0].split()]
+        self.assertEqual(lab("install", "--list").stdout.split(), names)
+
+    def test_other_words_are_refused(self):
+        result = lab("install", "everything")
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertRegex(result.stderr, r"\Alab: 'everything' [^\n]*\n\Z")
+
+    def test_the_container_uses_commands_that_exist(self):
+        steps = re.findall(r"^RUN \./lab (\w+)", (PROJECT / "Containerfile").read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertEqual(steps, ["install"])
+        self.assertIn("\ncommand_install()", LAB)
+
+
+if __name__ == "__main__":
+    unittest.main()
