@@ -7,8 +7,9 @@ namespace {
 
 // The tree, unless the device cannot hold it: building it in vain would take minutes.
 Bvh build(const Device& device, const Scene& scene) {
-    const MemoryNeed need = GpuBvh::memory_need(instanced_triangle_count(scene));
-    require_memory(device, {&need, 1});
+    const uint64_t count = instanced_triangle_count(scene);
+    const MemoryNeed need = GpuBvh::memory_need(count);
+    if (count <= max_triangle_count) require_memory(device, {&need, 1});  // else world_triangles() refuses it
     return build_bvh(world_triangles(scene));
 }
 
