@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 try:
+    from command_line import Parser, add_device_options, at_least
     from measurement import CHAPTERS, Measurement, report_cases, study_cases, working_variants
     from reference_image import ROOT, find_references
     from report_page import write_report
@@ -19,29 +20,10 @@ except ImportError as error:
     sys.exit(f"error: {error}: ./lab report needs the Python packages numpy and matplotlib")
 
 
-class Parser(argparse.ArgumentParser):
-    """Reports mistakes in one line, as the chapters do."""
-
-    def error(self, message):
-        sys.exit(f"error: {message}; ./lab report --help lists the options")
-
-
-def at_least(least, kind):
-    def convert(text):
-        value = kind(text)
-        if not least <= value < 1e9:
-            raise ValueError
-        return value
-
-    convert.__name__ = f"number from {least:g}"
-    return convert
-
-
 def parse():
     parser = Parser(prog="./lab report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("words", nargs="*", metavar="SCENE or CHAPTER", help="default: all")
-    parser.add_argument("--backend", choices=["auto", "pipeline", "query", "compute"], default="auto", help="default: auto")
-    parser.add_argument("--device", help="number or part of the name of the device")
+    add_device_options(parser)
     parser.add_argument("--seconds", type=at_least(0.01, float), default=4.0,
                         help="of rendering for each chapter and scene, all repetitions together; default: 4")
     parser.add_argument("--repetitions", type=at_least(1, int), default=5, help="runs with seeds 1, 2, …; default: 5")

@@ -4,8 +4,8 @@ whether they are up to date.
 
 In a page, what stands between the lines <!-- table: NAME --> and <!-- end of table --> is replaced by that table.
 
-Records come from `build/bin/hardware_record --output docs/records/backends/DEVICE.json` and `./lab report --record
-docs/records/chapters/DEVICE.json`.
+Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
+docs/records/backends/DEVICE.json` and `build/bin/cost_record --output docs/records/cost/DEVICE.json`.
 """
 
 import json
@@ -15,6 +15,7 @@ import re
 import sys
 from pathlib import Path
 
+from cost_tables import FEATURES, GROWTH, feature_table, growth_tables
 from report_numbers import estimate, last_rows, mean_of, products, ratio
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -185,7 +186,8 @@ def section(header, folder, table):
 
 def main():
     texts = {DOCS / "results.md": HEADER + section(CHAPTERS, "chapters", chapter_tables) +
-             section(BACKENDS, "backends", backend_table)}
+             section(BACKENDS, "backends", backend_table) +
+             section(FEATURES, "cost", feature_table) + section(GROWTH, "cost", growth_tables)}
     for page in PAGES:
         if page not in texts:
             texts[page] = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3],

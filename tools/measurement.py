@@ -145,10 +145,14 @@ def run_case(case, settings, arguments):
     return report | {"command_seconds": seconds}
 
 
+def devices_text(program):
+    """The devices of this machine, as a chapter lists them."""
+    return subprocess.run([BINARIES / program, "--list-devices"], capture_output=True, text=True).stdout
+
+
 def driver_of(program, device):
-    """Kind of the device, Vulkan's version and the driver, as the chapters list them."""
-    listed = subprocess.run([BINARIES / program, "--list-devices"], capture_output=True, text=True).stdout
-    found = re.search(rf"^ *\d+ +{re.escape(device)} \((.*)\)$", listed, re.MULTILINE)
+    """Kind of the device, Vulkan's version and the driver."""
+    found = re.search(rf"^ *\d+ +{re.escape(device)} \((.*)\)$", devices_text(program), re.MULTILINE)
     return found[1] if found else "unknown"
 
 

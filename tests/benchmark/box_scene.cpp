@@ -1,4 +1,4 @@
-#include "box_scene.h"
+#include "benchmark/box_scene.h"
 
 #include <array>
 #include <numbers>
@@ -48,7 +48,7 @@ void add_bumpy_sphere(Scene& scene, uint32_t segments, uint32_t rings) {
 
 }  // namespace
 
-Scene make_box_scene(uint32_t segments, uint32_t rings) {
+Scene make_box_scene(uint32_t segments, uint32_t rings, uint32_t light_cells) {
     Scene scene;
     scene.file = "benchmark";
     Material white_paint{};
@@ -63,10 +63,13 @@ Scene make_box_scene(uint32_t segments, uint32_t rings) {
     add_quad(scene, {vec3(-1, -1, -1), {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}}, white);
     add_quad(scene, {vec3(-1, -1, 1), {-1, -1, -1}, {-1, 1, -1}, {-1, 1, 1}}, red);
     add_quad(scene, {vec3(1, -1, -1), {1, -1, 1}, {1, 1, 1}, {1, 1, -1}}, green);
-    add_quad(scene,
-             {LIGHT_CORNER, LIGHT_CORNER + LIGHT_EDGE_1, LIGHT_CORNER + LIGHT_EDGE_1 + LIGHT_EDGE_2,
-              LIGHT_CORNER + LIGHT_EDGE_2},
-             light);
+    const auto point = [&](uint32_t i, uint32_t j) {
+        const vec2 position = vec2(i, j) / static_cast<float>(light_cells);
+        return LIGHT_CORNER + position.x * LIGHT_EDGE_1 + position.y * LIGHT_EDGE_2;
+    };
+    for (uint32_t i = 0; i < light_cells; ++i)
+        for (uint32_t j = 0; j < light_cells; ++j)
+            add_quad(scene, {point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}, light);
     add_bumpy_sphere(scene, segments, rings);
     scene.meshes.push_back({"benchmark", 0, static_cast<uint32_t>(scene.triangles.size())});
     scene.instances.push_back({.object_to_world = mat4x3(1), .normal_to_world = mat3(1)});

@@ -4,7 +4,7 @@
 
 namespace lab {
 
-// Twelve triangles for the box and its light, 2 segments (rings - 1) for the sphere.
-Scene make_box_scene(uint32_t segments, uint32_t rings);
+// Ten triangles for the box, 2 light_cells² for its light, 2 segments (rings - 1) for the sphere.
+Scene make_box_scene(uint32_t segments, uint32_t rings, uint32_t light_cells = 1);
 
 }  // namespace lab

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "box_scene.h"
+#include "benchmark/box_scene.h"
 #include "error.h"
 #include "rendering/renderer.h"
 #ifdef EMBREE_VERSION

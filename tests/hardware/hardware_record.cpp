@@ -2,11 +2,11 @@
 // of the benchmark's estimator on three sizes of scene, and the bare rate at which each backend traces the
 // very same rays.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "benchmark/box_scene.h"
+#include "benchmark/rates.h"
 #include "hardware/recorded_ray.h"
 #include "image/file.h"
 #include "rendering/renderer.h"
@@ -24,31 +24,6 @@ std::vector<std::string> path_defines(Backend backend, size_t path_count) {
                                   : "gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex";
     return {"PATH_INDEX (dispatch.first_block * 64u + " + index + ")",
             "PATH_COUNT " + std::to_string(path_count) + "u"};
-}
-
-struct Rates {
-    double paths_per_second;
-    double rays_per_second;
-};
-
-// Busy time of the device, the median of five stretches of about half a second each.
-Rates measure(Renderer& renderer, double pixels) {
-    constexpr int stretches = 5;
-    constexpr double seconds = 0.5;
-    std::vector<Rates> rates;
-    for (int i = 0; i <= stretches; ++i) {
-        const double start = renderer.device_seconds(), first_samples = renderer.samples();
-        const uint64_t first_rays = renderer.rays();
-        while (renderer.device_seconds() < start + seconds) renderer.advance(UINT32_MAX);
-        const double time = renderer.device_seconds() - start;
-        // The first stretch warms up.
-        if (i > 0)
-            rates.push_back({pixels * (renderer.samples() - first_samples) / time,
-                             static_cast<double>(renderer.rays() - first_rays) / time});
-    }
-    std::sort(rates.begin(), rates.end(),
-              [](const Rates& a, const Rates& b) { return a.rays_per_second < b.rays_per_second; });
-    return rates[stretches / 2];
 }
 
 json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
@@ -76,15 +51,18 @@ json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
     for (const Backend backend : all_backends) {
         if (!device.description().supports(backend)) continue;
         const auto structure = build_acceleration_structure(backend, device, gpu_scene);
-        const double pixels = static_cast<double>(size) * size;
         Renderer path_tracer(device, *structure, {tests / "benchmark/path_trace.glsl"}, parameters);
-        const Rates rates = measure(path_tracer, pixels);
         const Estimator replay{tests / "hardware/replay_rays.glsl", path_defines(backend, path_count)};
         Renderer replayer(device, *structure, replay, parameters, {&ray_binding, 1});
-        const Rates bare = measure(replayer, pixels);
+        const auto runs = measure_in_turns({&path_tracer, &replayer}, 0.5);
+        const Rates rates = median(runs[0]), bare = median(runs[1]);
+        json ratios = json::array();
+        for (size_t i = 0; i < runs[0].size(); ++i)
+            ratios.push_back(runs[0][i].rays_per_second / runs[1][i].rays_per_second);
         result["backends"][to_string(backend)] = {{"paths_per_second", rates.paths_per_second},
                                                   {"rays_per_second", rates.rays_per_second},
                                                   {"bare_rays_per_second", bare.rays_per_second},
+                                                  {"ratios_of_runs", ratios},
                                                   {"structure_bytes", structure->bytes()},
                                                   {"structure_seconds", structure->build_seconds()}};
         std::printf(

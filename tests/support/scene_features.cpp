@@ -30,7 +30,7 @@ void add_light_probe(Scene& scene) {
     scene.light_probe = Image{width, height, std::vector<float>(3 * width * height, 0.5f)};
 }
 
-void add_area_light(Scene& scene) { scene.materials[scene.triangle_materials.front()].emission = vec3(1); }
+void add_area_light(Scene& scene) { scene.materials.back().emission = vec3(1); }
 
 void add_phong_lobe(Scene& scene) {
     for (Material& material : scene.materials) {

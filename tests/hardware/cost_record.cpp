@@ -1,0 +1,192 @@
+// Measures what each feature of a scene costs and how cost grows with triangles, lights and so on, and writes
+// a JSON record for docs/results.md.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "benchmark/box_scene.h"
+#include "benchmark/rates.h"
+#include "hardware/growth.h"
+#include "image/file.h"
+#include "support/render.h"
+#include "support/scene_features.h"
+#include "support/shader_code.h"
+
+namespace lab {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct Options {
+    std::string device;
+    uint32_t size = 256;
+    double seconds = 0.2;
+    uint64_t largest = 4'194'304;
+    std::filesystem::path output = "cost.json";
+};
+
+// A scene that is ready to be rendered.
+class Subject {
+  public:
+    Subject(const Device& device, Backend backend, const std::string& chapter, const GrowthStep& step)
+        : scene_(step.scene), gpu_scene_(device, scene_), estimator_(chapter_estimator(chapter)) {
+        const auto start = std::chrono::steady_clock::now();
+        structure_ = build_acceleration_structure(backend, device, gpu_scene_);
+        structure_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        RenderParameters parameters = default_parameters(scene_, step.image_size);
+        parameters.max_path_length = step.max_path_length;
+        renderer_.emplace(device, *structure_, estimator_, parameters);
+        film_bytes_ = Film::memory_need(step.image_size.x, step.image_size.y).bytes;
+    }
+
+    Renderer& renderer() { return *renderer_; }
+
+    json describe(const std::vector<Rates>& runs) const {
+        json result{{"rays_per_path", median(runs).rays_per_second / median(runs).paths_per_second},
+                    {"structure_bytes", structure_->bytes()},
+                    {"structure_seconds", structure_->build_seconds()},
+                    {"structure_seconds_with_transfers", structure_seconds_},
+                    {"film_bytes", film_bytes_},
+                    {"bytes", json::object()},
+                    {"paths_per_second", json::array()}};
+        for (const auto& allocation : gpu_scene_.allocations())
+            result["bytes"][allocation.name] = allocation.bytes;
+        for (const Rates& run : runs) result["paths_per_second"].push_back(run.paths_per_second);
+        return result;
+    }
+
+    size_t instructions() const {
+        ShaderCode code;
+        for (const auto& shader : structure_->shaders(estimator_)) code.merge(read_code(shader));
+        return code.instructions;
+    }
+
+  private:
+    Scene scene_;
+    GpuScene gpu_scene_;
+    Estimator estimator_;
+    std::unique_ptr<AccelerationStructure> structure_;
+    double structure_seconds_;
+    size_t film_bytes_;
+    std::optional<Renderer> renderer_;
+};
+
+using Subjects = std::vector<std::unique_ptr<Subject>>;
+
+std::vector<std::vector<Rates>> measure(const Subjects& subjects, const Options& options) {
+    std::vector<Renderer*> renderers;
+    for (const auto& subject : subjects) renderers.push_back(&subject->renderer());
+    return measure_in_turns(renderers, options.seconds);
+}
+
+void print(const std::string& what, Backend backend, const std::vector<Rates>& runs,
+           const std::vector<Rates>& base) {
+    std::printf("%-48s %-8s %9.4g million paths/s, time x %.3f\n", what.c_str(), to_string(backend).c_str(),
+                1e-6 * median(runs).paths_per_second,
+                median(base).paths_per_second / median(runs).paths_per_second);
+    std::fflush(stdout);
+}
+
+// Each feature alone, and nothing, in the box without light. Chapter 6 knows all of them.
+json measure_features(const Device& device, Backend backend, const Options& options) {
+    const std::string chapter = "06_dielectrics";
+    Scene bare = make_box_scene(200, 100);
+    for (Material& material : bare.materials) material.emission = vec3(0);
+    std::vector<std::string> names{"none"};
+    Subjects subjects;
+    const auto add = [&](const Scene& scene) {
+        const GrowthStep step{scene, uvec2(options.size), scene.defaults.max_path_length};
+        subjects.push_back(std::make_unique<Subject>(device, backend, chapter, step));
+    };
+    add(bare);
+    for (const SceneFeature& feature : all_scene_features()) {
+        Scene scene = bare;
+        feature.add(scene);
+        names.push_back(feature.name);
+        add(scene);
+    }
+    const auto rates = measure(subjects, options);
+    json rows = json::array();
+    for (size_t i = 0; i < subjects.size(); ++i) {
+        json row{{"feature", names[i]}, {"instructions", subjects[i]->instructions()}};
+        row.update(subjects[i]->describe(rates[i]));
+        rows.push_back(row);
+        print(names[i], backend, rates[i], rates[0]);
+    }
+    return {{"backend", to_string(backend)}, {"chapter", chapter}, {"rows", rows}};
+}
+
+json measure_growth(const Device& device, Backend backend, const Growth& growth, const Options& options) {
+    std::vector<uint64_t> counts;
+    Subjects subjects;
+    for (const uint64_t count : growth.counts)
+        if (counts.empty() || count <= options.largest) {
+            counts.push_back(count);
+            subjects.push_back(
+                std::make_unique<Subject>(device, backend, growth.chapter, growth.make(count)));
+        }
+    const auto rates = measure(subjects, options);
+    json rows = json::array();
+    for (size_t i = 0; i < subjects.size(); ++i) {
+        json row{{"count", counts[i]}};
+        row.update(subjects[i]->describe(rates[i]));
+        rows.push_back(row);
+        print(std::to_string(counts[i]) + " " + growth.quantity, backend, rates[i], rates[0]);
+    }
+    return {{"backend", to_string(backend)},
+            {"quantity", growth.quantity},
+            {"chapter", growth.chapter},
+            {"rows", rows}};
+}
+
+void run(const Options& options) {
+    const Device device({options.device});
+    const auto& description = device.description();
+    std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size,
+                options.size);
+    json record{{"device", description.name},
+                {"driver", description.driver},
+                {"api_version", description.api_version},
+                {"cpu_threads", std::thread::hardware_concurrency()},
+                {"size", options.size},
+                {"seconds_per_run", options.seconds},
+                {"features", json::array()},
+                {"growth", json::array()}};
+    for (const Backend backend : all_backends)
+        if (description.supports(backend))
+            record["features"].push_back(measure_features(device, backend, options));
+    for (const Growth& growth : all_growths(options.size))
+        for (const Backend backend : all_backends)
+            if (description.supports(backend))
+                record["growth"].push_back(measure_growth(device, backend, growth, options));
+    write_file(options.output, record.dump(1) + "\n");
+}
+
+}  // namespace
+}  // namespace lab
+
+int main(int argument_count, char** arguments) {
+    CLI::App app("Measures what features cost and how cost grows, and writes a JSON record");
+    lab::Options options;
+    app.add_option("--device", options.device, "Number or part of the name of a device");
+    app.add_option("--size", options.size, "Width and height of the image")
+        ->check(CLI::Range(8, 4096))
+        ->capture_default_str();
+    app.add_option("--seconds", options.seconds,
+                   "Device time of a run: of each there are five, and one that warms up")
+        ->check(CLI::Range(0.001, 100.0))
+        ->capture_default_str();
+    app.add_option("--largest", options.largest, "Largest number of triangles, pixels and so on")
+        ->capture_default_str();
+    app.add_option("--output", options.output, "JSON file to write")->capture_default_str();
+    CLI11_PARSE(app, argument_count, arguments);
+    try {
+        lab::run(options);
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "error: %s\n", error.what());
+        return 1;
+    }
+}
