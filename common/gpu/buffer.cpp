@@ -63,7 +63,8 @@ void require_memory(const Device& device, std::span<const MemoryNeed> needs) {
     }
     const auto heaps = device.physical().getMemoryProperties();
     for (uint32_t i = 0; i < heaps.memoryHeapCount; ++i)
-        memory = std::max<size_t>(memory, heaps.memoryHeaps[i].size);
+        if (heaps.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
+            memory = std::max<size_t>(memory, heaps.memoryHeaps[i].size);
     if (sum <= memory) return;
     const auto largest = std::ranges::max_element(needs, {}, &MemoryNeed::bytes);
     throw DeviceFailure("too large for the device: " + largest->what + " of " + mebibytes(largest->bytes) +

@@ -97,7 +97,7 @@ json measure_features(const Device& device, Backend backend, const Options& opti
     std::vector<std::string> names{"none"};
     Subjects subjects;
     const auto add = [&](const Scene& scene) {
-        const GrowthStep step{scene, uvec2(options.size), scene.defaults.max_path_length};
+        const GrowthStep step{0, scene, uvec2(options.size), scene.defaults.max_path_length};
         subjects.push_back(std::make_unique<Subject>(device, backend, chapter, step));
     };
     add(bare);
@@ -123,9 +123,9 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
     Subjects subjects;
     for (const uint64_t count : growth.counts)
         if (counts.empty() || count <= options.largest) {
-            counts.push_back(count);
-            subjects.push_back(
-                std::make_unique<Subject>(device, backend, growth.chapter, growth.make(count)));
+            const GrowthStep step = growth.make(count);
+            counts.push_back(step.count);
+            subjects.push_back(std::make_unique<Subject>(device, backend, growth.chapter, step));
         }
     const auto rates = measure(subjects, options);
     json rows = json::array();

@@ -11,16 +11,10 @@ namespace {
 
 constexpr uint32_t path_length = 8;
 
-// The box with a sphere of about so many triangles.
+// The box with a sphere, of about so many triangles in all.
 Scene box_of(uint64_t triangles) {
     const auto rings = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 4)));
     return make_box_scene(2 * rings, rings);
-}
-
-// The box with a lamp of so many triangles, about twice a square number.
-Scene lamp_of(uint64_t triangles) {
-    const auto cells = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 2)));
-    return make_box_scene(5, 3, cells);
 }
 
 // Spheres of 1012 triangles in a cube, which keeps its size.
@@ -41,20 +35,28 @@ Scene spheres(uint64_t count) {
 
 std::vector<Growth> all_growths(uint32_t size) {
     const std::string roulette = "05_russian_roulette";
-    const auto of = [size](Scene (*make)(uint64_t)) {
-        return [=](uint64_t count) { return GrowthStep{make(count), uvec2(size), path_length}; };
+    const auto triangles = [size](uint64_t count) {
+        const Scene scene = box_of(count);
+        return GrowthStep{scene.triangles.size(), scene, uvec2(size), path_length};
     };
-    const auto bounces = [size](uint64_t count) {
-        return GrowthStep{empty_room(), uvec2(size), static_cast<uint32_t>(count)};
+    const auto lights = [size](uint64_t count) {
+        const auto cells = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(count) / 2)));
+        return GrowthStep{2 * uint64_t{cells} * cells, make_box_scene(5, 3, cells), uvec2(size), path_length};
+    };
+    const auto instances = [size](uint64_t count) {
+        return GrowthStep{count, spheres(count), uvec2(size), path_length};
     };
     const auto pixels = [](uint64_t count) {
         const auto side = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(count))));
-        return GrowthStep{box_of(40'000), uvec2(side), path_length};
+        return GrowthStep{count, box_of(40'000), uvec2(side), path_length};
+    };
+    const auto bounces = [size](uint64_t count) {
+        return GrowthStep{count, empty_room(), uvec2(size), static_cast<uint32_t>(count)};
     };
     const std::vector<uint64_t> lengths{1, 2, 4, 8, 16, 32, 64};
-    return {{"triangles", roulette, {100, 1'000, 10'000, 100'000, 1'000'000, 4'000'000}, of(box_of)},
-            {"emissive triangles", roulette, {2, 10, 100, 1'000, 10'000, 100'000}, of(lamp_of)},
-            {"instances", roulette, {1, 8, 64, 512, 4'096}, of(spheres)},
+    return {{"triangles", roulette, {100, 1'000, 10'000, 100'000, 1'000'000, 4'000'000}, triangles},
+            {"emissive triangles", roulette, {2, 10, 100, 1'000, 10'000, 100'000}, lights},
+            {"instances", roulette, {1, 8, 64, 512, 4'096}, instances},
             {"pixels", roulette, {1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22}, pixels},
             {"maximal path length without roulette", "03_next_event_estimation", lengths, bounces},
             {"maximal path length with roulette", roulette, lengths, bounces}};

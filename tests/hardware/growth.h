@@ -9,6 +9,7 @@
 namespace lab {
 
 struct GrowthStep {
+    uint64_t count;  // of the quantity, about what was asked for
     Scene scene;
     uvec2 image_size;
     uint32_t max_path_length;
