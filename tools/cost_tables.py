@@ -67,12 +67,22 @@ def feature_table(record):
     rows = []
     for i, row in enumerate(measured[0]["rows"]):
         bare = measured[0]["rows"][0]["bytes"] if i else {}
-        buffers = [f"{name} {bytes_text(count)}" for name, count in row["bytes"].items() if bare.get(name) != count]
-        cells = [row["feature"], ", ".join(buffers)]
+        cells = [row["feature"], buffers_text({name: count for name, count in row["bytes"].items() if bare.get(name) != count})]
         for backend in measured:
             cells += [str(backend["rows"][i]["instructions"]), time_text(backend["rows"][i], backend["rows"][0])]
         rows.append(cells)
-    return device_heading(record) + "\n" + table(head, rows, left=2)
+    return device_heading(record) + "\n" + table(head, rows, left=2) + "\n" + scene_table(record)
+
+
+def buffers_text(sizes):
+    return ", ".join(f"{name} {bytes_text(count)}" for name, count in sizes.items())
+
+
+def scene_table(record):
+    """The memory of the shipped scenes."""
+    rows = [[f"`{scene['scene']}`", buffers_text(scene["bytes"]), f"{scene['triangles']:,}", f"{scene['instances']:,}"]
+            for scene in record["scenes"]]
+    return "The shipped scenes:\n\n" + table(["scene", "buffers", "triangles", "instances"], rows, left=2)
 
 
 def memory_of(row):
@@ -82,7 +92,10 @@ def memory_of(row):
 def exponent(rows, quantity):
     """Slope of the logarithms, for what is never 0."""
     counts = [math.log(row["count"]) for row in rows]
-    return f"{linear_regression(counts, [math.log(quantity(row)) for row in rows]).slope:.2f}" if len(rows) > 1 else "-"
+    if len(rows) < 2:
+        return "-"
+    slope = linear_regression(counts, [math.log(quantity(row)) for row in rows]).slope
+    return f"{round(slope, 2) + 0.0:.2f}"  # never -0.00
 
 
 def growth_table(measured):

@@ -134,6 +134,7 @@ def measure(options):
             record["environment"]["system"] = system_text()
             measurement.save()
             print(markdown(record))
+            print(f"All runs are in {options.output}", file=sys.stderr)
 
 
 def main():

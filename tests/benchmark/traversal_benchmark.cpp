@@ -79,8 +79,11 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
     const glm::dvec3 twin_mean = twin.mean();
     print("twin", twin_runs, twin_mean);
     const glm::dvec3 difference = glm::dvec3(mean[0], mean[1], mean[2]) / twin_mean - 1.0;
-    std::printf("  device / twin %.3f; relative difference of the means %.1e %.1e %.1e\n",
-                median(device_runs) / median(twin_runs), difference.r, difference.g, difference.b);
+    Runs ratios;
+    for (size_t i = 0; i < device_runs.size(); ++i) ratios.push_back(device_runs[i] / twin_runs[i]);
+    const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+    std::printf("  device / twin %.3f (%.3f to %.3f); relative difference of the means %.1e %.1e %.1e\n",
+                median(ratios), *least, *most, difference.r, difference.g, difference.b);
 #endif
 }
 

@@ -10,6 +10,7 @@
 #include "benchmark/rates.h"
 #include "hardware/growth.h"
 #include "image/file.h"
+#include "support/meshes.h"
 #include "support/render.h"
 #include "support/scene_features.h"
 #include "support/shader_code.h"
@@ -26,6 +27,26 @@ struct Options {
     uint64_t largest = 4'194'304;
     std::filesystem::path output = "cost.json";
 };
+
+// Of each array and image of a scene on the device.
+json bytes_of(const GpuScene& scene) {
+    json bytes = json::object();
+    for (const auto& allocation : scene.allocations()) bytes[allocation.name] = allocation.bytes;
+    return bytes;
+}
+
+// What the shipped scenes take.
+json describe_shipped_scenes(const Device& device) {
+    json scenes = json::array();
+    for (const auto& file : sorted_entries(project_folder() / "assets/scenes")) {
+        const Scene scene = load_scene(file);
+        scenes.push_back({{"scene", file.stem()},
+                          {"triangles", scene.triangles.size()},
+                          {"instances", scene.instances.size()},
+                          {"bytes", bytes_of(GpuScene(device, scene))}});
+    }
+    return scenes;
+}
 
 // A scene that is ready to be rendered.
 class Subject {
@@ -49,10 +70,8 @@ class Subject {
                     {"structure_seconds", structure_->build_seconds()},
                     {"structure_seconds_with_transfers", structure_seconds_},
                     {"film_bytes", film_bytes_},
-                    {"bytes", json::object()},
+                    {"bytes", bytes_of(gpu_scene_)},
                     {"paths_per_second", json::array()}};
-        for (const auto& allocation : gpu_scene_.allocations())
-            result["bytes"][allocation.name] = allocation.bytes;
         for (const Rates& run : runs) result["paths_per_second"].push_back(run.paths_per_second);
         return result;
     }
@@ -152,6 +171,7 @@ void run(const Options& options) {
                 {"cpu_threads", std::thread::hardware_concurrency()},
                 {"size", options.size},
                 {"seconds_per_run", options.seconds},
+                {"scenes", describe_shipped_scenes(device)},
                 {"features", json::array()},
                 {"growth", json::array()}};
     for (const Backend backend : all_backends)
