@@ -13,7 +13,6 @@ scalar_rgb runs everywhere, but is slow where vertex normals are interpolated or
 Python here; llvm_ad_rgb compiles it for the CPU (LLVM 19 or newer, DRJIT_LIBLLVM_PATH names its library) and
 cuda_ad_rgb for NVIDIA's GPUs.
 """
-import argparse
 import math
 import signal
 import sys
@@ -22,6 +21,7 @@ from pathlib import Path
 
 try:
     import numpy as np
+    from command_line import Parser
     from exr_file import read_attributes, write_exr
     from progress import show_progress
     from scene_reader import UserError, read_scene
@@ -331,13 +331,6 @@ def make_reference(scene_file, output, width, height, max_path_length, samples, 
     print(f"{output}: {done * samples_per_batch} samples a pixel, the image's mean is known to {100 * error:.2g} %")
     if done < batches:
         raise KeyboardInterrupt
-
-
-class Parser(argparse.ArgumentParser):
-    """Reports mistakes in one line, as the chapters do."""
-
-    def error(self, message):
-        sys.exit(f"error: {message}; ./lab reference --help lists the options")
 
 
 def positive(text):
