@@ -1,4 +1,6 @@
 """The figures of the pages, made of images, reports and points of samplers."""
+import textwrap
+
 import matplotlib
 
 matplotlib.use("agg")
@@ -110,7 +112,7 @@ def sampler_points(folder, images, reports):
     for axis, name in zip(axes, names):
         playground = sample.PLAYGROUNDS[name]
         scatter(axis, playground.kind, sample.draw(playground, 2000, 0, playground.dimensions))
-        axis.set_title(playground.title.replace(", ", "\n"), fontsize=9)
+        axis.set_title(textwrap.fill(playground.title, 36), fontsize=9)
     save(figure, folder / "sampler_points.png")
 
 

@@ -3,6 +3,7 @@
 docs/numerics.md and the chapter pages from the records. Ctrl-C keeps what is there; the same command goes on.
 """
 import argparse
+import hashlib
 import json
 import os
 import signal
@@ -14,16 +15,18 @@ from pathlib import Path
 
 try:
     import figure_plots
+    from make_results import kind_of, load_records
     from measurement import BINARIES, CHAPTERS, digest_of_sources, last_line
     from progress import show_progress
     from reference_image import ROOT, read_rgb
+    from report_numbers import last_rows, mean_of
 except ImportError as error:
     sys.exit(f"error: {error}: ./lab figures needs the Python packages numpy and matplotlib")
 
 PICTURES = ROOT / "docs/pictures"
 CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
 RAYS_PER_PIXEL = 400  # of the chapters' pictures
-SECONDS = 4  # of the renders that are compared at equal time
+SECONDS = 2  # of the renders that are compared at equal time
 
 
 @dataclass
@@ -37,15 +40,19 @@ class Render:
     options: tuple
     rays_per_pixel: int = 0  # instead of --samples, if not 0
 
-    def run(self, folder, samples=None):
-        """The report of the chapter, and its image in the file of that name."""
-        file = folder / f"{self.name}.exr"
+    def file(self, folder):
+        """Of the image. Its name changes with whatever is rendered."""
+        return folder / f"{self.name}_{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}.exr"
+
+    def run(self, folder):
+        """Makes the image, unless it is there; returns the report of the chapter."""
+        file = self.file(folder)
         report = file.with_suffix(".json")
         if not file.exists():
             options = self.options
             if self.rays_per_pixel:
-                options = (*options, "--samples", samples or self.samples_for_rays(folder))
-            unfinished = folder / f"{self.name}.unfinished.exr"
+                options = (*options, "--samples", self.samples_for_rays(folder))
+            unfinished = file.with_suffix(".unfinished.exr")
             command = [BINARIES / CHAPTERS[self.chapter - 1], self.scene, "--width", self.size, "--height", self.size, *options,
                        "--backend", "compute", "--quiet", "--output", unfinished, "--report", report]
             process = subprocess.run(list(map(str, command)), cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True,
@@ -73,15 +80,21 @@ def renders_of_path_lengths():
 
 
 def renders_of_effects():
-    torus = "assets/meshes/torus.obj"
-    return [Render("occlusion", 2, torus, 256, ("--samples", 128, "--background", "1,1,1", "--max-path-length", 1)),
+    return [Render("occlusion", 2, "instances", 256, ("--samples", 256, "--background", "1,1,1", "--max-path-length", 1)),
             Render("shadow", 3, "heart_light", 256, ("--samples", 256, "--max-path-length", 1)),
             Render("reflection", 3, "glossy", 256, ("--samples", 256, "--specular"))]
 
 
 def renders_at_equal_time():
-    return [Render(f"{scene}_{number}", number, scene, 160, ("--samples", 2**31, "--time-limit", SECONDS, "--max-path-length", 6))
-            for scene in ("cornell_box", "heart_light") for number in range(1, 6)]
+    """As many samples as take the same time by the first record of docs/records/chapters, whatever else runs now."""
+    renders, size = [], 160
+    for case in load_records("chapters")[0]["cases"]:
+        if kind_of(case) == "chapter" and not case["scene"].startswith("torus"):
+            seconds = mean_of(last_rows(case["runs"]), "device_seconds") / (case["samples"] * case["width"] * case["height"])
+            scene, number = Path(case["scene_file"]).stem, int(case["program"][:2])
+            options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
+            renders.append(Render(f"{scene}_{number}", number, scene, size, options))
+    return renders
 
 
 def renders_of_convergence():
@@ -132,7 +145,7 @@ def make(names, output):
             (folder / name).mkdir(parents=True, exist_ok=True)
             render.run(folder / name)
         else:
-            images = {render.name: read_rgb(folder / name / f"{render.name}.exr") for render in renders}
+            images = {render.name: read_rgb(render.file(folder / name)) for render in renders}
             compose(output, images, {render.name: render.run(folder / name) for render in renders})
         show_progress(f"{name}{f', {render.name}' if render else ''}", done, len(steps), started)
 

@@ -53,6 +53,9 @@ def quotient(now, base):
     return f"{value:.2g} ({low:.2g} – {high:.2g})"
 
 
+KINDS = ("chapter", "splitting factor", "roulette start", "light sampling", "splitting at every hit")
+
+
 def kind_of(case):
     """Cases of a kind and a scene stand in a table: those between which one thing is varied."""
     kind = case["case"].rstrip("0123456789 ")
@@ -105,18 +108,19 @@ def chapter_tables(record):
 
 
 def page_table(name, record):
-    """What a page shows of one device: a kind of cases, or of kind "chapter" one and that before it."""
+    """What a page shows of one device: a kind of cases, or of kind "chapter" one and that before it. Empty if the record
+    has none of them."""
     kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
+    if kind not in KINDS:
+        sys.exit(f"there is no table '{name}': {', '.join(KINDS)}")
     rows = []
     for (other, scene), cases in kind_tables(record).items():
         if other == kind:
             chosen = [row for row in cases if not number or int(row[0].split()[1]) in (int(number) - 1, int(number))]
-            if number:  # the first row is the one to compare with
+            if number and chosen:  # the first row is the one to compare with
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
             rows += [[f"`{scene.rstrip('_0123456789')}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]
-    if not rows:
-        sys.exit(f"no record has the table '{name}'")
-    return markdown(["scene", "", *COLUMNS], ["---", "---", *ALIGNMENT], rows)
+    return markdown(["scene", "", *COLUMNS], ["---", "---", *ALIGNMENT], rows) if rows else ""
 
 
 def expected_table(width=512, height=512, samples=64):
@@ -148,10 +152,10 @@ def page_tables(name, page):
     results = os.path.relpath(DOCS / "results.md", page.parent)
     text = ""
     for record in load_records("chapters"):
-        environment = record["environment"]
-        text += f"{environment['device']}; below 1 means that it pays, see [results]({results}#chapters):\n\n"
-        text += page_table(name, record) + "\n"
-    return text
+        if table := page_table(name, record):
+            text += f"{record['environment']['device']}; below 1 means that it pays, see [results]({results}#chapters):\n\n"
+            text += table + "\n"
+    return text or "Not measured yet: `./lab report --record FILE.json` does it.\n\n"
 
 
 def backend_table(record):
