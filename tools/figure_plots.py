@@ -112,7 +112,7 @@ def sampler_points(folder, images, reports):
     for axis, name in zip(axes, names):
         playground = sample.PLAYGROUNDS[name]
         scatter(axis, playground.kind, sample.draw(playground, 2000, 0, playground.dimensions))
-        axis.set_title(textwrap.fill(playground.title, 36), fontsize=9)
+        axis.set_title(textwrap.fill(playground.title, 46), fontsize=9)
     save(figure, folder / "sampler_points.png")
 
 

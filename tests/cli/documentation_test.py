@@ -111,6 +111,20 @@ class DocumentationTest(unittest.TestCase):
             for suite, test in re.findall(r"`([A-Z]\w+)\.([A-Z]\w+)`", text_of(page)):
                 self.assertTrue((suite, test) in known, f"{page.relative_to(ROOT)}: no test {suite}.{test}")
 
+    def test_chapter_pages_are_complete(self):
+        suites = set(re.findall(r"^TEST(?:_[PF])?\((\w+),", sources(["tests"], {".cpp"}), re.MULTILINE))
+        for number in range(1, 7):  # the course; what others add may have pages of another kind
+            chapter = CHAPTERS[number]
+            text = text_of(ROOT / "chapters" / chapter / "README.md")
+            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n## What it costs", "\n## What can go wrong", "\n## Exercises"):
+                self.assertIn(part, text, chapter)
+            kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
+            self.assertGreaterEqual(len(kinds), 5, chapter)
+            self.assertLessEqual({"Fill in", "Derive", "Measure", "Find the bug", "Explore", "Challenge"}, set(kinds), chapter)
+            self.assertEqual((kinds[0], kinds[-1]), ("Fill in", "Challenge"), chapter)
+            named = [name for line in re.findall(r"Done\s+when all tests named ([^.]*)", text) for name in re.findall(r"`(\w+)`", line)]
+            self.assertTrue(named and set(named) <= suites, f"{chapter}: tests {named}")
+
     def test_results_are_what_the_records_say(self):
         for tool in ("make_results.py", "make_numerics.py"):
             subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--check"], check=True)
