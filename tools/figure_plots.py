@@ -1,6 +1,4 @@
 """The figures of the pages, made of images, reports and points of samplers."""
-import textwrap
-
 import matplotlib
 
 matplotlib.use("agg")
@@ -112,7 +110,7 @@ def sampler_points(folder, images, reports):
     for axis, name in zip(axes, names):
         playground = sample.PLAYGROUNDS[name]
         scatter(axis, playground.kind, sample.draw(playground, 2000, 0, playground.dimensions))
-        axis.set_title(textwrap.fill(playground.title, 46), fontsize=9)
+        axis.set_title(playground.title.replace(", density", "\ndensity"), fontsize=9)
     save(figure, folder / "sampler_points.png")
 
 
