@@ -36,6 +36,8 @@ SHARED_CONSTANT BINDING_BVH_TRIANGLES = 13u;
 SHARED_CONSTANT BINDING_ACCELERATION_STRUCTURE = 14u;
 SHARED_CONSTANT BINDING_GEOMETRY_FIRST_TRIANGLES = 15u;
 SHARED_CONSTANT BINDING_LIGHT_TRIANGLES = 16u;
+SHARED_CONSTANT BINDING_PICTURE = 17u;
+SHARED_CONSTANT BINDING_LARGEST_VALUE = 18u;
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -113,6 +115,15 @@ struct FilmPixel {
     vec3 compensation;
     uint sample_count;   // includes the invalid ones
     uint invalid_count;  // samples that were infinite or not a number; they add 0
+};
+
+// How shaders/display.comp turns radiance into what a screen shows.
+struct DisplayParameters {
+    uvec2 film_size;          // pixels in use
+    uvec2 image_size;         // of the picture; the film is scaled to it
+    float scale;              // of radiance
+    uint is_srgb;             // 1: encode with the sRGB curve
+    uint divides_by_largest;  // 1: divide by the largest value, 2: only look for it
 };
 
 #ifdef __cplusplus

@@ -3,27 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 
 #include "app/progress.h"
 #include "error.h"
-#include "image/file.h"
+#include "rendering/interrupt.h"
+#include "rendering/numbers_text.h"
+#include "rendering/outputs.h"
 
 namespace lab {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-// The first Ctrl-C asks for an orderly end, the second one ends the program.
-void install_interrupt_handler() {
-    const auto handler = [](int signal) {
-        interrupted = 1;
-        std::signal(signal, SIG_DFL);
-    };
-    std::signal(SIGINT, handler);
-    std::signal(SIGTERM, handler);
-}
 
 class HeadlessRender {
   public:
@@ -81,12 +70,12 @@ class HeadlessRender {
     void sample() {
         Progress progress(job_.samples, renderer_.samples(), options_.quiet);
         uint32_t done = snapshot_.min_samples();
-        while (done < job_.samples && !interrupted) {
+        while (done < job_.samples && !is_interrupted()) {
             uint32_t next = 1;
             while (next <= done) next = next > job_.samples / 2 ? job_.samples : 2 * next;
             next = std::min(next, job_.samples);
             bool more = true;
-            while (more && !interrupted && !is_time_over()) {
+            while (more && !is_interrupted() && !is_time_over()) {
                 more = renderer_.advance(next);
                 progress.update(renderer_.samples(), renderer_.rays());
                 save_if_due();
@@ -143,58 +132,26 @@ class HeadlessRender {
             row.error = compare(film.mean(), *reference_);
         } else if (const uint32_t before = last_row_film_.min_samples();
                    before > 0 && samples == 2 * before) {
-            row.error = estimate_error(last_row_film_.mean(), second_half(last_row_film_, film).mean());
+            row.error = estimate_error(last_row_film_.mean(), samples_after(last_row_film_, film).mean());
         }
         rows_.push_back(row);
         last_row_film_ = film;
         snapshot_ = film;
     }
 
-    // The samples that came after `first` did.
-    static FilmImage second_half(const FilmImage& first, const FilmImage& whole) {
-        FilmImage rest = whole;
-        for (size_t i = 0; i < rest.pixels.size(); ++i) {
-            FilmPixel& pixel = rest.pixels[i];
-            const FilmPixel& before = first.pixels[i];
-            for (int channel = 0; channel < 3; ++channel) {
-                pixel.sum[channel] -= before.sum[channel];
-                pixel.compensation[channel] -= before.compensation[channel];
-            }
-            pixel.sample_count -= before.sample_count;
-        }
-        return rest;
-    }
-
     void write_outputs() {
         FilmRecord record = job_.record;
         record.seconds = seconds();
         record.rays += renderer_.rays();
-        const DisplayTransform transform =
-            options_.view ? options_.view->display : DisplayTransform::exposure;
-        const auto write = [&](const std::filesystem::path& file) {
-            const std::string ending = lower_case_extension(file);
-            if (ending == ".exr")
-                write_film(file, snapshot_, record);
-            else if (ending == ".hdr")
-                write_hdr(file, snapshot_.mean());
-            else if (ending == ".png")
-                write_png(file, to_display(snapshot_, transform, options_.exposure));
-            else if (ending == ".jpg")
-                write_jpg(file, to_display(snapshot_, transform, options_.exposure));
-            else
-                write_report(file, snapshot_, record, job_.acceleration,
-                             reference_ ? ErrorSource::reference : ErrorSource::halves, rows_);
-        };
         auto files = options_.outputs;
         if (!options_.report.empty()) files.push_back(options_.report);
-        // One file that cannot be written must not keep the others from being written.
-        std::optional<UserError> failure;
-        for (const auto& file : files) try {
-                write(file);
-            } catch (const UserError& error) {
-                if (!failure) failure = error;
-            }
-        if (failure) throw *failure;
+        write_each(files, [&](const std::filesystem::path& file) {
+            if (file == options_.report)
+                write_report(file, snapshot_, record, job_.acceleration,
+                             reference_ ? ErrorSource::reference : ErrorSource::halves, rows_);
+            else
+                write_picture(file, snapshot_, record, options_);
+        });
     }
 
     double paths() const {

@@ -27,9 +27,4 @@ class Progress {
     Clock::time_point last_ = start_;
 };
 
-// "1.23 M" for 1234567, "950" for 950: three digits and a prefix.
-std::string short_number(double number);
-// "12.3 s", "4 min 05 s", "1 h 02 min".
-std::string duration_text(double seconds);
-
 }  // namespace lab

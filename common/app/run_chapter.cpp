@@ -1,15 +1,16 @@
 #include "app/run_chapter.h"
 
-#include <algorithm>
+#include <unistd.h>
+
 #include <cstdio>
 #include <iostream>
 
 #include "app/headless.h"
 #include "error.h"
-#include "gpu/cache.h"
 #include "image/file.h"
 #include "rendering/backend_choice.h"
 #include "rendering/settings.h"
+#include "viewer/viewer.h"
 
 namespace lab {
 namespace {
@@ -36,13 +37,6 @@ void check_outputs(const Options& options) {
     if (!options.report.empty()) check_writable(options.report, {".json", ".csv"});
 }
 
-// Refuses a scene that the chapter's estimator would render wrongly.
-void check_scene(const Chapter& chapter, const Scene& scene) {
-    if (features_of(scene).dielectrics && !chapter.dielectrics)
-        throw UserError(scene.file.string() + ": has a dielectric (d < 1), which " + chapter.name +
-                        " cannot render: use chapter 6, ./lab run 6");
-}
-
 // Throws UserError if the validation layers complained about the run.
 void check_validation(const Device& device, const Options& options) {
     if (!options.validation) return;
@@ -54,69 +48,58 @@ void check_validation(const Device& device, const Options& options) {
     if (!options.quiet) std::cout << "validation     no complaints\n";
 }
 
-// The earlier run that this one continues. Throws UserError if it rendered something else.
-FilmFile load_earlier_run(const RenderJob& job, const Options& options) {
-    FilmFile earlier = read_film(options.resume);
-    if (options.first_sample != 0 && options.first_sample != earlier.record.first_sample)
-        throw UserError("--first-sample " + std::to_string(options.first_sample) + " does not fit " +
-                        options.resume.string() + ", which starts at sample " +
-                        std::to_string(earlier.record.first_sample) + ": leave it out");
-    const FilmFile wanted{{job.parameters.image_size.x, job.parameters.image_size.y, {}}, job.record};
-    require_same_render(earlier, wanted, options.resume.string(), "this command");
-    return earlier;
+// Room for the picture and the controls, on a screen of common size.
+uvec2 window_size(uvec2 image_size) {
+    return glm::clamp(image_size + uvec2(360, 0), uvec2(900, 700), uvec2(1600, 1000));
 }
 
-// Everything about the render that needs no device, so that mistakes show before one is asked for.
-RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& estimator,
-                   const Options& options) {
-    RenderJob job{.options = &options,
-                  .parameters = make_parameters(chapter, scene, options),
-                  .samples = options.samples.value_or(scene.defaults.samples),
-                  .record = {},
-                  .resumed = std::nullopt,
-                  .acceleration = {}};
-    job.record = {.chapter = chapter.name,
-                  .scene = scene.file.filename().string(),
-                  .scene_hash = hexadecimal(scene.hash),
-                  .estimator_hash = hexadecimal(hash_text(read_file(estimator.file, 1 << 24))),
-                  .settings = settings_text(chapter, job.parameters, scene, options),
-                  .backend = "",
-                  .device = "",
-                  .seed = options.seed,
-                  .first_sample = options.first_sample};
-    if (!options.resume.empty()) {
-        job.resumed = load_earlier_run(job, options);
-        job.record.first_sample = job.resumed->record.first_sample;
-        job.parameters.first_sample = job.record.first_sample;
-        job.record.seconds = job.resumed->record.seconds;
-        job.record.rays = job.resumed->record.rays;
+// The window that is wanted, or null. One that nobody has asked for opens for people only, since scripts read
+// what is printed, and only where it can.
+std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& options, uvec2 image_size) {
+    const bool is_forced = options.window == WindowChoice::always;
+    if (options.window == WindowChoice::never) return nullptr;
+    if (!is_forced &&
+        (!Window::has_display() || !isatty(STDOUT_FILENO) || needs_no_window(options) || options.quiet))
+        return nullptr;
+    try {
+        return std::make_unique<Window>(chapter.name, window_size(image_size));
+    } catch (const UserError& error) {
+        if (is_forced) throw;
+        std::cerr << "note: " << error.what() << "\n";
+        return nullptr;
     }
-    if (uint64_t{job.record.first_sample} + job.samples > uint64_t{1} << 32)
-        throw UserError(
-            "--first-sample + --samples is above 2^32: there are no more random numbers than that");
-    return job;
 }
 
-// Views trace camera rays only, so that their speed says nothing about renders, and one looks into our own
-// hierarchy.
-Backend choose_backend(const Options& options, const Device& device, const GpuScene& scene,
-                       const Estimator& estimator, const RenderParameters& parameters) {
-    if (!options.view) return choose_backend(options.backend, device, scene, estimator, parameters);
-    if (options.view->name == "bvh-steps" && options.backend != "auto" && options.backend != "compute")
-        throw UserError("--view bvh-steps looks into our own hierarchy: leave --backend out or use compute");
-    return choose_backend(options.backend == "auto" ? "compute" : options.backend, device, scene, estimator,
-                          parameters);
+// Opens the window's chapter if the device can show pictures in it; false if it cannot.
+bool run_in_window(Window& window, const Chapter& chapter, const Options& options, Scene& scene) {
+    const Device device({.choice = options.device,
+                         .validation = options.validation,
+                         .instance_extensions = window.instance_extensions(),
+                         .make_surface = [&](VkInstance instance) { return window.make_surface(instance); }});
+    if (*device.surface()) {
+        run_viewer(window, device, chapter, options, std::move(scene));
+        check_validation(device, options);
+        return true;
+    }
+    const std::string why = "device '" + device.description().name + "' cannot show pictures in a window";
+    if (options.window == WindowChoice::always)
+        throw DeviceError(why + ": choose another with --device or use --headless");
+    std::cerr << "note: " << why << ": rendering without one\n";
+    return false;
 }
 
 void run(const Chapter& chapter, const Options& options) {
     check_outputs(options);
     Scene scene = load_scene(options.scene, options.specular);
     check_scene(chapter, scene);
-    override_scene(scene, options);
     for (const auto& warning : scene.warnings)
         if (!options.quiet) std::cerr << "note: " << warning << "\n";
     const Estimator estimator = make_estimator(chapter, options);
     RenderJob job = make_job(chapter, scene, estimator, options);
+
+    if (const auto window = open_window(chapter, options, job.parameters.image_size);
+        window && run_in_window(*window, chapter, options, scene))
+        return;
 
     const Device device({options.device, options.validation});
     const MemoryNeed film = Film::memory_need(job.parameters.image_size.x, job.parameters.image_size.y);

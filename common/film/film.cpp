@@ -50,6 +50,20 @@ MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
             vk::BufferUsageFlagBits::eStorageBuffer};
 }
 
+FilmImage samples_after(const FilmImage& first, const FilmImage& whole) {
+    FilmImage rest = whole;
+    for (size_t i = 0; i < rest.pixels.size(); ++i) {
+        FilmPixel& pixel = rest.pixels[i];
+        const FilmPixel& before = first.pixels[i];
+        for (int channel = 0; channel < 3; ++channel) {
+            pixel.sum[channel] -= before.sum[channel];
+            pixel.compensation[channel] -= before.compensation[channel];
+        }
+        pixel.sample_count -= before.sample_count;
+    }
+    return rest;
+}
+
 Film::Film(const Device& device, uint32_t width, uint32_t height)
     : width_(width),
       height_(height),
@@ -57,8 +71,12 @@ Film::Film(const Device& device, uint32_t width, uint32_t height)
     clear();
 }
 
-void Film::clear() {
-    write({width_, height_, std::vector<FilmPixel>(size_t{width_} * height_, FilmPixel{})});
+void Film::clear() { buffer_.clear(); }
+
+void Film::resize(uint32_t width, uint32_t height) {
+    width_ = width;
+    height_ = height;
+    clear();
 }
 
 FilmImage Film::read() const {

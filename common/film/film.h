@@ -22,6 +22,9 @@ struct FilmImage {
     std::array<double, 3> mean_radiance() const;  // of the whole image
 };
 
+// The samples of `whole` that came after those of `first`, an earlier state of the same film.
+FilmImage samples_after(const FilmImage& first, const FilmImage& whole);
+
 class Film {
   public:
     // What a film of this size allocates.
@@ -35,6 +38,8 @@ class Film {
     Binding binding() const { return storage_binding(BINDING_FILM, buffer_); }
 
     void clear();  // to no samples
+    // To a size of at most as many pixels as the first one, without samples.
+    void resize(uint32_t width, uint32_t height);
     FilmImage read() const;
     void write(const FilmImage& image);  // of the same size
 

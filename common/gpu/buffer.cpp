@@ -116,6 +116,15 @@ void Buffer::read(void* data, size_t size) const {
     }
 }
 
+void Buffer::clear() {
+    if (mapped_)
+        std::memset(mapped_, 0, size_);
+    else
+        device_->submit([&](const vk::raii::CommandBuffer& commands) {
+            commands.fillBuffer(handle(), 0, VK_WHOLE_SIZE, 0);
+        });
+}
+
 SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
                            std::span<const std::byte> pixels) {
     if (std::max(width, height) > device.limits().maxImageDimension2D)
@@ -133,28 +142,72 @@ SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height
 
     Buffer staging(device, pixels.size(), {}, Buffer::Location::host);
     staging.write(pixels.data(), pixels.size());
-    const vk::ImageSubresourceRange whole(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1);
     device.submit([&](const vk::raii::CommandBuffer& commands) {
         const auto move_to = [&](vk::ImageLayout from, vk::ImageLayout to, vk::AccessFlags before,
                                  vk::AccessFlags after, vk::PipelineStageFlags source,
                                  vk::PipelineStageFlags destination) {
             commands.pipelineBarrier(source, destination, {}, {}, {},
                                      vk::ImageMemoryBarrier(before, after, from, to, VK_QUEUE_FAMILY_IGNORED,
-                                                            VK_QUEUE_FAMILY_IGNORED, *image_, whole));
+                                                            VK_QUEUE_FAMILY_IGNORED, *image_, whole_image));
         };
         move_to(vk::ImageLayout::eUndefined, vk::ImageLayout::eTransferDstOptimal, {},
                 vk::AccessFlagBits::eTransferWrite, vk::PipelineStageFlagBits::eTopOfPipe,
                 vk::PipelineStageFlagBits::eTransfer);
-        commands.copyBufferToImage(
-            staging.handle(), *image_, vk::ImageLayout::eTransferDstOptimal,
-            vk::BufferImageCopy(0, 0, 0, {vk::ImageAspectFlagBits::eColor, 0, 0, 1}, {}, {width, height, 1}));
+        commands.copyBufferToImage(staging.handle(), *image_, vk::ImageLayout::eTransferDstOptimal,
+                                   vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {width, height, 1}));
         move_to(vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::eShaderReadOnlyOptimal,
                 vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eShaderRead,
                 vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eComputeShader);
     });
     view_ = {device.handle(),
-             vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole)};
+             vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole_image)};
     sampler_ = {device.handle(), vk::SamplerCreateInfo()};
+}
+
+StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height)
+    : device_(&device), width_(width), height_(height) {
+    constexpr vk::Format format = vk::Format::eR8G8B8A8Unorm;
+    image_ = {device.handle(),
+              vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
+                                  vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                                  vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc |
+                                      vk::ImageUsageFlagBits::eTransferDst)};
+    memory_ =
+        allocate(device, image_.getMemoryRequirements(), {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
+    image_.bindMemory(*memory_, 0);
+    view_ = {device.handle(),
+             vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole_image)};
+    device.submit([&](const vk::raii::CommandBuffer& commands) {
+        constexpr auto target = vk::ImageLayout::eTransferDstOptimal;
+        change_layout(commands, *image_, vk::ImageLayout::eUndefined, target);
+        commands.clearColorImage(*image_, target, vk::ClearColorValue(std::array<float, 4>{0, 0, 0, 1}),
+                                 whole_image);
+        change_layout(commands, *image_, target, vk::ImageLayout::eGeneral);
+    });
+}
+
+std::vector<uint8_t> StorageImage::read() const {
+    std::vector<uint8_t> pixels(size_t{4} * width_ * height_);
+    Buffer staging(*device_, pixels.size(), {}, Buffer::Location::host);
+    device_->submit([&](const vk::raii::CommandBuffer& commands) {
+        constexpr auto source = vk::ImageLayout::eTransferSrcOptimal;
+        change_layout(commands, *image_, vk::ImageLayout::eGeneral, source);
+        commands.copyImageToBuffer(*image_, source, staging.handle(),
+                                   vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {width_, height_, 1}));
+        change_layout(commands, *image_, source, vk::ImageLayout::eGeneral);
+    });
+    staging.read(pixels.data(), pixels.size());
+    return pixels;
+}
+
+void change_layout(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
+                   vk::ImageLayout to) {
+    const auto all = vk::PipelineStageFlagBits::eAllCommands;
+    const auto any = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
+    commands.pipelineBarrier(
+        all, all, {}, {}, {},
+        vk::ImageMemoryBarrier(vk::AccessFlagBits::eMemoryWrite, any, from, to, VK_QUEUE_FAMILY_IGNORED,
+                               VK_QUEUE_FAMILY_IGNORED, image, whole_image));
 }
 
 }  // namespace lab

@@ -42,6 +42,7 @@ class Buffer {
     // Copies to or from the start of the buffer; the device must not be using it.
     void write(const void* data, size_t size);
     void read(void* data, size_t size) const;
+    void clear();  // to zeros
 
     // Contents of a host buffer.
     template <typename T>
@@ -76,5 +77,34 @@ class SampledImage {
     vk::raii::ImageView view_ = nullptr;
     vk::raii::Sampler sampler_ = nullptr;
 };
+
+// Two-dimensional image of 8-bit RGBA that compute shaders write, always in the layout eGeneral. Starts
+// black.
+class StorageImage {
+  public:
+    StorageImage(const Device& device, uint32_t width, uint32_t height);
+
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    vk::Image handle() const { return *image_; }
+    vk::DescriptorImageInfo info() const { return {{}, *view_, vk::ImageLayout::eGeneral}; }
+    std::vector<uint8_t> read() const;  // row by row, four bytes a pixel
+
+  private:
+    const Device* device_;
+    uint32_t width_;
+    uint32_t height_;
+    vk::raii::Image image_ = nullptr;
+    vk::raii::DeviceMemory memory_ = nullptr;
+    vk::raii::ImageView view_ = nullptr;
+};
+
+// All of a colour image, and one of its kind in copies and blits.
+inline constexpr vk::ImageSubresourceRange whole_image{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
+inline constexpr vk::ImageSubresourceLayers whole_layer{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+
+// Moves an image to another layout between all that came before and all that follows.
+void change_layout(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
+                   vk::ImageLayout to);
 
 }  // namespace lab

@@ -98,9 +98,10 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
     return description;
 }
 
-vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation) {
+vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation,
+                                   std::vector<const char*> extensions = {}) {
     const vk::ApplicationInfo application("path tracing lab", 1, nullptr, 0, VK_API_VERSION_1_2);
-    std::vector<const char*> layers, extensions;
+    std::vector<const char*> layers;
     if (validation) {
         const auto available = context.enumerateInstanceLayerProperties();
         if (std::none_of(available.begin(), available.end(), [](const vk::LayerProperties& layer) {
@@ -173,7 +174,7 @@ std::string to_string(Backend backend) {
 
 Device::Device(const DeviceOptions& options) : context_(load_vulkan()) {
     try {
-        instance_ = create_instance(context_, options.validation);
+        instance_ = create_instance(context_, options.validation, options.instance_extensions);
     } catch (const vk::SystemError&) {
         throw DeviceError(
             "no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
@@ -202,15 +203,37 @@ Device::Device(const DeviceOptions& options) : context_(load_vulkan()) {
                           ": choose another with --device (see --list-devices) or update its driver");
     physical_ = std::move(devices[chosen]);
     limits_ = physical_.getProperties().limits;
+    if (options.make_surface) surface_ = {instance_, options.make_surface(*instance_)};
+    choose_queue_family();
     create_device();
     load_pipeline_cache();
 }
 
+void Device::choose_queue_family() {
+    const auto families = physical_.getQueueFamilyProperties();
+    const auto computes = [&](uint32_t family) {
+        return families[family].queueFlags & vk::QueueFlagBits::eCompute &&
+               families[family].timestampValidBits > 0;
+    };
+    if (*surface_) {
+        const auto extensions = physical_.enumerateDeviceExtensionProperties();
+        const bool has_swapchain =
+            std::any_of(extensions.begin(), extensions.end(), [](const vk::ExtensionProperties& extension) {
+                return std::strcmp(extension.extensionName, VK_KHR_SWAPCHAIN_EXTENSION_NAME) == 0;
+            });
+        for (uint32_t family = 0; has_swapchain && family < families.size(); ++family)
+            if (computes(family) && families[family].queueFlags & vk::QueueFlagBits::eGraphics &&
+                physical_.getSurfaceSupportKHR(family, *surface_)) {
+                queue_family_ = family;
+                return;
+            }
+        surface_ = nullptr;
+    }
+    while (!computes(queue_family_)) ++queue_family_;
+}
+
 void Device::create_device() {
     const auto families = physical_.getQueueFamilyProperties();
-    while (!(families[queue_family_].queueFlags & vk::QueueFlagBits::eCompute) ||
-           families[queue_family_].timestampValidBits == 0)
-        ++queue_family_;
     const uint32_t timestamp_bits = families[queue_family_].timestampValidBits;
     timestamp_mask_ = timestamp_bits < 64 ? (uint64_t{1} << timestamp_bits) - 1 : ~uint64_t{0};
     const float priority = 1;
@@ -223,6 +246,7 @@ void Device::create_device() {
     for (const Backend backend : all_backends)
         if (description_.supports(backend))
             for (const char* extension : extensions_for(backend)) extensions.insert(extension);
+    if (*surface_) extensions.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     if (has_acceleration_structures()) {
         vulkan12.bufferDeviceAddress = true;
         features.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure = true;
@@ -252,6 +276,7 @@ void Device::create_device() {
 }
 
 double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
+    const auto lock = lock_queue();
     command_buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     command_buffer_.resetQueryPool(*timestamps_, 0, 2);
     // Whatever earlier submissions wrote is visible to this one, and what it writes is visible to the host.
@@ -281,6 +306,7 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
 VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT type,
                                  const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages) {
     auto& received = *static_cast<Messages*>(messages);
+    const std::lock_guard lock(received.mutex);
     // Loader and driver report as 'general'; the layers check our use of Vulkan as 'validation' and
     // 'performance'.
     auto& list = type == VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT ? received.driver : received.validation;

@@ -1,7 +1,9 @@
-// A Vulkan device with one compute queue, and what the validation layers had to say about its use.
+// A Vulkan device with one queue, for compute and where asked for a window, and what the validation layers
+// had to say about its use.
 #pragma once
 #include <functional>
 #include <map>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,9 @@ std::string to_string(Backend backend);
 struct DeviceOptions {
     std::string choice;  // index or part of the name (any case) as in --list-devices; empty: the fastest kind
     bool validation = false;  // switches the validation layer on; an error if it is not installed
+    // What a window needs to show pictures of the device; nothing without one.
+    std::vector<const char*> instance_extensions = {};
+    std::function<VkSurfaceKHR(VkInstance)> make_surface = {};
 };
 
 // What --list-devices tells of a device.
@@ -53,6 +58,14 @@ class Device {
         return description_.supports(Backend::pipeline) || description_.supports(Backend::query);
     }
 
+    // For what shows pictures in a window. The surface is null where the device cannot present to it.
+    const vk::raii::Instance& instance() const { return instance_; }
+    const vk::raii::SurfaceKHR& surface() const { return surface_; }
+    const vk::raii::Queue& queue() const { return queue_; }
+    uint32_t queue_family() const { return queue_family_; }
+    // Whoever uses queue() holds this lock: submit() does, and may be called by several threads.
+    std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
+
     // Records commands, submits them, waits, and returns the seconds they took on the device.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
@@ -65,10 +78,12 @@ class Device {
     struct Messages {
         std::vector<std::string> validation;
         std::vector<std::string> driver;
+        std::mutex mutex;  // they come from whatever thread uses the device
     };
     static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                     VkDebugUtilsMessageTypeFlagsEXT type,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
+    void choose_queue_family();
     void create_device();
     void load_pipeline_cache();
 
@@ -76,6 +91,7 @@ class Device {
     vk::raii::Context context_;
     vk::raii::Instance instance_ = nullptr;
     vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
+    vk::raii::SurfaceKHR surface_ = nullptr;
     vk::raii::PhysicalDevice physical_ = nullptr;
     DeviceDescription description_;
     vk::PhysicalDeviceLimits limits_;
@@ -83,6 +99,7 @@ class Device {
     uint64_t timestamp_mask_ = 0;  // the counter's valid bits
     vk::raii::Device device_ = nullptr;
     vk::raii::Queue queue_ = nullptr;
+    mutable std::mutex queue_mutex_;
     vk::raii::CommandPool command_pool_ = nullptr;
     vk::raii::CommandBuffer command_buffer_ = nullptr;
     vk::raii::Fence fence_ = nullptr;

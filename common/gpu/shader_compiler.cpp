@@ -43,6 +43,9 @@ class Includer {
         return text;
     }
 
+    // Those in the text so far, without the first one.
+    const std::set<fs::path>& included() const { return seen_; }
+
   private:
     fs::path find(const std::string& name, const fs::path& includer, int line) const {
         if (const auto named = named_.find(name); named != named_.end()) return named->second;
@@ -122,6 +125,14 @@ fs::path project_folder() {
     if (found.empty())
         throw UserError("cannot find the folder shaders/ above the program: keep build/ in the project");
     return found;
+}
+
+std::vector<fs::path> shader_files(const ShaderSource& source) {
+    Includer includer(source);
+    includer.expand(source.file);
+    std::vector<fs::path> files{source.file};
+    files.insert(files.end(), includer.included().begin(), includer.included().end());
+    return files;
 }
 
 std::vector<uint32_t> compile_shader(const ShaderSource& source) {

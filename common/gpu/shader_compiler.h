@@ -13,15 +13,18 @@ enum class ShaderStage { compute, ray_generation, miss, closest_hit };
 struct ShaderSource {
     std::filesystem::path file;
     ShaderStage stage = ShaderStage::compute;
-    std::vector<std::string> defines;  // "NAME" or "NAME value"
+    std::vector<std::string> defines = {};  // "NAME" or "NAME value"
     // What #include "name" stands for. Other names are looked up beside the includer and in shaders/. A
     // file's text is included once, even where an #if skips it.
-    std::map<std::string, std::filesystem::path> named_includes;
+    std::map<std::string, std::filesystem::path> named_includes = {};
 };
 
 // Folder of the project, which holds shaders/ and assets/: found upwards from the running program.
 // Throws UserError if there is none.
 std::filesystem::path project_folder();
+
+// The shader's file and all that it includes. Throws UserError if one is missing.
+std::vector<std::filesystem::path> shader_files(const ShaderSource& source);
 
 // SPIR-V 1.5 words, from the cache where the same text was compiled before.
 // Throws UserError with lines of the form "file:line: message".

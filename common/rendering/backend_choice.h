@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "rendering/options.h"
 #include "rendering/renderer.h"
 
 namespace lab {
@@ -11,5 +12,10 @@ namespace lab {
 // pays for it.
 Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
                        const Estimator& estimator, RenderParameters parameters);
+
+// The same as the options say. Views trace camera rays only, so that their speed says nothing about renders,
+// and one looks into our own hierarchy. Throws UserError if that one is asked of another backend.
+Backend choose_backend(const Options& options, const Device& device, const GpuScene& scene,
+                       const Estimator& estimator, const RenderParameters& parameters);
 
 }  // namespace lab

@@ -95,8 +95,13 @@ void add_device_options(CLI::App& app, Options& options) {
         ->check(CLI::IsMember({"auto", "pipeline", "query", "compute"}));
     app.add_option("--device", options.device, "Number or part of the name of the device");
     app.add_flag("--list-devices", options.list_devices, "Show the devices and what they lack");
-    app.add_flag("--headless")
-        ->description("Render without a window, which is also what happens without this flag");
+    auto* headless = app.add_flag_callback(
+        "--headless", [&] { options.window = WindowChoice::never; }, "Render without a window");
+    app.add_flag_callback(
+           "--window", [&] { options.window = WindowChoice::always; },
+           "Open a window, as happens by itself where there are a display and a terminal, but not with "
+           "--report, --reference, --target-error, --time-limit, --save-every or --quiet")
+        ->excludes(headless);
     app.add_flag("--validation", options.validation, "Check the use of Vulkan; any complaint is an error");
     app.add_flag("--quiet", options.quiet, "Print errors only");
 }
@@ -137,6 +142,11 @@ std::filesystem::path find_scene(const std::string& name) {
 
 }  // namespace
 
+bool needs_no_window(const Options& options) {
+    return !options.report.empty() || !options.reference.empty() || options.target_error ||
+           options.time_limit || options.save_every;
+}
+
 const std::vector<View>& views() {
     static const std::vector<View> all{
         {"normals", "VIEW_NORMALS", DisplayTransform::as_is},
@@ -175,6 +185,10 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
         std::replace(message.begin(), message.end(), '\n', ' ');
         throw UserError(message + " (--help shows all options)");
     }
+    if (options.window == WindowChoice::always && needs_no_window(options))
+        throw UserError(
+            "--window does not go with --report, --reference, --target-error, --time-limit or "
+            "--save-every: leave one of them out");
     options.scene = find_scene(scene);
     for (const auto& known : views())
         if (known.name == view) options.view = &known;

@@ -19,6 +19,9 @@ struct View {
 };
 const std::vector<View>& views();
 
+// Whether a window opens: yes, no, or where there is a display and someone at a terminal who can see it.
+enum class WindowChoice { automatic, always, never };
+
 struct Options {
     std::filesystem::path scene;
     std::optional<uint32_t> width, height, samples, max_path_length;
@@ -43,9 +46,13 @@ struct Options {
     float exposure = 0;                                 // stops
     std::filesystem::path resume;
     std::optional<double> save_every;  // seconds
+    WindowChoice window = WindowChoice::automatic;
     bool validation = false;
     bool quiet = false;
 };
+
+// Whether it asks for what only a run without a window does: measurements and stopping by itself.
+bool needs_no_window(const Options& options);
 
 // Parses the command line. Returns nothing where the program is already done (--help, --version), after
 // printing. Throws UserError with one line for anything it does not understand.

@@ -15,7 +15,11 @@ uvec2 seed_key(uint32_t seed) {
 }
 
 RenderParameters default_parameters(const Scene& scene, uvec2 image_size) {
-    return {.camera = make_camera(scene.camera, image_size.x, image_size.y),
+    return default_parameters(scene, scene.camera, image_size);
+}
+
+RenderParameters default_parameters(const Scene& scene, const CameraPose& camera, uvec2 image_size) {
+    return {.camera = make_camera(camera, image_size.x, image_size.y),
             .image_size = image_size,
             .seed_key = seed_key(1),
             .first_sample = 0,
@@ -55,7 +59,7 @@ double Renderer::samples() const {
 
 void Renderer::restart(const RenderParameters& parameters) {
     parameters_.write(&parameters, sizeof parameters);
-    film_.clear();
+    film_.resize(parameters.image_size.x, parameters.image_size.y);
     finished_samples_ = next_block_ = 0;
     rays_ = 0;
     device_seconds_ = 0;

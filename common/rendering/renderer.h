@@ -8,8 +8,10 @@ namespace lab {
 // Key of the random start states for a seed.
 uvec2 seed_key(uint32_t seed);
 
-// To render a scene as its file asks, with seed 1, no splitting and a survival cap of 0.95.
+// To render a scene as its file asks, with seed 1, no splitting and a survival cap of 0.95; the second from
+// another camera.
 RenderParameters default_parameters(const Scene& scene, uvec2 image_size);
+RenderParameters default_parameters(const Scene& scene, const CameraPose& camera, uvec2 image_size);
 
 class Renderer {
   public:
@@ -25,12 +27,13 @@ class Renderer {
     bool advance(uint32_t target_samples);
 
     Film& film() { return film_; }
+    const Film& film() const { return film_; }
     uint64_t rays() const { return rays_; }                    // traced so far
     double device_seconds() const { return device_seconds_; }  // spent by the device so far
     // Samples per pixel so far, averaged over the image.
     double samples() const;
 
-    // Begins anew with other parameters, of an image of the same size.
+    // Begins anew with other parameters, of an image of at most as many pixels as the first one.
     void restart(const RenderParameters& parameters);
     // Goes on from an image of the same size instead of from nothing.
     void resume(const FilmImage& image);

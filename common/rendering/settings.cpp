@@ -73,17 +73,24 @@ double largest_albedo(const Scene& scene) {
 
 }  // namespace
 
-void override_scene(Scene& scene, const Options& options) {
-    if (options.camera_position) scene.camera.position = to_vector(*options.camera_position);
-    if (options.camera_target) scene.camera.target = to_vector(*options.camera_target);
-    if (options.camera_up) scene.camera.up = to_vector(*options.camera_up);
-    if (options.vertical_fov) scene.camera.vertical_fov = *options.vertical_fov;
-    if (options.background) scene.background = to_vector(*options.background);
+CameraPose camera_of(const Scene& scene, const Options& options) {
+    CameraPose pose = scene.camera;
+    if (options.camera_position) pose.position = to_vector(*options.camera_position);
+    if (options.camera_target) pose.target = to_vector(*options.camera_target);
+    if (options.camera_up) pose.up = to_vector(*options.camera_up);
+    pose.vertical_fov = options.vertical_fov.value_or(pose.vertical_fov);
+    return pose;
+}
+
+vec3 background_of(const Scene& scene, const Options& options) {
+    return options.background ? to_vector(*options.background) : scene.background;
 }
 
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
-    RenderParameters parameters = default_parameters(scene, {options.width.value_or(scene.defaults.width),
-                                                             options.height.value_or(scene.defaults.height)});
+    const uvec2 image_size(options.width.value_or(scene.defaults.width),
+                           options.height.value_or(scene.defaults.height));
+    RenderParameters parameters = default_parameters(scene, camera_of(scene, options), image_size);
+    parameters.background = background_of(scene, options);
     parameters.seed_key = seed_key(options.seed);
     parameters.first_sample = options.first_sample;
     parameters.max_path_length = max_path_length(chapter, scene, options);
@@ -111,9 +118,10 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     if (options.split_every_hit) text << " --split-every-hit";
     if (options.view) text << " --view " << options.view->name;
     if (options.specular) text << " --specular";
-    text << " --camera-position " << to_text(scene.camera.position) << " --camera-target "
-         << to_text(scene.camera.target) << " --camera-up " << to_text(scene.camera.up) << " --vertical-fov "
-         << scene.camera.vertical_fov << " --background " << to_text(scene.background);
+    const CameraPose pose = camera_of(scene, options);
+    text << " --camera-position " << to_text(pose.position) << " --camera-target " << to_text(pose.target)
+         << " --camera-up " << to_text(pose.up) << " --vertical-fov " << pose.vertical_fov << " --background "
+         << to_text(background_of(scene, options));
     return text.str();
 }
 

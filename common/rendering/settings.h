@@ -6,8 +6,9 @@
 
 namespace lab {
 
-// Puts the flags in place of what the scene file says about camera and background.
-void override_scene(Scene& scene, const Options& options);
+// Camera and background: what the scene file says, with the flags in its place.
+CameraPose camera_of(const Scene& scene, const Options& options);
+vec3 background_of(const Scene& scene, const Options& options);
 
 // Throws UserError for options that contradict each other.
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options);

@@ -41,6 +41,16 @@ ShaderSource shader_source(const std::string& name, ShaderStage stage, const Gpu
     return source;
 }
 
+std::set<std::filesystem::path> shader_files(const Estimator& estimator) {
+    std::set<std::filesystem::path> files;
+    for (const char* name : {"render.comp", "render.rgen", "trace_ray/closest_hit.rchit",
+                             "trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"})
+        for (const auto& file : shader_files({.file = project_folder() / "shaders" / name,
+                                .named_includes = {{"path_trace.glsl", estimator.file}}}))
+            files.insert(file);
+    return files;
+}
+
 std::vector<Binding> join(std::initializer_list<std::span<const Binding>> lists) {
     std::vector<Binding> all;
     for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());

@@ -3,6 +3,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ struct Estimator {
     std::filesystem::path file;
     std::vector<std::string> defines = {};
 };
+
+// The files that an estimator is compiled from, with whatever backend: the shared shaders and its own.
+std::set<std::filesystem::path> shader_files(const Estimator& estimator);
 
 // An estimator that is compiled for a scene and a backend.
 class Tracer {

@@ -1,4 +1,4 @@
-#include "app/report.h"
+#include "rendering/report.h"
 
 #include <nlohmann/json.hpp>
 #include <sstream>

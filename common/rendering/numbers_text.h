@@ -1,0 +1,12 @@
+// Numbers for people.
+#pragma once
+#include <string>
+
+namespace lab {
+
+// "1.23 M" for 1234567, "950" for 950: three digits and a prefix.
+std::string short_number(double number);
+// "12.3 s", "4 min 05 s", "1 h 02 min".
+std::string duration_text(double seconds);
+
+}  // namespace lab

@@ -1,0 +1,69 @@
+#include "rendering/render_job.h"
+
+#include "error.h"
+#include "gpu/cache.h"
+#include "image/file.h"
+#include "rendering/settings.h"
+
+namespace lab {
+namespace {
+
+// The earlier run that this one continues. Throws UserError if it rendered something else.
+FilmFile load_earlier_run(const RenderJob& job, const Options& options) {
+    FilmFile earlier = read_film(options.resume);
+    if (options.first_sample != 0 && options.first_sample != earlier.record.first_sample)
+        throw UserError("--first-sample " + std::to_string(options.first_sample) + " does not fit " +
+                        options.resume.string() + ", which starts at sample " +
+                        std::to_string(earlier.record.first_sample) + ": leave it out");
+    const FilmFile wanted{{job.parameters.image_size.x, job.parameters.image_size.y, {}}, job.record};
+    require_same_render(earlier, wanted, options.resume.string(), "this command");
+    return earlier;
+}
+
+void check_sample_count(const RenderJob& job) {
+    if (uint64_t{job.record.first_sample} + job.samples > uint64_t{1} << 32)
+        throw UserError(
+            "--first-sample + --samples is above 2^32: there are no more random numbers than that");
+}
+
+}  // namespace
+
+void check_scene(const Chapter& chapter, const Scene& scene) {
+    if (features_of(scene).dielectrics && !chapter.dielectrics)
+        throw UserError(scene.file.string() + ": has a dielectric (d < 1), which " + chapter.name +
+                        " cannot render: use chapter 6, ./lab run 6");
+}
+
+RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& estimator,
+                   const Options& options) {
+    RenderJob job;
+    job.record.chapter = chapter.name;
+    job.record.scene = scene.file.filename().string();
+    job.record.scene_hash = hexadecimal(scene.hash);
+    job.record.estimator_hash = hexadecimal(hash_text(read_file(estimator.file, 1 << 24)));
+    set_options(job, chapter, scene, options);
+    if (!options.resume.empty()) {
+        job.resumed = load_earlier_run(job, options);
+        job.record.first_sample = job.resumed->record.first_sample;
+        job.parameters.first_sample = job.record.first_sample;
+        job.record.seconds = job.resumed->record.seconds;
+        job.record.rays = job.resumed->record.rays;
+        check_sample_count(job);
+    }
+    return job;
+}
+
+void set_options(RenderJob& job, const Chapter& chapter, const Scene& scene, const Options& options) {
+    job.options = &options;
+    job.parameters = make_parameters(chapter, scene, options);
+    job.samples = options.samples.value_or(scene.defaults.samples);
+    job.record.settings = settings_text(chapter, job.parameters, scene, options);
+    job.record.seed = options.seed;
+    job.record.first_sample = options.first_sample;
+    job.record.seconds = 0;
+    job.record.rays = 0;
+    job.resumed.reset();
+    check_sample_count(job);
+}
+
+}  // namespace lab

@@ -1,0 +1,93 @@
+#include "viewer/camera_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <sstream>
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+
+constexpr double radians_per_height = 2;    // of the picture dragged
+constexpr double speed_per_notch = 1.2;     // of the wheel
+constexpr double distance_per_notch = 0.9;  // in orbit
+constexpr double steepest_sine = 0.999;  // of looking up or down: beyond, left and right would change sides
+
+dvec3 rotate(const dvec3& v, double angle, const dvec3& axis) { return glm::angleAxis(angle, axis) * v; }
+
+// Turns the direction about the upright axis and then up or down, never past that axis.
+dvec3 turn(dvec3 direction, const dvec3& up, double right_angle, double up_angle) {
+    direction = rotate(direction, -right_angle, up);
+    const double elevation = std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
+    const double limit = std::asin(steepest_sine);
+    const double turned =
+        std::clamp(elevation + up_angle, std::min(-limit, elevation), std::max(limit, elevation));
+    dvec3 level = direction - glm::dot(direction, up) * up;
+    if (glm::length(level) < 1e-9) return direction;  // straight up: no side to turn to
+    level = glm::normalize(level);
+    return std::cos(turned) * level + std::sin(turned) * up;
+}
+
+std::string vector_text(const vec3& v, const char* separator) {
+    std::ostringstream text;
+    text.precision(9);
+    text << v.x << separator << v.y << separator << v.z;
+    return text.str();
+}
+
+}  // namespace
+
+void CameraControl::fit_to(const Bounds& bounds) {
+    const float diagonal = glm::distance(bounds.low, bounds.high);
+    size_ = std::isfinite(diagonal) && diagonal > 0 ? diagonal : 1;
+    speed_ = 0.25f * size_;  // through the scene in four seconds
+}
+
+CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motion) {
+    const dvec3 up = glm::normalize(dvec3(pose.up));
+    dvec3 position(pose.position), target(pose.target);
+    const double distance = glm::distance(position, target);
+    dvec3 forward = (target - position) / distance;
+    const dvec3 angles(radians_per_height * motion.drag.x, -radians_per_height * motion.drag.y, 0);
+    if (navigation == Navigation::first_person) {
+        if (motion.drag != vec2(0)) forward = turn(forward, up, angles.x, angles.y);
+        target = position + distance * forward;
+        speed_ = static_cast<float>(
+            std::clamp(speed_ * std::pow(speed_per_notch, motion.zoom), 1e-4 * size_, 1e2 * size_));
+    } else {
+        if (motion.drag != vec2(0)) forward = turn(forward, up, angles.x, angles.y);
+        const double closer = distance * std::pow(distance_per_notch, motion.zoom);
+        position = target - std::clamp(closer, 1e-4 * size_, std::max(1e3 * size_, distance)) * forward;
+    }
+    dvec3 right = glm::cross(forward, up);
+    right = glm::length(right) > 1e-9 ? glm::normalize(right) : dvec3(0);
+    const dvec3 step = double{speed_} * (double{motion.steps.x} * right + double{motion.steps.y} * up +
+                                         double{motion.steps.z} * forward);
+    CameraPose moved = pose;
+    moved.position = vec3(position + step);
+    moved.target = vec3(target + step);
+    // Far away from the origin the two may round to the same point: such a camera would see nothing.
+    return moved.position == moved.target ? pose : moved;
+}
+
+std::string camera_flags(const CameraPose& pose) {
+    std::ostringstream text;
+    text.precision(9);
+    text << "--camera-position=" << vector_text(pose.position, ",")
+         << " --camera-target=" << vector_text(pose.target, ",")
+         << " --camera-up=" << vector_text(pose.up, ",") << " --vertical-fov=" << pose.vertical_fov;
+    return text.str();
+}
+
+std::string camera_json(const CameraPose& pose) {
+    std::ostringstream text;
+    text.precision(9);
+    text << "\"camera\": {\"position\": [" << vector_text(pose.position, ", ") << "], \"target\": ["
+         << vector_text(pose.target, ", ") << "], \"up\": [" << vector_text(pose.up, ", ")
+         << "], \"vertical_fov\": " << pose.vertical_fov << "}";
+    return text.str();
+}
+
+}  // namespace lab

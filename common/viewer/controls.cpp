@@ -1,0 +1,230 @@
+#include "viewer/controls.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "error.h"
+#include "image/file.h"
+#include "rendering/numbers_text.h"
+#include "rendering/settings.h"
+
+namespace lab {
+namespace {
+
+constexpr int longest_shown_path = 16;  // of the sliders, like the slides' rows of pictures
+
+float panel_width() { return 27 * ImGui::GetFontSize(); }
+
+// A slider for a whole number that may be left to `automatic`, shown with a box to tick.
+void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t automatic, int high) {
+    ImGui::PushID(label);
+    bool is_given = value.has_value();
+    if (ImGui::Checkbox("##given", &is_given))
+        value = is_given ? std::optional(std::min(automatic, static_cast<uint32_t>(high))) : std::nullopt;
+    ImGui::SameLine();
+    if (is_given) {
+        int number = static_cast<int>(*value);
+        if (ImGui::SliderInt(label, &number, 0, high, "%d", ImGuiSliderFlags_AlwaysClamp))
+            value = static_cast<uint32_t>(number);
+    } else {
+        ImGui::TextUnformatted(label);
+    }
+    ImGui::PopID();
+}
+
+// A field for a whole number that takes effect when it is left with the enter key.
+bool number_field(const char* label, uint32_t& number) {
+    return ImGui::InputScalar(label, ImGuiDataType_U32, &number, nullptr, nullptr, "%u",
+                              ImGuiInputTextFlags_EnterReturnsTrue);
+}
+
+void draw_chapter_option(const ChapterOption& option, const RenderParameters& parameters,
+                         std::optional<double>& value) {
+    const char* label = option.name.c_str() + 2;  // without the dashes
+    const double low = option.low, high = option.high;
+    if (const auto* member = std::get_if<uint32_t RenderParameters::*>(&option.parameter)) {
+        int number = static_cast<int>(parameters.*(*member));
+        if (ImGui::DragInt(label, &number, 0.05f, static_cast<int>(low), static_cast<int>(high), "%d",
+                           ImGuiSliderFlags_AlwaysClamp))
+            value = number;
+    } else {
+        float number = parameters.*std::get<float RenderParameters::*>(option.parameter);
+        if (ImGui::SliderFloat(label, &number, static_cast<float>(low), static_cast<float>(high), "%.3f",
+                               ImGuiSliderFlags_AlwaysClamp))
+            value = std::clamp<double>(number, low, high);
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", option.help.c_str());
+}
+
+}  // namespace
+
+Controls::Controls() {
+    std::error_code ignored;  // without the folder there is nothing to choose from
+    for (const auto& entry :
+         std::filesystem::directory_iterator(project_folder() / "assets" / "scenes", ignored))
+        if (entry.path().extension() == ".json") scenes_.push_back(entry.path());
+    std::sort(scenes_.begin(), scenes_.end());
+}
+
+int Controls::width() const {
+    return static_cast<int>(std::ceil(panel_width() * ImGui::GetIO().DisplayFramebufferScale.x));
+}
+
+void Controls::draw(Session& session, CameraControl& camera_control, double frames_per_second) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({panel_width(), ImGui::GetIO().DisplaySize.y});
+    ImGui::Begin("Controls", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImGui::PushItemWidth(0.5f * panel_width());
+    draw_progress(session, frames_per_second);
+    draw_actions(session);
+    Options options = session.options();
+    draw_scene(session, options);
+    draw_paths(session.chapter(), session.build().job.parameters, options);
+    draw_picture(session, options);
+    session.change(options);
+    draw_camera(session, camera_control);
+    ImGui::PopItemWidth();
+    ImGui::End();
+}
+
+void Controls::draw_progress(Session& session, double frames_per_second) {
+    const FilmRecord& record = session.build().job.record;
+    const double seconds = std::max(session.seconds(), 1e-9), samples = session.samples();
+    ImGui::TextWrapped("%s", session.chapter().title.c_str());
+    ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
+    ImGui::Separator();
+    if (session.target_samples() < UINT32_MAX - record.first_sample)
+        ImGui::Text("%.6g of %u samples a pixel, %s", samples, session.target_samples(),
+                    duration_text(seconds).c_str());
+    else
+        ImGui::Text("%.6g samples a pixel, %s", samples, duration_text(seconds).c_str());
+    ImGui::Text("%s samples/s, %s rays/s, %.0f frames/s", short_number(samples / seconds).c_str(),
+                short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
+    constexpr double wanted = 0.01;
+    if (const auto error = session.relative_error(); error && *error > wanted)
+        ImGui::Text("error about %.3g %%, 1 %% in %s", 100 * *error,
+                    duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
+    else if (error)
+        ImGui::Text("error about %.2g %%", 100 * *error);
+    else
+        ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves"
+                                                       : "error not known yet");
+    if (session.is_building()) ImGui::TextUnformatted("building ...");
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
+    if (!session.message().empty()) ImGui::TextWrapped("%s", session.message().c_str());
+    ImGui::PopStyleColor();
+}
+
+void Controls::draw_actions(Session& session) {
+    if (ImGui::Button(session.is_paused ? "Go on" : "Pause")) session.is_paused = !session.is_paused;
+    ImGui::SameLine();
+    if (ImGui::Button("Restart")) session.restart();
+    ImGui::SameLine();
+    if (ImGui::Button("Save PNG")) save(session, ".png");
+    ImGui::SameLine();
+    if (ImGui::Button("Save EXR")) save(session, ".exr");
+    if (!notice_.empty()) ImGui::TextWrapped("%s", notice_.c_str());
+}
+
+void Controls::save(Session& session, const char* ending) {
+    const std::string scene = session.build().scene->file.stem().string();
+    const std::string samples = std::to_string(static_cast<uint64_t>(session.samples()));
+    const auto file = std::filesystem::path("output") /
+                      (session.chapter().name + "_" + scene + "_" + samples + "_samples" + ending);
+    try {
+        check_writable(file);
+        session.save({file});
+        notice_ = "saved " + file.string();
+    } catch (const UserError& error) {
+        notice_ = error.what();
+    }
+}
+
+void Controls::draw_scene(Session& session, Options& options) {
+    ImGui::Separator();
+    if (ImGui::BeginCombo("scene", options.scene.stem().string().c_str())) {
+        for (const auto& file : scenes_)
+            if (ImGui::Selectable(file.stem().string().c_str(), file.stem() == options.scene.stem())) {
+                session.open_scene(file);
+                options = session.options();
+            }
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Or drop a .json or .obj file on the window");
+    vec3 background = session.background();
+    if (ImGui::ColorEdit3("background", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
+        background = glm::max(background, vec3(0));
+        options.background = {background.x, background.y, background.z};
+    }
+    ImGui::Checkbox("specular lobes (Ks)", &options.specular);
+}
+
+void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options) {
+    ImGui::Separator();
+    optional_slider("max path length", options.max_path_length, parameters.max_path_length,
+                    longest_shown_path);
+    optional_slider("only path length", options.only_path_length, 1, longest_shown_path);
+    if (options.max_path_length && options.only_path_length)
+        options.max_path_length = std::max(*options.max_path_length, *options.only_path_length);
+    if (chapter.light_sampling) ImGui::Checkbox("light sampling", &options.light_sampling);
+    if (chapter.split_every_hit) ImGui::Checkbox("split at every hit", &options.split_every_hit);
+    options.chapter_values.resize(chapter.options.size());
+    for (size_t i = 0; i < chapter.options.size(); ++i)
+        draw_chapter_option(chapter.options[i], parameters, options.chapter_values[i]);
+    number_field("seed", options.seed);
+    uint32_t samples = options.samples.value_or(0);
+    if (number_field("samples (0: no end)", samples))
+        options.samples = samples > 0 ? std::optional(samples) : std::nullopt;
+}
+
+void Controls::draw_picture(const Session& session, Options& options) {
+    ImGui::Separator();
+    const uvec2 size = session.build().job.parameters.image_size;
+    if (ImGui::BeginCombo("view", options.view ? options.view->name.c_str() : "radiance")) {
+        if (ImGui::Selectable("radiance", !options.view)) options.view = nullptr;
+        for (const View& view : views()) {
+            // That one looks into our own hierarchy.
+            const bool is_possible = view.name != "bvh-steps" || session.build().backend == Backend::compute;
+            if (is_possible && ImGui::Selectable(view.name.c_str(), options.view == &view))
+                options.view = &view;
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::SliderFloat("exposure", &options.exposure, -10, 10, "%.1f EV");
+    uint32_t width = size.x, height = size.y;
+    if (number_field("width", width)) options.width = std::clamp(width, 1u, max_image_extent);
+    if (number_field("height", height)) options.height = std::clamp(height, 1u, max_image_extent);
+}
+
+void Controls::draw_camera(Session& session, CameraControl& camera_control) {
+    ImGui::Separator();
+    int navigation = static_cast<int>(camera_control.navigation);
+    ImGui::RadioButton("first person", &navigation, static_cast<int>(Navigation::first_person));
+    ImGui::SameLine();
+    ImGui::RadioButton("orbit", &navigation, static_cast<int>(Navigation::orbit));
+    camera_control.navigation = static_cast<Navigation>(navigation);
+    CameraPose pose = session.camera();
+    if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees",
+                           ImGuiSliderFlags_AlwaysClamp))
+        session.set_camera(pose);
+    const auto copy = [&](const char* button, const std::string& text) {
+        if (!ImGui::Button(button)) return;
+        ImGui::SetClipboardText(text.c_str());
+        std::printf("%s\n", text.c_str());
+        std::fflush(stdout);
+        notice_ = "copied the camera";
+    };
+    copy("Copy flags", camera_flags(pose));
+    ImGui::SameLine();
+    copy("Copy JSON", camera_json(pose));
+    ImGui::TextWrapped(
+        "W A S D Q E move at %s/s (wheel), drag to look; Tab hides this, space pauses, R restarts",
+        short_number(camera_control.speed()).c_str());
+}
+
+}  // namespace lab

@@ -1,0 +1,32 @@
+// The panel at the left of the window.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "viewer/camera_control.h"
+#include "viewer/session.h"
+
+namespace lab {
+
+class Controls {
+  public:
+    Controls();
+
+    // To be called between Screen::begin_frame() and Screen::show().
+    void draw(Session& session, CameraControl& camera_control, double frames_per_second);
+    int width() const;  // pixels of the framebuffer
+
+  private:
+    void draw_progress(Session& session, double frames_per_second);
+    void draw_actions(Session& session);
+    void draw_scene(Session& session, Options& options);
+    void draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options);
+    void draw_picture(const Session& session, Options& options);
+    void draw_camera(Session& session, CameraControl& camera_control);
+    void save(Session& session, const char* ending);
+
+    std::vector<std::filesystem::path> scenes_;  // of assets/scenes
+    std::string notice_;                         // what was just done
+};
+
+}  // namespace lab

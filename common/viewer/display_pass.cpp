@@ -1,0 +1,56 @@
+#include "viewer/display_pass.h"
+
+#include <cmath>
+
+namespace lab {
+namespace {
+
+std::vector<Binding> bindings(const Film& film, const StorageImage& picture, const Buffer& largest_value) {
+    return {film.binding(),
+            {.index = BINDING_PICTURE, .type = vk::DescriptorType::eStorageImage, .images = {picture.info()}},
+            storage_binding(BINDING_LARGEST_VALUE, largest_value)};
+}
+
+// Whatever was written before can be read, and written again, by what follows.
+void wait_for_writes(const vk::raii::CommandBuffer& commands) {
+    const auto all = vk::PipelineStageFlagBits::eAllCommands;
+    commands.pipelineBarrier(
+        all, all, {},
+        vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite,
+                          vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite),
+        {}, {});
+}
+
+}  // namespace
+
+DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr<StorageImage> picture)
+    : film_(&film),
+      picture_(std::move(picture)),
+      largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      kernel_(device, {.file = project_folder() / "shaders" / "display.comp"},
+              bindings(film, *picture_, largest_value_), sizeof(DisplayParameters)) {}
+
+void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform,
+                         float exposure) const {
+    const uint32_t blocks = ((picture_->width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
+                            ((picture_->height() + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
+    const bool is_radiance = transform == DisplayTransform::exposure;
+    DisplayParameters parameters{.film_size = {film_->width(), film_->height()},
+                                 .image_size = {picture_->width(), picture_->height()},
+                                 .scale = is_radiance ? std::exp2(exposure) : 1.0f,
+                                 .is_srgb = is_radiance,
+                                 .divides_by_largest = 0};
+    wait_for_writes(commands);
+    if (transform == DisplayTransform::maximum) {
+        commands.fillBuffer(largest_value_.handle(), 0, VK_WHOLE_SIZE, 0);
+        wait_for_writes(commands);
+        parameters.divides_by_largest = 2;
+        kernel_.record(commands, &parameters, blocks);
+        wait_for_writes(commands);
+        parameters.divides_by_largest = 1;
+    }
+    kernel_.record(commands, &parameters, blocks);
+    wait_for_writes(commands);
+}
+
+}  // namespace lab

@@ -1,0 +1,260 @@
+#include "viewer/screen.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "error.h"
+
+namespace lab {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void check(VkResult result) {
+    if (result < 0)
+        throw DeviceFailure("drawing the user interface failed: " + vk::to_string(vk::Result(result)));
+}
+
+// Colours are encoded by ourselves: formats that encode once more come last.
+vk::SurfaceFormatKHR choose_format(const Device& device) {
+    const auto formats = device.physical().getSurfaceFormatsKHR(*device.surface());
+    for (const auto& format : formats)
+        if (format.format == vk::Format::eB8G8R8A8Unorm || format.format == vk::Format::eR8G8B8A8Unorm)
+            return format;
+    return formats.front();
+}
+
+// Over an image that was written by a blit, which is then presented.
+vk::raii::RenderPass make_render_pass(const Device& device, vk::Format format) {
+    const vk::AttachmentDescription attachment(
+        {}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore,
+        vk::AttachmentLoadOp::eDontCare, vk::AttachmentStoreOp::eDontCare,
+        vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::ePresentSrcKHR);
+    const vk::AttachmentReference reference(0, vk::ImageLayout::eColorAttachmentOptimal);
+    const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, {}, reference);
+    const vk::SubpassDependency after_blit(
+        VK_SUBPASS_EXTERNAL, 0, vk::PipelineStageFlagBits::eTransfer,
+        vk::PipelineStageFlagBits::eColorAttachmentOutput, vk::AccessFlagBits::eTransferWrite,
+        vk::AccessFlagBits::eColorAttachmentRead | vk::AccessFlagBits::eColorAttachmentWrite);
+    return {device.handle(), vk::RenderPassCreateInfo({}, attachment, subpass, after_blit)};
+}
+
+}  // namespace
+
+Screen::Screen(const Device& device, const Window& window)
+    : device_(&device), window_(&window), format_(choose_format(device)) {
+    render_pass_ = make_render_pass(device, format_.format);
+    constexpr uint32_t texture_count = 8;  // of the user interface: its font
+    const vk::DescriptorPoolSize textures(vk::DescriptorType::eCombinedImageSampler, texture_count);
+    descriptor_pool_ = {device.handle(),
+                        vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                                     texture_count, textures)};
+    command_pool_ = {device.handle(),
+                     {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}};
+    commands_ = std::move(
+        vk::raii::CommandBuffers(device.handle(), {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
+    fence_ = {device.handle(), vk::FenceCreateInfo()};
+    acquired_ = {device.handle(), vk::SemaphoreCreateInfo()};
+    make_swapchain();
+    start_user_interface();
+}
+
+Screen::~Screen() {
+    const auto lock = device_->lock_queue();
+    (*device_->handle()).waitIdle(*device_->handle().getDispatcher());
+    ImGui_ImplVulkan_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void Screen::start_user_interface() {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::StyleColorsDark();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;  // leave no file behind
+    const float scale = window_->scale();
+    ImFontConfig font;
+    font.SizePixels = std::round(13 * scale);
+    io.Fonts->AddFontDefault(&font);
+    ImGui::GetStyle().ScaleAllSizes(scale);
+    ImGui_ImplGlfw_InitForVulkan(window_->handle(), true);
+
+    ImGui_ImplVulkan_InitInfo info{};
+    info.Instance = *device_->instance();
+    info.PhysicalDevice = *device_->physical();
+    info.Device = *device_->handle();
+    info.QueueFamily = device_->queue_family();
+    info.Queue = *device_->queue();
+    info.PipelineCache = *device_->pipeline_cache();
+    info.DescriptorPool = *descriptor_pool_;
+    info.MinImageCount = 2;
+    info.ImageCount = std::max(2u, static_cast<uint32_t>(images_.size()));
+    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+    info.CheckVkResultFn = check;
+    if (!ImGui_ImplVulkan_Init(&info, *render_pass_))
+        throw DeviceFailure("the user interface could not start");
+#if IMGUI_VERSION_NUM < 19000
+    device_->submit(
+        [](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+#else
+    const auto lock = device_->lock_queue();
+    ImGui_ImplVulkan_CreateFontsTexture();
+#endif
+}
+
+void Screen::make_swapchain() {
+    const auto& surface = device_->surface();
+    const auto limits = device_->physical().getSurfaceCapabilitiesKHR(*surface);
+    extent_ = limits.currentExtent;
+    if (extent_.width == UINT32_MAX) {
+        const uvec2 size = window_->framebuffer_size();
+        extent_.width = std::clamp(size.x, limits.minImageExtent.width, limits.maxImageExtent.width);
+        extent_.height = std::clamp(size.y, limits.minImageExtent.height, limits.maxImageExtent.height);
+    }
+    framebuffers_.clear();
+    views_.clear();
+    drawn_.clear();
+    if (extent_.width == 0 || extent_.height == 0) return;  // minimised
+    const uint32_t most = limits.maxImageCount == 0 ? UINT32_MAX : limits.maxImageCount;
+    vk::SwapchainCreateInfoKHR info({}, *surface, std::min(limits.minImageCount + 1, most), format_.format,
+                                    format_.colorSpace, extent_, 1,
+                                    vk::ImageUsageFlagBits::eColorAttachment |
+                                        vk::ImageUsageFlagBits::eTransferDst |
+                                        (limits.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferSrc));
+    info.preTransform = limits.currentTransform;
+    info.compositeAlpha = limits.supportedCompositeAlpha & vk::CompositeAlphaFlagBitsKHR::eOpaque
+                              ? vk::CompositeAlphaFlagBitsKHR::eOpaque
+                              : vk::CompositeAlphaFlagBitsKHR::eInherit;
+    info.presentMode = vk::PresentModeKHR::eFifo;
+    info.clipped = true;
+    info.oldSwapchain = *swapchain_;
+    swapchain_ = vk::raii::SwapchainKHR(device_->handle(), info);
+    images_.clear();
+    for (const VkImage image : swapchain_.getImages()) images_.emplace_back(image);
+    for (const vk::Image image : images_) {
+        views_.emplace_back(device_->handle(), vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D,
+                                                                       format_.format, {}, whole_image));
+        framebuffers_.emplace_back(
+            device_->handle(),
+            vk::FramebufferCreateInfo({}, *render_pass_, *views_.back(), extent_.width, extent_.height, 1));
+        drawn_.emplace_back(device_->handle(), vk::SemaphoreCreateInfo());
+    }
+}
+
+void Screen::begin_frame() {
+    ImGui_ImplVulkan_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+double Screen::show(const DisplayPass* pass, DisplayTransform transform, float exposure,
+                    const Rectangle& where) {
+    ImGui::Render();
+    const uvec2 window_size = window_->framebuffer_size();
+    if (window_size.x == 0 || window_size.y == 0) return 0;
+    const auto lock = device_->lock_queue();
+    const auto remake = [&] {
+        (*device_->handle()).waitIdle(*device_->handle().getDispatcher());
+        make_swapchain();
+    };
+    if (window_size != size()) remake();
+    if (framebuffers_.empty()) return 0;
+
+    const auto start = Clock::now();
+    uint32_t image = 0;
+    try {
+        image = swapchain_.acquireNextImage(UINT64_MAX, *acquired_).second;
+    } catch (const vk::OutOfDateKHRError&) {
+        remake();  // the next frame will be shown
+        return seconds_since(start);
+    }
+    double waited = seconds_since(start);
+
+    commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    record(commands_, image, pass, transform, exposure, where);
+    commands_.end();
+    const vk::PipelineStageFlags stage = vk::PipelineStageFlagBits::eAllCommands;
+    device_->queue().submit(vk::SubmitInfo(*acquired_, stage, *commands_, *drawn_[image]), *fence_);
+    if (device_->handle().waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
+        throw DeviceFailure("the device did not finish a frame");
+    device_->handle().resetFences(*fence_);
+    if (captures_) keep_capture();
+
+    const auto presenting = Clock::now();
+    bool fits = true;
+    try {
+        const vk::PresentInfoKHR info(*drawn_[image], *swapchain_, image);
+        fits = device_->queue().presentKHR(info) == vk::Result::eSuccess;
+    } catch (const vk::OutOfDateKHRError&) {
+        fits = false;
+    }
+    waited += seconds_since(presenting);
+    if (!fits) remake();
+    return waited;
+}
+
+void Screen::record(const vk::raii::CommandBuffer& commands, uint32_t image, const DisplayPass* pass,
+                    DisplayTransform transform, float exposure, const Rectangle& where) {
+    constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
+    const vk::ClearColorValue grey(std::array<float, 4>{0.07f, 0.07f, 0.07f, 1.0f});
+    if (pass) pass->record(commands, transform, exposure);
+    change_layout(commands, images_[image], vk::ImageLayout::eUndefined, target_layout);
+    commands.clearColorImage(images_[image], target_layout, grey, whole_image);
+    if (pass && where.size.x > 0 && where.size.y > 0) {
+        change_layout(commands, images_[image], target_layout, target_layout);  // clear before blit
+        const vk::Image source = pass->picture().handle();
+        change_layout(commands, source, vk::ImageLayout::eGeneral, vk::ImageLayout::eTransferSrcOptimal);
+        const glm::ivec2 end = where.corner + where.size;
+        const vk::ImageBlit blit(
+            whole_layer,
+            {vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(pass->picture().width()),
+                                                 static_cast<int>(pass->picture().height()), 1)},
+            whole_layer, {vk::Offset3D(where.corner.x, where.corner.y, 0), vk::Offset3D(end.x, end.y, 1)});
+        // Enlarged pixels stay visible as such.
+        const bool enlarges = where.size.x >= static_cast<int>(pass->picture().width());
+        commands.blitImage(source, vk::ImageLayout::eTransferSrcOptimal, images_[image], target_layout, blit,
+                           enlarges ? vk::Filter::eNearest : vk::Filter::eLinear);
+        change_layout(commands, source, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::eGeneral);
+    }
+    commands.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffers_[image], {{0, 0}, extent_}),
+                             vk::SubpassContents::eInline);
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
+    commands.endRenderPass();
+    if (!captures_) return;
+    // For keep_capture().
+    const size_t bytes = size_t{4} * extent_.width * extent_.height;
+    if (!capture_buffer_ || capture_buffer_->size() < bytes)
+        capture_buffer_.emplace(*device_, bytes, vk::BufferUsageFlags(), Buffer::Location::host);
+    change_layout(commands, images_[image], vk::ImageLayout::ePresentSrcKHR,
+                  vk::ImageLayout::eTransferSrcOptimal);
+    commands.copyImageToBuffer(
+        images_[image], vk::ImageLayout::eTransferSrcOptimal, capture_buffer_->handle(),
+        vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {extent_.width, extent_.height, 1}));
+    change_layout(commands, images_[image], vk::ImageLayout::eTransferSrcOptimal,
+                  vk::ImageLayout::ePresentSrcKHR);
+}
+
+void Screen::keep_capture() {
+    captures_ = false;
+    captured_ = {extent_.width, extent_.height,
+                 std::vector<uint8_t>(size_t{4} * extent_.width * extent_.height)};
+    capture_buffer_->read(captured_.pixels.data(), captured_.pixels.size());
+    for (size_t i = 0; i < captured_.pixels.size(); i += 4) {
+        if (format_.format == vk::Format::eB8G8R8A8Unorm)
+            std::swap(captured_.pixels[i], captured_.pixels[i + 2]);
+        captured_.pixels[i + 3] = 255;
+    }
+}
+
+}  // namespace lab

@@ -1,0 +1,238 @@
+#include "viewer/session.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+#include "rendering/outputs.h"
+#include "rendering/settings.h"
+
+namespace lab {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::array<float, 3> to_array(const vec3& v) { return {v.x, v.y, v.z}; }
+
+// Whether a render goes on with these options: they differ at most in what shows it.
+bool has_same_samples(const Options& a, const Options& b) {
+    return a.seed == b.seed && a.first_sample == b.first_sample && a.max_path_length == b.max_path_length &&
+           a.only_path_length == b.only_path_length && a.camera_position == b.camera_position &&
+           a.camera_target == b.camera_target && a.camera_up == b.camera_up &&
+           a.vertical_fov == b.vertical_fov && a.background == b.background &&
+           a.chapter_values == b.chapter_values;
+}
+
+// Names of files in messages start at the project's folder.
+std::string shortened(std::string message) {
+    const std::string folder = project_folder().string() + "/";
+    for (size_t at = message.find(folder); at != std::string::npos; at = message.find(folder))
+        message.erase(at, folder.size());
+    return message;
+}
+
+}  // namespace
+
+Session::Session(const Device& device, const Chapter& chapter, const Options& options, Scene scene)
+    : device_(device), chapter_(chapter), options_(options) {
+    build_ = make_build(device, chapter, options, BuildStage::scene, nullptr,
+                        std::make_shared<Scene>(std::move(scene)));
+    watched_shaders_ = build_->shader_files;
+    shader_hash_ = build_->shader_hash;
+    if (build_->job.resumed) {
+        build_->renderer->resume(build_->job.resumed->image);
+        needs_restart_ = false;
+    }
+}
+
+CameraPose Session::camera() const { return camera_of(*build_->scene, options_); }
+
+vec3 Session::background() const { return background_of(*build_->scene, options_); }
+
+void Session::change(const Options& options) {
+    if (!has_same_samples(options_, options)) needs_restart_ = true;
+    options_ = options;
+}
+
+void Session::set_camera(const CameraPose& pose) {
+    Options options = options_;
+    options.camera_position = to_array(pose.position);
+    options.camera_target = to_array(pose.target);
+    options.camera_up = to_array(pose.up);
+    options.vertical_fov = pose.vertical_fov;
+    change(options);
+}
+
+void Session::open_scene(const std::filesystem::path& file) {
+    options_.scene = file;
+    options_.camera_position = options_.camera_target = options_.camera_up = options_.background =
+        std::nullopt;
+    options_.vertical_fov.reset();
+    reloads_scene_ = true;
+}
+
+void Session::restart() { needs_restart_ = true; }
+
+void Session::update(double dispatch_seconds, bool is_moving) {
+    look_for_changed_shaders();
+    adopt_finished_build();
+    start_build_if_needed();
+    // While another scene is loaded the camera is that of the one to come.
+    const bool is_loading = is_building() && (options_.scene != build_->options.scene);
+    if (reduction_ > 1 && !is_moving) needs_restart_ = true;
+    if (needs_restart_ && !is_loading) begin(dispatch_seconds, is_moving);
+    render(dispatch_seconds, is_moving);
+}
+
+void Session::look_for_changed_shaders() {
+    constexpr double interval = 0.1;
+    if (seconds_since(last_look_) < interval) return;
+    last_look_ = Clock::now();
+    if (failed_shader_hash_ != 0) try {
+            // The file that did not compile may include others than the one that did.
+            watched_shaders_ = shader_files(make_estimator(chapter_, options_));
+        } catch (const UserError&) {
+            // One is missing: the message says so.
+        }
+    if (const uint64_t hash = hash_of(watched_shaders_); hash != 0) shader_hash_ = hash;
+    if (failed_shader_hash_ != 0 && shader_hash_ == build_->shader_hash) {
+        failed_shader_hash_ = 0;
+        message_.clear();
+    }
+}
+
+void Session::start_build_if_needed() {
+    if (is_building()) return;
+    BuildStage first = reloads_scene_ ? BuildStage::scene : first_difference(build_->options, options_);
+    if (shader_hash_ != build_->shader_hash && shader_hash_ != failed_shader_hash_)
+        first = std::min(first, BuildStage::renderer);
+    if (first == BuildStage::nothing) return;
+    reloads_scene_ = false;
+    work_shader_hash_ = shader_hash_;
+    Options options = options_;
+    options.resume.clear();
+    work_ = std::async(std::launch::async, [this, options, first, before = build_.get()] {
+        return make_build(device_, chapter_, options, first, before);
+    });
+}
+
+void Session::adopt_finished_build() {
+    if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    try {
+        build_ = work_.get();
+    } catch (const UserError& error) {
+        return take_back(error.what());
+    } catch (const DeviceFailure& error) {  // such as an image or a scene for which there is no memory
+        return take_back(error.what());
+    } catch (const DeviceError& error) {
+        return take_back(error.what());
+    }
+    message_.clear();
+    failed_shader_hash_ = 0;
+    watched_shaders_ = build_->shader_files;
+    shader_hash_ = build_->shader_hash;
+    paths_per_second_ = 0;
+    needs_restart_ = true;
+}
+
+void Session::take_back(const std::string& why) {
+    message_ = shortened(why);
+    if (work_shader_hash_ != build_->shader_hash) failed_shader_hash_ = work_shader_hash_;
+    options_ = build_->options;
+}
+
+void Session::begin(double dispatch_seconds, bool is_moving) {
+    needs_restart_ = false;
+    const Options before = build_->options;
+    try {
+        build_->options = keep_built(before, options_);
+        set_options(build_->job, chapter_, *build_->scene, build_->options);
+    } catch (const UserError& error) {
+        build_->options = options_ = before;
+        message_ = error.what();
+        set_options(build_->job, chapter_, *build_->scene, build_->options);
+    }
+    RenderParameters parameters = build_->job.parameters;
+    reduction_ = is_moving ? find_reduction(dispatch_seconds) : 1;
+    parameters.image_size = glm::max(parameters.image_size / reduction_, uvec2(1));
+    build_->renderer->restart(parameters);
+    seconds_ = 0;
+    snapshot_ = {};
+    snapshot_error_.reset();
+}
+
+uint32_t Session::find_reduction(double seconds) const {
+    constexpr uint32_t largest = 16;
+    if (paths_per_second_ <= 0) return 4;  // nothing is known yet
+    const uvec2 size = build_->job.parameters.image_size;
+    const double affordable = std::max(paths_per_second_ * seconds, 1.0);
+    const double pixels = static_cast<double>(size.x) * size.y;
+    return static_cast<uint32_t>(std::clamp(std::ceil(std::sqrt(pixels / affordable)), 1.0, double{largest}));
+}
+
+void Session::render(double seconds, bool is_moving) {
+    Renderer& renderer = *build_->renderer;
+    if (is_paused && renderer.samples() >= 1) return;
+    const auto start = Clock::now();
+    const double first_samples = renderer.samples();
+    double elapsed = 0;
+    // A picture that moves is shown when it is complete, unless that takes far too long.
+    const auto goes_on = [&] {
+        return elapsed < 0.75 * seconds || (is_moving && renderer.samples() < 1 && elapsed < 2 * seconds);
+    };
+    while (renderer.samples() < target_samples() && goes_on()) {
+        // Errors are estimated at powers of two.
+        const auto done = static_cast<uint32_t>(renderer.samples());
+        uint32_t next = 1;
+        while (next <= done) next = next > target_samples() / 2 ? target_samples() : 2 * next;
+        next = std::min(next, target_samples());
+        renderer.set_dispatch_seconds(std::max(seconds - elapsed, 0.1 * seconds));
+        const bool is_complete = !renderer.advance(next);
+        elapsed = seconds_since(start);
+        if (is_complete && reduction_ == 1) take_snapshot(next);
+    }
+    seconds_ += elapsed;
+    const double pixels = static_cast<double>(renderer.film().width()) * renderer.film().height();
+    if (elapsed > 0 && renderer.samples() > first_samples)
+        paths_per_second_ = (renderer.samples() - first_samples) * pixels / elapsed;
+}
+
+void Session::take_snapshot(uint32_t samples) {
+    FilmImage film = build_->renderer->film().read();
+    if (snapshot_.min_samples() > 0 && samples == 2 * snapshot_.min_samples())
+        snapshot_error_ =
+            std::sqrt(estimate_error(snapshot_.mean(), samples_after(snapshot_, film).mean()).rel_mse);
+    snapshot_ = std::move(film);
+}
+
+uint32_t Session::target_samples() const {
+    return options_.samples.value_or(UINT32_MAX - build_->job.record.first_sample);
+}
+
+double Session::samples() const { return reduction_ == 1 ? build_->renderer->samples() : 0; }
+
+std::optional<double> Session::relative_error() const {
+    if (!snapshot_error_ || samples() <= 0) return std::nullopt;
+    return *snapshot_error_ * std::sqrt(snapshot_.min_samples() / samples());
+}
+
+void Session::save(const std::vector<std::filesystem::path>& files) {
+    if (samples() < 1) {  // closed at once, or while the camera moved
+        begin(0, false);
+        while (build_->renderer->advance(1)) {
+        }
+    }
+    FilmRecord record = build_->job.record;
+    record.seconds += seconds_;
+    record.rays += rays();
+    const FilmImage film = build_->renderer->film().read();
+    Options options = build_->options;
+    options.exposure = options_.exposure;
+    write_each(files, [&](const std::filesystem::path& file) { write_picture(file, film, record, options); });
+}
+
+}  // namespace lab

@@ -1,0 +1,83 @@
+// What a window renders, and the changes that its user makes to it.
+#pragma once
+#include <chrono>
+#include <future>
+
+#include "film/error_metrics.h"
+#include "viewer/build.h"
+
+namespace lab {
+
+class Session {
+  public:
+    // Makes the first build; throws what make_build() throws. Device and chapter must outlive the session.
+    Session(const Device& device, const Chapter& chapter, const Options& options, Scene scene);
+
+    const Chapter& chapter() const { return chapter_; }
+    const Build& build() const { return *build_; }
+    // What is wanted, which is what is rendered unless a build is in progress.
+    const Options& options() const { return options_; }
+    CameraPose camera() const;
+    vec3 background() const;
+
+    // Asks for other options. Parameters of the estimator hold from the next update() on; what has to be
+    // built for others is built in the background while the picture stays. What turns out to be impossible is
+    // taken back, and message() says why.
+    void change(const Options& options);
+    void set_camera(const CameraPose& pose);
+    void open_scene(const std::filesystem::path& file);  // with its own camera and background
+    void restart();
+
+    // One frame's work: takes over what was built, looks for changed shaders, and renders for about so many
+    // seconds; while the camera moves in an image that is reduced enough to be finished in that time.
+    void update(double dispatch_seconds, bool is_moving);
+
+    bool is_paused = false;
+    bool is_building() const { return work_.valid(); }
+    const std::string& message() const { return message_; }  // the last failure; empty if there is none
+
+    // --- Progress since the last restart.
+    uint32_t target_samples() const;             // of a pixel; UINT32_MAX without --samples
+    double samples() const;                      // of a pixel; 0 of a reduced image
+    double seconds() const { return seconds_; }  // spent on rendering
+    uint64_t rays() const { return build_->renderer->rays(); }
+    uint32_t reduction() const { return reduction_; }  // pixels of the picture a rendered one, in a row
+    // Relative error (root of rel_mse) estimated from two halves of the samples, from 2 samples on.
+    std::optional<double> relative_error() const;
+
+    // Writes what there is so far, each file in the format of its ending, as a run without a window does.
+    void save(const std::vector<std::filesystem::path>& files);
+    const FilmImage& last_snapshot() const { return snapshot_; }  // what remains if the device is lost
+
+  private:
+    void look_for_changed_shaders();
+    void start_build_if_needed();
+    void adopt_finished_build();
+    void begin(double dispatch_seconds, bool is_moving);
+    void render(double seconds, bool is_moving);
+    void take_snapshot(uint32_t samples);
+    uint32_t find_reduction(double seconds) const;
+    void take_back(const std::string& why);
+
+    const Device& device_;
+    const Chapter& chapter_;
+    Options options_;
+    std::unique_ptr<Build> build_;
+    std::future<std::unique_ptr<Build>> work_;
+    bool reloads_scene_ = false;  // although its name stays the same
+    std::set<std::filesystem::path> watched_shaders_;
+    uint64_t shader_hash_ = 0;         // of their contents when last looked at
+    uint64_t work_shader_hash_ = 0;    // the same when the build in progress was started
+    uint64_t failed_shader_hash_ = 0;  // contents that did not compile; 0 if the last ones did
+    std::chrono::steady_clock::time_point last_look_{};
+    std::string message_;
+
+    bool needs_restart_ = true;
+    uint32_t reduction_ = 1;
+    double paths_per_second_ = 0;  // camera paths, measured
+    double seconds_ = 0;
+    FilmImage snapshot_;  // at the last power of two
+    std::optional<double> snapshot_error_;
+};
+
+}  // namespace lab

@@ -1,0 +1,146 @@
+#include "viewer/viewer.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <cstdio>
+
+#include "error.h"
+#include "rendering/interrupt.h"
+#include "rendering/outputs.h"
+#include "viewer/frame_pacing.h"
+
+namespace lab {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Follows a series of numbers with a memory of about ten of them.
+double smooth(double average, double number) { return average + 0.1 * (number - average); }
+
+}  // namespace
+
+Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options,
+               Scene scene)
+    : window_(window), session_(device, chapter, options, std::move(scene)), screen_(device, window) {}
+
+bool Viewer::frame() {
+    const bool has_work = !session_.is_paused && session_.samples() < session_.target_samples();
+    window_.poll_events(has_work ? 0 : 0.02);
+    if (window_.should_close() || is_interrupted()) return false;
+    const auto start = Clock::now();
+    const double seconds = seconds_since(last_frame_);
+    last_frame_ = start;
+    if (seconds > 0) frames_per_second_ = smooth(frames_per_second_, 1 / seconds);
+
+    screen_.begin_frame();
+    open_dropped_files();
+    if (shows_controls_) controls_.draw(session_, camera_control_, frames_per_second_);
+    handle_keys();
+    move_camera(std::min(seconds, 0.2));
+
+    const auto rendering = Clock::now();
+    constexpr double rest = 0.2;  // seconds without motion after which the picture is rendered as asked for
+    session_.update(rendering_seconds(window_.refresh_seconds(), interface_seconds_),
+                    seconds_since(last_motion_) < rest);
+    const double rendered = seconds_since(rendering);
+
+    const Options& options = session_.build().options;
+    const DisplayTransform transform = options.view ? options.view->display : DisplayTransform::exposure;
+    const double waited = screen_.show(session_.build().display.get(), transform, session_.options().exposure,
+                                       picture_rectangle());
+    interface_seconds_ = smooth(interface_seconds_, seconds_since(start) - rendered - waited);
+    return true;
+}
+
+Rectangle Viewer::picture_rectangle() const {
+    const glm::ivec2 window(screen_.size());
+    const int left = shows_controls_ ? std::min(controls_.width(), window.x / 2) : 0;
+    const glm::dvec2 free(std::max(window.x - left, 1), std::max(window.y, 1));
+    const glm::dvec2 size(session_.build().job.parameters.image_size);
+    const double scale = std::min(free.x / size.x, free.y / size.y);
+    Rectangle picture;
+    picture.size = glm::ivec2(scale * size);
+    picture.corner = glm::ivec2(left, 0) + (glm::ivec2(free) - picture.size) / 2;
+    return picture;
+}
+
+void Viewer::move_camera(double seconds) {
+    const std::shared_ptr<const Scene>& scene = session_.build().scene;
+    if (fitted_scene_ != scene) {
+        fitted_scene_ = scene;
+        camera_control_.fit_to(world_bounds(*scene));
+    }
+    const ImGuiIO& io = ImGui::GetIO();
+    CameraMotion motion;
+    if (!io.WantCaptureKeyboard && !io.WantTextInput) {
+        const auto pull = [&](int forth, int back) {
+            return static_cast<float>(window_.is_key_down(forth)) -
+                   static_cast<float>(window_.is_key_down(back));
+        };
+        motion.steps =
+            static_cast<float>(seconds) *
+            vec3(pull(GLFW_KEY_D, GLFW_KEY_A), pull(GLFW_KEY_E, GLFW_KEY_Q), pull(GLFW_KEY_W, GLFW_KEY_S));
+    }
+    if (!io.WantCaptureMouse) {
+        if (ImGui::IsMouseDragging(ImGuiMouseButton_Left)) {
+            const float height =
+                static_cast<float>(picture_rectangle().size.y) / io.DisplayFramebufferScale.y;
+            motion.drag = vec2(io.MouseDelta.x, io.MouseDelta.y) / std::max(height, 1.0f);
+        }
+        motion.zoom = io.MouseWheel;
+    }
+    if (motion.is_none()) return;
+    const CameraPose pose = session_.camera(), moved = camera_control_.move(pose, motion);
+    if (moved.position == pose.position && moved.target == pose.target) return;  // the wheel set the speed
+    session_.set_camera(moved);
+    last_motion_ = Clock::now();
+}
+
+void Viewer::handle_keys() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantCaptureKeyboard || io.WantTextInput) return;
+    if (window_.was_key_pressed(GLFW_KEY_TAB)) shows_controls_ = !shows_controls_;
+    if (window_.was_key_pressed(GLFW_KEY_SPACE)) session_.is_paused = !session_.is_paused;
+    if (window_.was_key_pressed(GLFW_KEY_R)) session_.restart();
+}
+
+void Viewer::open_dropped_files() {
+    for (const auto& file : window_.dropped_files()) session_.open_scene(file);
+}
+
+void run_viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options,
+                Scene scene) {
+    install_interrupt_handler();
+    Viewer viewer(window, device, chapter, options, std::move(scene));
+    Session& session = viewer.session();
+    // If the device fails, what was last read from it is all there is.
+    const auto keep = [&](const std::string& why) {
+        const FilmImage& film = session.last_snapshot();
+        if (film.pixels.empty()) throw DeviceFailure(why + ": there was nothing to write yet");
+        write_each(options.outputs, [&](const std::filesystem::path& file) {
+            write_picture(file, film, session.build().job.record, session.build().options);
+        });
+        throw DeviceFailure(why + ": the outputs hold " + std::to_string(film.min_samples()) +
+                            " samples a pixel; --resume continues");
+    };
+    try {
+        while (viewer.frame()) {
+        }
+        session.save(options.outputs);
+    } catch (const vk::SystemError& error) {
+        keep(std::string("the device failed: ") + error.what());
+    } catch (const DeviceFailure& error) {
+        keep(error.what());
+    }
+    if (options.quiet) return;
+    std::printf("samples        %.6g a pixel\n", session.samples());
+    for (const auto& file : options.outputs) std::printf("picture        %s\n", file.string().c_str());
+}
+
+}  // namespace lab

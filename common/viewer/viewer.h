@@ -1,0 +1,49 @@
+// The window of a chapter: shows the picture while it is rendered, and lets its user change everything.
+#pragma once
+#include "viewer/camera_control.h"
+#include "viewer/controls.h"
+#include "viewer/screen.h"
+#include "viewer/session.h"
+
+namespace lab {
+
+class Viewer {
+  public:
+    // Window, device (made for this window) and chapter must outlive the viewer. Throws what a first render
+    // would throw.
+    Viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options, Scene scene);
+
+    // Handles what the user did, renders for a part of a frame's time and shows the result. False once the
+    // window is closed.
+    bool frame();
+
+    Session& session() { return session_; }
+    Screen& screen() { return screen_; }
+    double frames_per_second() const { return frames_per_second_; }
+
+  private:
+    void move_camera(double seconds);
+    void handle_keys();
+    void open_dropped_files();
+    Rectangle picture_rectangle() const;
+
+    Window& window_;
+    Session session_;
+    Screen screen_;
+    CameraControl camera_control_;
+    std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed fits to
+    Controls controls_;
+    bool shows_controls_ = true;
+    double interface_seconds_ = 0.01;  // of a frame, smoothed
+    double frames_per_second_ = 0;     // smoothed
+    std::chrono::steady_clock::time_point last_frame_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point last_motion_{};
+};
+
+// Opens the window and renders until it is closed; then writes the outputs that the options name, as a run
+// without a window does. Throws DeviceFailure if the device is lost, after writing what was last read from
+// it.
+void run_viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options,
+                Scene scene);
+
+}  // namespace lab

@@ -1,0 +1,126 @@
+#include "viewer/window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "error.h"
+
+namespace lab {
+namespace {
+
+bool is_set(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value && *value;
+}
+
+// GLFW's last error, for messages.
+std::string glfw_error() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text ? text : "unknown error";
+}
+
+}  // namespace
+
+bool Window::has_display() { return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"); }
+
+Window::Window(const std::string& title, uvec2 size) {
+    if (!has_display())
+        throw UserError(
+            "there is no display (DISPLAY and WAYLAND_DISPLAY are not set) for a window: use --headless");
+    if (!glfwInit()) throw UserError("no window can be opened (" + glfw_error() + "): use --headless");
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    if (glfwVulkanSupported())
+        window_ = glfwCreateWindow(static_cast<int>(size.x), static_cast<int>(size.y), title.c_str(), nullptr,
+                                   nullptr);
+    if (!window_) {
+        const std::string why = glfw_error();
+        glfwTerminate();
+        throw UserError("no window can be opened (" + why + "): use --headless");
+    }
+    glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    install_callbacks();
+}
+
+Window::~Window() {
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+void Window::install_callbacks() {
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+        auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+        if (action == GLFW_PRESS) {
+            self.keys_down_.insert(key);
+            self.keys_pressed_.insert(key);
+        } else if (action == GLFW_RELEASE) {
+            self.keys_down_.erase(key);
+        }
+    });
+    // Another window receives the releases of keys that are held while this one loses the focus.
+    glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int is_focused) {
+        if (!is_focused) static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_down_.clear();
+    });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** names) {
+        auto& self = *static_cast<Window*>(glfwGetWindowUserPointer(window));
+        self.dropped_files_.insert(self.dropped_files_.end(), names, names + count);
+    });
+}
+
+std::vector<const char*> Window::instance_extensions() const {
+    uint32_t count = 0;
+    const char** names = glfwGetRequiredInstanceExtensions(&count);
+    return {names, names + count};
+}
+
+VkSurfaceKHR Window::make_surface(VkInstance instance) const {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    if (glfwCreateWindowSurface(instance, window_, nullptr, &surface) != VK_SUCCESS)
+        throw UserError("the window cannot be drawn to (" + glfw_error() + "): use --headless");
+    return surface;
+}
+
+uvec2 Window::framebuffer_size() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) return {0, 0};
+    return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+float Window::scale() const {
+    // Where window coordinates are scaled already, the content scale is part of them.
+    float scale = 1;
+    int window_width = 0, pixel_width = 0, ignored = 0;
+    glfwGetWindowContentScale(window_, &scale, nullptr);
+    glfwGetWindowSize(window_, &window_width, &ignored);
+    glfwGetFramebufferSize(window_, &pixel_width, &ignored);
+    if (pixel_width > 0 && window_width > 0)
+        scale *= static_cast<float>(window_width) / static_cast<float>(pixel_width);
+    return std::isfinite(scale) && scale > 0.5f ? scale : 1.0f;
+}
+
+double Window::refresh_seconds() const {
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
+    return mode && mode->refreshRate > 0 ? 1.0 / mode->refreshRate : 1.0 / 60;
+}
+
+bool Window::should_close() const { return glfwWindowShouldClose(window_); }
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+void Window::poll_events(double max_wait_seconds) {
+    keys_pressed_.clear();
+    dropped_files_.clear();
+    if (max_wait_seconds > 0)
+        glfwWaitEventsTimeout(max_wait_seconds);
+    else
+        glfwPollEvents();
+}
+
+}  // namespace lab

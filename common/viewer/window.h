@@ -1,0 +1,52 @@
+// A window of the desktop.
+#pragma once
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gpu/device.h"
+#include "shaders/interface.h"
+
+struct GLFWwindow;
+
+namespace lab {
+
+class Window {
+  public:
+    // Whether the environment names a display; does not touch GLFW.
+    static bool has_display();
+
+    // Throws UserError if no window can be opened. There is at most one at a time.
+    Window(const std::string& title, uvec2 size);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    // What a device needs to show pictures in this window.
+    std::vector<const char*> instance_extensions() const;
+    VkSurfaceKHR make_surface(VkInstance instance) const;
+
+    GLFWwindow* handle() const { return window_; }
+    uvec2 framebuffer_size() const;  // pixels; 0 while the window is minimised
+    float scale() const;             // how much larger than on a common screen text has to be
+    double refresh_seconds() const;  // between two pictures of the display
+    bool should_close() const;
+    void set_title(const std::string& title);
+
+    // Handles what happened since the last call; waits for it at most so long.
+    void poll_events(double max_wait_seconds = 0);
+    bool is_key_down(int key) const { return keys_down_.contains(key); }  // GLFW_KEY_...
+    bool was_key_pressed(int key) const { return keys_pressed_.contains(key); }
+    // Files dropped on the window since the last poll.
+    const std::vector<std::filesystem::path>& dropped_files() const { return dropped_files_; }
+
+  private:
+    void install_callbacks();
+
+    GLFWwindow* window_ = nullptr;
+    std::set<int> keys_down_, keys_pressed_;
+    std::vector<std::filesystem::path> dropped_files_;
+};
+
+}  // namespace lab
