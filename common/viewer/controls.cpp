@@ -177,6 +177,7 @@ void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parame
     for (size_t i = 0; i < chapter.options.size(); ++i)
         draw_chapter_option(chapter.options[i], parameters, options.chapter_values[i]);
     number_field("seed", options.seed);
+    seed_field_ = {ImGui::GetItemRectMin().x + 20, ImGui::GetItemRectMin().y + 5};
     uint32_t samples = options.samples.value_or(0);
     if (number_field("samples (0: no end)", samples))
         options.samples = samples > 0 ? std::optional(samples) : std::nullopt;

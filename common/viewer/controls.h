@@ -14,7 +14,8 @@ class Controls {
 
     // To be called between Screen::begin_frame() and Screen::show().
     void draw(Session& session, CameraControl& camera_control, double frames_per_second);
-    int width() const;  // pixels of the framebuffer
+    int width() const;                               // pixels of the framebuffer
+    vec2 seed_field() const { return seed_field_; }  // where it was drawn last, for tests
 
   private:
     void draw_progress(Session& session, double frames_per_second);
@@ -27,6 +28,7 @@ class Controls {
 
     std::vector<std::filesystem::path> scenes_;  // of assets/scenes
     std::string notice_;                         // what was just done
+    vec2 seed_field_{0};
 };
 
 }  // namespace lab

@@ -152,7 +152,16 @@ void Screen::make_swapchain() {
     }
 }
 
+void Screen::remake_swapchain() {
+    (*device_->handle()).waitIdle(*device_->handle().getDispatcher());
+    make_swapchain();
+}
+
 void Screen::begin_frame() {
+    if (const uvec2 window = window_->framebuffer_size(); window != size() && window.x > 0 && window.y > 0) {
+        const auto lock = device_->lock_queue();
+        remake_swapchain();
+    }
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -164,11 +173,6 @@ double Screen::show(const DisplayPass* pass, DisplayTransform transform, float e
     const uvec2 window_size = window_->framebuffer_size();
     if (window_size.x == 0 || window_size.y == 0) return 0;
     const auto lock = device_->lock_queue();
-    const auto remake = [&] {
-        (*device_->handle()).waitIdle(*device_->handle().getDispatcher());
-        make_swapchain();
-    };
-    if (window_size != size()) remake();
     if (framebuffers_.empty()) return 0;
 
     const auto start = Clock::now();
@@ -176,7 +180,7 @@ double Screen::show(const DisplayPass* pass, DisplayTransform transform, float e
     try {
         image = swapchain_.acquireNextImage(UINT64_MAX, *acquired_).second;
     } catch (const vk::OutOfDateKHRError&) {
-        remake();  // the next frame will be shown
+        remake_swapchain();  // the next frame will be shown
         return seconds_since(start);
     }
     double waited = seconds_since(start);
@@ -200,7 +204,7 @@ double Screen::show(const DisplayPass* pass, DisplayTransform transform, float e
         fits = false;
     }
     waited += seconds_since(presenting);
-    if (!fits) remake();
+    if (!fits) remake_swapchain();
     return waited;
 }
 
@@ -211,11 +215,14 @@ void Screen::record(const vk::raii::CommandBuffer& commands, uint32_t image, con
     if (pass) pass->record(commands, transform, exposure);
     change_layout(commands, images_[image], vk::ImageLayout::eUndefined, target_layout);
     commands.clearColorImage(images_[image], target_layout, grey, whole_image);
-    if (pass && where.size.x > 0 && where.size.y > 0) {
+    const glm::ivec2 end = where.corner + where.size;
+    // It was laid out for another window where that has just changed.
+    const bool fits = glm::all(glm::greaterThan(where.size, glm::ivec2(0))) &&
+                      glm::all(glm::lessThanEqual(end, glm::ivec2(size())));
+    if (pass && fits) {
         change_layout(commands, images_[image], target_layout, target_layout);  // clear before blit
         const vk::Image source = pass->picture().handle();
         change_layout(commands, source, vk::ImageLayout::eGeneral, vk::ImageLayout::eTransferSrcOptimal);
-        const glm::ivec2 end = where.corner + where.size;
         const vk::ImageBlit blit(
             whole_layer,
             {vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(pass->picture().width()),

@@ -37,6 +37,7 @@ class Screen {
   private:
     void start_user_interface();
     void make_swapchain();
+    void remake_swapchain();  // needs the lock of the queue
     void record(const vk::raii::CommandBuffer& commands, uint32_t image, const DisplayPass* pass,
                 DisplayTransform transform, float exposure, const Rectangle& where);
     void keep_capture();

@@ -43,6 +43,7 @@ bool Viewer::frame() {
     if (shows_controls_) controls_.draw(session_, camera_control_, frames_per_second_);
     handle_keys();
     move_camera(std::min(seconds, 0.2));
+    window_.clear_events();
 
     const auto rendering = Clock::now();
     constexpr double rest = 0.2;  // seconds without motion after which the picture is rendered as asked for

@@ -19,6 +19,7 @@ class Viewer {
 
     Session& session() { return session_; }
     Screen& screen() { return screen_; }
+    const Controls& controls() const { return controls_; }
     double frames_per_second() const { return frames_per_second_; }
 
   private:

@@ -115,12 +115,15 @@ bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 void Window::poll_events(double max_wait_seconds) {
-    keys_pressed_.clear();
-    dropped_files_.clear();
     if (max_wait_seconds > 0)
         glfwWaitEventsTimeout(max_wait_seconds);
     else
         glfwPollEvents();
+}
+
+void Window::clear_events() {
+    keys_pressed_.clear();
+    dropped_files_.clear();
 }
 
 }  // namespace lab

@@ -34,11 +34,12 @@ class Window {
     bool should_close() const;
     void set_title(const std::string& title);
 
-    // Handles what happened since the last call; waits for it at most so long.
+    // Collects what happened, waiting for it at most so long.
     void poll_events(double max_wait_seconds = 0);
+    void clear_events();                                                  // once they are handled
     bool is_key_down(int key) const { return keys_down_.contains(key); }  // GLFW_KEY_...
     bool was_key_pressed(int key) const { return keys_pressed_.contains(key); }
-    // Files dropped on the window since the last poll.
+    // Files dropped on the window.
     const std::vector<std::filesystem::path>& dropped_files() const { return dropped_files_; }
 
   private:

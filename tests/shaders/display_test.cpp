@@ -1,0 +1,91 @@
+// shaders/display.comp: a screen shows what film/display.h computes.
+#include <cmath>
+#include <limits>
+
+#include "support/gpu_test.h"
+#include "viewer/display_pass.h"
+
+namespace lab {
+namespace {
+
+// Radiance from far below to far above what a screen shows, dark and bright at odd sample counts, some
+// invalid.
+FilmImage make_film(uint32_t width, uint32_t height) {
+    FilmImage film{width, height, {}};
+    for (uint32_t i = 0; i < width * height; ++i) {
+        FilmPixel pixel{};
+        pixel.sample_count = 1 + i % 7;
+        const float value = std::exp2(static_cast<float>(i) / static_cast<float>(width * height) * 24 - 16);
+        pixel.sum = static_cast<float>(pixel.sample_count) * vec3(value, 0.5f * value, 1.7f * value);
+        pixel.compensation = 0.01f * pixel.sum;
+        if (i % 11 == 0) pixel.sum = vec3(0);
+        if (i % 13 == 0) pixel.invalid_count = 1;
+        film.pixels.push_back(pixel);
+    }
+    return film;
+}
+
+std::vector<uint8_t> show(Film& film, const std::shared_ptr<StorageImage>& picture,
+                          DisplayTransform transform, float exposure) {
+    const DisplayPass pass(test_device(), film, picture);
+    test_device().submit(
+        [&](const vk::raii::CommandBuffer& commands) { pass.record(commands, transform, exposure); });
+    return picture->read();
+}
+
+TEST(Display, AgreesWithTheSavedPictureToOneStepOfEightBits) {
+    const FilmImage image = make_film(61, 35);  // no multiples of a block
+    Film film(test_device(), image.width, image.height);
+    film.write(image);
+    const auto picture = std::make_shared<StorageImage>(test_device(), image.width, image.height);
+    for (const auto transform :
+         {DisplayTransform::exposure, DisplayTransform::maximum, DisplayTransform::as_is})
+        for (const float exposure : {0.0f, -3.5f, 6.0f}) {
+            const auto shown = show(film, picture, transform, exposure);
+            const Texture expected = to_display(image, transform, exposure);
+            int largest = 0;
+            for (size_t i = 0; i < shown.size(); ++i)
+                largest = std::max(largest, std::abs(int{shown[i]} - int{expected.pixels[i]}));
+            EXPECT_LE(largest, 1) << "transform " << static_cast<int>(transform) << ", exposure " << exposure;
+        }
+    const FilmImage after = film.read();
+    EXPECT_EQ(std::memcmp(after.pixels.data(), image.pixels.data(), image.pixels.size() * sizeof(FilmPixel)),
+              0)
+        << "showing a film must not change it";
+}
+
+TEST(Display, KeepsThePictureWhereThereAreNoSamplesYet) {
+    FilmImage image = make_film(16, 16);
+    Film film(test_device(), 16, 16);
+    film.write(image);
+    const auto picture = std::make_shared<StorageImage>(test_device(), 16, 16);
+    const auto before = show(film, picture, DisplayTransform::exposure, 0);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+        if (i >= 128)
+            image.pixels[i] = FilmPixel{};
+        else
+            image.pixels[i].sum *= 2.0f;
+    film.write(image);
+    const auto after = show(film, picture, DisplayTransform::exposure, 0);
+    EXPECT_NE(std::memcmp(after.data(), before.data(), 4 * 128), 0);
+    EXPECT_EQ(std::memcmp(after.data() + 4 * 128, before.data() + 4 * 128, 4 * 128), 0);
+}
+
+TEST(Display, EnlargesAReducedFilm) {
+    const FilmImage image = make_film(8, 4);
+    Film film(test_device(), 32, 16);
+    film.resize(8, 4);
+    film.write(image);
+    const auto picture = std::make_shared<StorageImage>(test_device(), 32, 16);
+    const auto shown = show(film, picture, DisplayTransform::exposure, 0);
+    const Texture small = to_display(image, DisplayTransform::exposure, 0);
+    for (size_t y = 0; y < 16; ++y)
+        for (size_t x = 0; x < 32; ++x)
+            for (size_t channel = 0; channel < 4; ++channel)
+                ASSERT_NEAR(shown[4 * (32 * y + x) + channel],
+                            small.pixels[4 * (8 * (y / 4) + x / 4) + channel], 1)
+                    << x << ", " << y;
+}
+
+}  // namespace
+}  // namespace lab

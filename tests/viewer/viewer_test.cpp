@@ -1,0 +1,432 @@
+// The window of a chapter, driven as a user would: under a virtual display in continuous integration.
+#include "viewer/viewer.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+
+#include "error.h"
+#include "support/temporary_folder.h"
+
+namespace lab {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+const fs::path scenes = project_folder() / "assets" / "scenes";
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+class ViewerTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (!Window::has_display()) GTEST_SKIP() << "there is no display: use xvfb-run -a";
+    }
+
+    void TearDown() override {
+        viewer_.reset();
+        if (!device_) return;
+        for (const auto& message : device_->validation_messages())
+            ADD_FAILURE() << "validation layer: " << message;
+        device_.reset();
+        window_.reset();
+    }
+
+    // A small picture, so that many samples take no time.
+    Options make_options() const {
+        Options options;
+        options.scene = scenes / "cornell_box.json";
+        options.width = 48;
+        options.height = 40;
+        options.backend = "compute";
+        options.chapter_values.resize(chapter_.options.size());
+        return options;
+    }
+
+    void open(const Options& options) {
+        window_ = std::make_unique<Window>("test", uvec2(900, 640));
+        device_ = std::make_unique<Device>(DeviceOptions{
+            .choice = "",
+            .validation = true,
+            .instance_extensions = window_->instance_extensions(),
+            .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); }});
+        ASSERT_TRUE(*device_->surface());
+        viewer_ = std::make_unique<Viewer>(*window_, *device_, chapter_, options,
+                                           load_scene(options.scene, options.specular));
+        glfwFocusWindow(window_->handle());
+        run_frames(2);
+    }
+
+    Session& session() { return viewer_->session(); }
+
+    void run_frames(int count) {
+        for (int i = 0; i < count; ++i) ASSERT_TRUE(viewer_->frame());
+    }
+
+    // Runs frames until something is so; fails if that takes far too long.
+    void wait_until(const char* what, const std::function<bool()>& is_so) {
+        const auto start = Clock::now();
+        while (!is_so()) {
+            ASSERT_TRUE(viewer_->frame());
+            ASSERT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 60)
+                << "still not: " << what;
+        }
+    }
+
+    void finish_build() {
+        run_frames(1);
+        wait_until("built", [&] { return !session().is_building(); });
+    }
+
+    // Events as GLFW would report them, through whatever callbacks are installed.
+    void press(int key, bool is_down = true) {
+        GLFWwindow* window = window_->handle();
+        const auto callback = glfwSetKeyCallback(window, nullptr);
+        glfwSetKeyCallback(window, callback);
+        callback(window, key, 0, is_down ? GLFW_PRESS : GLFW_RELEASE, 0);
+    }
+    void drop(const fs::path& file) {
+        GLFWwindow* window = window_->handle();
+        const auto callback = glfwSetDropCallback(window, nullptr);
+        glfwSetDropCallback(window, callback);
+        const std::string name = file.string();
+        const char* names[] = {name.c_str()};
+        callback(window, 1, names);
+    }
+    void press_mouse(bool is_down) {
+        GLFWwindow* window = window_->handle();
+        const auto callback = glfwSetMouseButtonCallback(window, nullptr);
+        glfwSetMouseButtonCallback(window, callback);
+        callback(window, GLFW_MOUSE_BUTTON_LEFT, is_down ? GLFW_PRESS : GLFW_RELEASE, 0);
+    }
+    // Moves the pointer and waits until the window knows.
+    void point_at(float x, float y) {
+        glfwSetCursorPos(window_->handle(), x, y);
+        wait_until("pointed at", [&] { return std::abs(ImGui::GetIO().MousePos.x - x) < 1.5f; });
+    }
+
+    // Moves the pointer with the button held down. GLFW reports a button once, but Dear ImGui before 1.87
+    // asks it for the state in each frame.
+    void drag(const vec2& from, const vec2& to) {
+        point_at(from.x, from.y);
+        for (int step = 0; step <= 10; ++step) {
+            const vec2 position = glm::mix(from, to, static_cast<float>(step) / 10);
+            glfwSetCursorPos(window_->handle(), position.x, position.y);
+            press_mouse(true);
+            run_frames(1);
+        }
+        press_mouse(false);
+        run_frames(2);
+    }
+
+    FilmImage saved_film(const char* name) {
+        const fs::path file = folder_.path() / name;
+        session().save({file});
+        return read_film(file).image;
+    }
+
+    // Keeps what the window shows as a picture.
+    void take_screenshot(const std::string& name) {
+        viewer_->screen().capture_next();
+        run_frames(1);
+        const Texture& shown = viewer_->screen().captured();
+        ASSERT_EQ(uvec2(shown.width, shown.height), window_->framebuffer_size());
+        fs::create_directories("output");
+        write_png(fs::path("output") / (name + ".png"), shown);
+    }
+
+    TemporaryFolder folder_;
+    Chapter chapter_{.name = "05_russian_roulette",
+                     .title = "A test",
+                     .light_sampling = true,
+                     .split_every_hit = true,
+                     .unlimited_path_length = true,
+                     .options = {splitting_factor, survival_cap, roulette_start}};
+    std::unique_ptr<Window> window_;
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<Viewer> viewer_;
+};
+
+TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
+    Options options = make_options();
+    options.samples = 24;
+    options.seed = 7;
+    open(options);
+    // Whatever happens on the way must not matter in the end.
+    glfwSetWindowSize(window_->handle(), 1000, 500);
+    press(GLFW_KEY_W);
+    run_frames(3);
+    press(GLFW_KEY_W, false);
+    session().change(options);
+    wait_until("all samples", [&] { return session().samples() >= 24 && session().reduction() == 1; });
+    const fs::path saved = folder_.path() / "window.exr", expected = folder_.path() / "headless.exr";
+    session().save({saved});
+
+    const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / chapter_.name;
+    const std::string command =
+        program.string() +
+        " cornell_box --headless --quiet --backend=compute --width=48 --height=40 --seed=7 "
+        "--samples=24 --output=" +
+        expected.string();
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    const FilmFile a = read_film(saved), b = read_film(expected);
+    ASSERT_EQ(a.image.pixels.size(), b.image.pixels.size());
+    EXPECT_EQ(
+        std::memcmp(a.image.pixels.data(), b.image.pixels.data(), a.image.pixels.size() * sizeof(FilmPixel)),
+        0);
+    EXPECT_NO_THROW(require_same_render(a, b, "window", "headless"));
+    EXPECT_EQ(a.record.backend, b.record.backend);
+    EXPECT_EQ(a.record.estimator_hash, b.record.estimator_hash);
+    EXPECT_EQ(a.record.rays, b.record.rays);
+    take_screenshot("viewer");
+}
+
+TEST_F(ViewerTest, KeysMoveTheCameraAndRestartWithinAFrame) {
+    Options options = make_options();
+    options.width = options.height = 512;  // too large to be finished while the camera moves
+    open(options);
+    wait_until("samples", [&] { return session().samples() > 0.2; });
+    const vec3 before = session().camera().position;
+    press(GLFW_KEY_W);
+    run_frames(1);
+    EXPECT_NE(session().camera().position, before);
+    EXPECT_GT(session().reduction(), 1u) << "the picture of a moving camera has to be reduced";
+    EXPECT_EQ(session().build().renderer->film().width(), 512 / session().reduction());
+    const auto start = Clock::now();
+    run_frames(20);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    RecordProperty("frames_per_second_while_moving", std::to_string(20 / seconds));
+    EXPECT_GT(session().reduction(), 1u);
+    press(GLFW_KEY_W, false);
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() > 0; });
+    EXPECT_EQ(session().build().renderer->film().width(), 512u);
+}
+
+TEST_F(ViewerTest, DraggingThePictureTurnsTheCameraButDraggingTheControlsDoesNot) {
+    open(make_options());
+    const vec3 before = session().camera().target;
+    drag({600, 300}, {700, 300});
+    const vec3 turned = session().camera().target;
+    EXPECT_GT(glm::distance(turned, before), 0.1f);
+    drag({100, 20}, {250, 20});  // the title of the controls
+    EXPECT_EQ(session().camera().target, turned);
+}
+
+TEST_F(ViewerTest, TypingIntoAFieldDoesNotMoveTheCamera) {
+    open(make_options());
+    const CameraPose before = session().camera();
+    EXPECT_FALSE(ImGui::GetIO().WantTextInput) << "no field has the focus at first";
+    const vec2 field = viewer_->controls().seed_field();
+    point_at(field.x, field.y);
+    press_mouse(true);
+    run_frames(2);
+    press_mouse(false);
+    run_frames(2);
+    ASSERT_TRUE(ImGui::GetIO().WantTextInput);
+    press(GLFW_KEY_W);
+    run_frames(3);
+    press(GLFW_KEY_W, false);
+    run_frames(1);
+    EXPECT_EQ(session().camera().position, before.position);
+    point_at(650, 300);
+    press_mouse(true);
+    run_frames(2);
+    press_mouse(false);
+    run_frames(2);
+    press(GLFW_KEY_W);
+    run_frames(3);
+    press(GLFW_KEY_W, false);
+    EXPECT_NE(session().camera().position, before.position) << "a click beside the field gives the keys back";
+}
+
+TEST_F(ViewerTest, AnotherSizeOfTheWindowKeepsTheSamples) {
+    open(make_options());
+    double samples = session().samples();
+    for (const auto& [width, height] : {std::pair{1100, 700}, {500, 900}, {320, 240}, {900, 640}}) {
+        glfwSetWindowSize(window_->handle(), width, height);
+        wait_until("resized", [&] { return viewer_->screen().size() == uvec2(width, height); });
+        run_frames(2);
+        EXPECT_GT(session().samples(), samples);
+        samples = session().samples();
+    }
+}
+
+TEST_F(ViewerTest, EveryOptionTakesEffect) {
+    open(make_options());
+    const auto parameters = [&] { return session().build().job.parameters; };
+    const auto change = [&](const std::function<void(Options&)>& edit) {
+        Options options = session().options();
+        edit(options);
+        session().change(options);
+        finish_build();
+        run_frames(1);
+        EXPECT_EQ(session().message(), "");
+        return saved_film("option.exr").mean_radiance()[1];
+    };
+    for (size_t i = 0; i < chapter_.options.size(); ++i) {
+        const RenderParameters before = parameters();
+        change([&](Options& options) { options.chapter_values[i] = chapter_.options[i].low; });
+        EXPECT_NE(std::memcmp(&before, &session().build().job.parameters, sizeof before), 0)
+            << chapter_.options[i].name;
+        EXPECT_NE(session().build().job.record.settings.find(chapter_.options[i].name), std::string::npos);
+    }
+    change([](Options& options) { options.chapter_values.assign(3, std::nullopt); });
+    change([](Options& options) { options.seed = 99; });
+    EXPECT_EQ(parameters().seed_key, seed_key(99));
+    const double all = change([](Options& options) { options.max_path_length = 4; });
+    const double one = change([](Options& options) { options.only_path_length = 2; });
+    EXPECT_EQ(parameters().only_path_length, 2);
+    EXPECT_LT(one, all);
+    change([](Options& options) { options.only_path_length.reset(); });
+    change([](Options& options) { options.light_sampling = false; });
+    EXPECT_NE(session().build().job.record.settings.find("--light-sampling off"), std::string::npos);
+    change([](Options& options) { options.light_sampling = true, options.split_every_hit = true; });
+    EXPECT_NE(session().build().job.record.settings.find("--split-every-hit"), std::string::npos);
+    change([](Options& options) { options.split_every_hit = false, options.specular = true; });
+    change([](Options& options) { options.background = {1, 2, 3}; });
+    EXPECT_EQ(parameters().background, vec3(1, 2, 3));
+    change([](Options& options) { options.width = 33; });
+    EXPECT_EQ(session().build().display->picture().width(), 33u);
+    for (const View& view : views()) {
+        change([&](Options& options) { options.view = &view; });
+        EXPECT_EQ(session().build().options.view, &view);
+    }
+    change([](Options& options) { options.view = nullptr; });
+}
+
+TEST_F(ViewerTest, OptionsThatContradictEachOtherAreTakenBack) {
+    open(make_options());
+    Options options = session().options();
+    options.split_every_hit = true;
+    options.max_path_length = 12;
+    session().change(options);
+    finish_build();
+    EXPECT_NE(session().message().find("--max-path-length"), std::string::npos) << session().message();
+    EXPECT_FALSE(session().options().split_every_hit);
+    wait_until("samples", [&] { return session().samples() > 1; });
+}
+
+TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
+    open(make_options());
+    drop(scenes / "furnace.json");
+    finish_build();
+    EXPECT_EQ(session().build().scene->file.stem(), "furnace");
+    EXPECT_EQ(session().camera().position, session().build().scene->camera.position);
+    const CameraPose camera = session().camera();
+
+    write(folder_.path() / "bad.json", "{\"meshes\": [{\"file\": \"missing.obj\"}]}");
+    write(folder_.path() / "picture.txt", "no scene");
+    for (const char* name : {"bad.json", "picture.txt"}) {
+        drop(folder_.path() / name);
+        finish_build();
+        EXPECT_NE(session().message().find(name), std::string::npos) << session().message();
+        EXPECT_EQ(session().build().scene->file.stem(), "furnace");
+        EXPECT_EQ(session().options().scene, session().build().options.scene);
+        EXPECT_EQ(session().camera().position, camera.position);
+    }
+    take_screenshot("viewer_refused_scene");
+    const double samples = session().samples();
+    run_frames(3);
+    EXPECT_GT(session().samples(), samples) << "the last scene goes on";
+
+    write(folder_.path() / "triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    drop(folder_.path() / "triangle.obj");
+    finish_build();
+    EXPECT_EQ(session().message(), "");
+    EXPECT_EQ(session().build().scene->file.stem(), "triangle");
+}
+
+TEST_F(ViewerTest, AChangedShaderIsShownAndABrokenOneReported) {
+    // A chapter of its own, so that the sources stay as they are.
+    const fs::path shader = folder_.path() / "path_trace.glsl";
+    chapter_ = {.name = folder_.path().string(), .title = "Reload"};
+    const auto constant = [](const char* colour) {
+        return std::string(
+                   "#include \"colour.glsl\"\nvec3 path_trace(Ray ray, inout uvec2 seed) {\n    return ") +
+               colour + ";\n}\n";
+    };
+    write(folder_.path() / "colour.glsl", "const vec3 included = vec3(0.0, 0.0, 1.0);\n");
+    write(shader, constant("vec3(1.0, 0.0, 0.0)"));
+    open(make_options());
+    const auto shows = [&](double red, double green, double blue) {
+        return session().samples() >= 1 &&
+               saved_film("shown.exr").mean_radiance() == std::array{red, green, blue};
+    };
+    EXPECT_TRUE(shows(1, 0, 0));
+
+    auto start = Clock::now();
+    write(shader, constant("vec3(0.0, 1.0, 0.0)"));
+    wait_until("green", [&] { return shows(0, 1, 0); });
+    RecordProperty("reload_seconds",
+                   std::to_string(std::chrono::duration<double>(Clock::now() - start).count()));
+
+    write(shader, constant("missing_colour"));
+    wait_until("an error", [&] { return !session().message().empty(); });
+    EXPECT_NE(session().message().find("path_trace.glsl:3: "), std::string::npos) << session().message();
+    EXPECT_NE(session().message().find("missing_colour"), std::string::npos) << session().message();
+    EXPECT_TRUE(shows(0, 1, 0)) << "the last good picture stays";
+    run_frames(3);
+    EXPECT_NE(session().message(), "") << "the message stays as long as the mistake does";
+    take_screenshot("viewer_broken_shader");
+
+    write(shader, constant("included"));
+    wait_until("blue", [&] { return shows(0, 0, 1); });
+    EXPECT_EQ(session().message(), "");
+    write(folder_.path() / "colour.glsl", "const vec3 included = vec3(0.5);\n");
+    wait_until("the changed include", [&] { return shows(0.5, 0.5, 0.5); });
+
+    // A new file that is written after the line that includes it.
+    write(shader, "#include \"new.glsl\"\n" + constant("added"));
+    wait_until("an error", [&] { return !session().message().empty(); });
+    write(folder_.path() / "new.glsl", "const vec3 added = vec3(0.25);\n");
+    wait_until("the new include", [&] { return shows(0.25, 0.25, 0.25); });
+
+    // Writing the text that runs already back ends the complaint.
+    const std::string good = text_of(shader);
+    write(shader, "broken");
+    wait_until("an error", [&] { return !session().message().empty(); });
+    write(shader, good);
+    wait_until("no error", [&] { return session().message().empty(); });
+}
+
+TEST_F(ViewerTest, ClosesWhileSomethingIsBuilt) {
+    open(make_options());
+    drop(scenes / "torus.json");
+    run_frames(1);
+    EXPECT_TRUE(session().is_building());
+    glfwSetWindowShouldClose(window_->handle(), GLFW_TRUE);
+    EXPECT_FALSE(viewer_->frame());
+    EXPECT_GE(saved_film("closed.exr").min_samples(), 1u);
+}
+
+TEST_F(ViewerTest, PausesAndRestarts) {
+    open(make_options());
+    wait_until("samples", [&] { return session().samples() >= 2; });
+    press(GLFW_KEY_SPACE);
+    run_frames(1);
+    const double samples = session().samples();
+    run_frames(3);
+    EXPECT_EQ(session().samples(), samples);
+    press(GLFW_KEY_SPACE, false);
+    press(GLFW_KEY_R);
+    run_frames(1);
+    EXPECT_LT(session().samples(), samples) << "a paused picture shows changes, too";
+    EXPECT_GT(session().samples(), 0);
+    press(GLFW_KEY_TAB);  // without the controls
+    run_frames(2);
+    take_screenshot("viewer_without_controls");
+}
+
+}  // namespace
+}  // namespace lab
