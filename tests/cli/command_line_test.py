@@ -6,7 +6,7 @@ import unittest
 from program import MERGE, ProgramTest
 
 OPTIONS = """--width --height --samples --seed --first-sample --max-path-length --only-path-length --backend --device
-    --list-devices --headless --output --reference --report --target-error --time-limit --view --camera-position
+    --list-devices --headless --window --output --reference --report --target-error --time-limit --view --camera-position
     --camera-target --camera-up --vertical-fov --background --specular --exposure --resume --save-every --validation
     --quiet --help --version""".split()
 

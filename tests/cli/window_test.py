@@ -1,0 +1,59 @@
+"""When a chapter opens a window, and that it leaves displays alone otherwise. tests/viewer looks inside the window."""
+
+import os
+import pty
+import subprocess
+
+from program import BINARIES, CHAPTER, ProgramTest
+
+GUARD_EXIT_CODE = 77  # of tests/faults/glfw_guard.cpp
+GUARD = {"LD_PRELOAD": str(BINARIES.parent / "layers" / "libglfw_guard.so"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
+NO_DISPLAY = {"DISPLAY": None, "WAYLAND_DISPLAY": None}
+SOME_DISPLAY = {"DISPLAY": ":4711", "WAYLAND_DISPLAY": None}
+RENDER = ["quad.json", "--width=8", "--height=8", "--samples=1"]
+
+
+class Windows(ProgramTest):
+    def run_at_terminal(self, *arguments, environment):
+        """Exit code and output of a run whose standard output is a terminal, as for someone who types the command."""
+        ours, theirs = pty.openpty()
+        variables = {**os.environ, **environment}
+        process = subprocess.Popen([CHAPTER, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=theirs,
+                                   stderr=subprocess.PIPE, text=True,
+                                   env={name: value for name, value in variables.items() if value is not None})
+        os.close(theirs)
+        _, err = process.communicate(timeout=60)
+        os.close(ours)
+        return process.returncode, err
+
+    def test_headless_never_touches_glfw(self):
+        for display in (NO_DISPLAY, SOME_DISPLAY):
+            code, err = self.run_at_terminal(*RENDER, "--headless", environment={**GUARD, **display})
+            self.assertEqual(code, 0, err)
+
+    def test_a_display_and_a_terminal_open_a_window(self):
+        code, err = self.run_at_terminal(*RENDER, environment={**GUARD, **SOME_DISPLAY})
+        self.assertEqual(code, GUARD_EXIT_CODE, err)
+
+    def test_scripts_and_measurements_open_none(self):
+        code, _, err = self.run_program(*RENDER, environment={**GUARD, **SOME_DISPLAY})
+        self.assertEqual(code, 0, err)
+        for option in ("--report=r.json", "--time-limit=9", "--target-error=1", "--save-every=9", "--quiet"):
+            with self.subTest(option=option):
+                code, err = self.run_at_terminal(*RENDER, option, environment={**GUARD, **SOME_DISPLAY})
+                self.assertEqual(code, 0, err)
+
+    def test_a_display_that_does_not_answer_is_no_obstacle(self):
+        code, err = self.run_at_terminal(*RENDER, environment=SOME_DISPLAY)
+        self.assertEqual(code, 0, err)
+        self.assertRegex(err, r"note: no window can be opened .*--headless")
+        self.assertTrue((self.folder / "output" / "01_uniform_sampling.exr").exists())
+
+    def test_a_window_without_a_display_is_refused(self):
+        self.assert_refused([*RENDER, "--window"], "display", "--headless", environment=NO_DISPLAY)
+        self.assert_refused([*RENDER, "--window"], "no window", "--headless", environment=SOME_DISPLAY)
+
+    def test_a_window_does_not_go_with_everything(self):
+        for option in ("--headless", "--report=r.json", "--time-limit=9", "--target-error=1", "--save-every=9"):
+            with self.subTest(option=option):
+                self.assert_refused([*RENDER, "--window", option], "--window", environment=NO_DISPLAY)
