@@ -70,7 +70,8 @@ Screen::Screen(const Device& device, const Window& window)
 
 Screen::~Screen() {
     const auto lock = device_->lock_queue();
-    (*device_->handle()).waitIdle(*device_->handle().getDispatcher());
+    device_->handle().getDispatcher()->vkDeviceWaitIdle(
+        *device_->handle());  // a lost device waits for nothing
     ImGui_ImplVulkan_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();

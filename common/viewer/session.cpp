@@ -37,10 +37,8 @@ std::string shortened(std::string message) {
 
 }  // namespace
 
-Session::Session(const Device& device, const Chapter& chapter, const Options& options, Scene scene)
-    : device_(device), chapter_(chapter), options_(options) {
-    build_ = make_build(device, chapter, options, BuildStage::scene, nullptr,
-                        std::make_shared<Scene>(std::move(scene)));
+Session::Session(const Device& device, const Chapter& chapter, std::unique_ptr<Build> first_build)
+    : device_(device), chapter_(chapter), options_(first_build->options), build_(std::move(first_build)) {
     watched_shaders_ = build_->shader_files;
     shader_hash_ = build_->shader_hash;
     if (build_->job.resumed) {
@@ -81,11 +79,11 @@ void Session::update(double dispatch_seconds, bool is_moving) {
     look_for_changed_shaders();
     adopt_finished_build();
     start_build_if_needed();
-    // While another scene is loaded the camera is that of the one to come.
-    const bool is_loading = is_building() && (options_.scene != build_->options.scene);
-    if (reduction_ > 1 && !is_moving) needs_restart_ = true;
-    if (needs_restart_ && !is_loading) begin(dispatch_seconds, is_moving);
-    render(dispatch_seconds, is_moving);
+    if (needs_restart_ && !is_loading_scene())
+        begin(find_reduction(dispatch_seconds));
+    else if (reduction_ > 1 && !is_moving && build_->renderer->samples() >= 1)
+        begin(1);
+    render(dispatch_seconds);
 }
 
 void Session::look_for_changed_shaders() {
@@ -145,7 +143,7 @@ void Session::take_back(const std::string& why) {
     options_ = build_->options;
 }
 
-void Session::begin(double dispatch_seconds, bool is_moving) {
+void Session::begin(uint32_t reduction) {
     needs_restart_ = false;
     const Options before = build_->options;
     try {
@@ -157,7 +155,7 @@ void Session::begin(double dispatch_seconds, bool is_moving) {
         set_options(build_->job, chapter_, *build_->scene, build_->options);
     }
     RenderParameters parameters = build_->job.parameters;
-    reduction_ = is_moving ? find_reduction(dispatch_seconds) : 1;
+    reduction_ = reduction;
     parameters.image_size = glm::max(parameters.image_size / reduction_, uvec2(1));
     build_->renderer->restart(parameters);
     seconds_ = 0;
@@ -174,15 +172,16 @@ uint32_t Session::find_reduction(double seconds) const {
     return static_cast<uint32_t>(std::clamp(std::ceil(std::sqrt(pixels / affordable)), 1.0, double{largest}));
 }
 
-void Session::render(double seconds, bool is_moving) {
+void Session::render(double seconds) {
     Renderer& renderer = *build_->renderer;
     if (is_paused && renderer.samples() >= 1) return;
     const auto start = Clock::now();
     const double first_samples = renderer.samples();
     double elapsed = 0;
-    // A picture that moves is shown when it is complete, unless that takes far too long.
+    // A reduced picture is shown when it is complete, unless that takes far too long.
     const auto goes_on = [&] {
-        return elapsed < 0.75 * seconds || (is_moving && renderer.samples() < 1 && elapsed < 2 * seconds);
+        return elapsed < 0.75 * seconds ||
+               (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
     };
     while (renderer.samples() < target_samples() && goes_on()) {
         // Errors are estimated at powers of two.
@@ -193,7 +192,10 @@ void Session::render(double seconds, bool is_moving) {
         renderer.set_dispatch_seconds(std::max(seconds - elapsed, 0.1 * seconds));
         const bool is_complete = !renderer.advance(next);
         elapsed = seconds_since(start);
-        if (is_complete && reduction_ == 1) take_snapshot(next);
+        // Reading the film back takes time: not while powers of two pass by in quick succession.
+        constexpr double seconds_of_first_snapshot = 0.25;
+        if (is_complete && reduction_ == 1 && seconds_ + elapsed > seconds_of_first_snapshot)
+            take_snapshot(next);
     }
     seconds_ += elapsed;
     const double pixels = static_cast<double>(renderer.film().width()) * renderer.film().height();
@@ -222,7 +224,7 @@ std::optional<double> Session::relative_error() const {
 
 void Session::save(const std::vector<std::filesystem::path>& files) {
     if (samples() < 1) {  // closed at once, or while the camera moved
-        begin(0, false);
+        begin(1);
         while (build_->renderer->advance(1)) {
         }
     }

@@ -10,8 +10,8 @@ namespace lab {
 
 class Session {
   public:
-    // Makes the first build; throws what make_build() throws. Device and chapter must outlive the session.
-    Session(const Device& device, const Chapter& chapter, const Options& options, Scene scene);
+    // Device and chapter must outlive the session.
+    Session(const Device& device, const Chapter& chapter, std::unique_ptr<Build> first_build);
 
     const Chapter& chapter() const { return chapter_; }
     const Build& build() const { return *build_; }
@@ -29,11 +29,14 @@ class Session {
     void restart();
 
     // One frame's work: takes over what was built, looks for changed shaders, and renders for about so many
-    // seconds; while the camera moves in an image that is reduced enough to be finished in that time.
+    // seconds. After a restart, and as long as the camera moves, the image is reduced until a sample of every
+    // pixel fits into that time.
     void update(double dispatch_seconds, bool is_moving);
 
     bool is_paused = false;
     bool is_building() const { return work_.valid(); }
+    // Another scene is on its way: camera and background are its own already.
+    bool is_loading_scene() const { return reloads_scene_ || options_.scene != build_->options.scene; }
     const std::string& message() const { return message_; }  // the last failure; empty if there is none
 
     // --- Progress since the last restart.
@@ -53,8 +56,8 @@ class Session {
     void look_for_changed_shaders();
     void start_build_if_needed();
     void adopt_finished_build();
-    void begin(double dispatch_seconds, bool is_moving);
-    void render(double seconds, bool is_moving);
+    void begin(uint32_t reduction);
+    void render(double seconds);
     void take_snapshot(uint32_t samples);
     uint32_t find_reduction(double seconds) const;
     void take_back(const std::string& why);

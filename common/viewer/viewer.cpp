@@ -23,11 +23,30 @@ double seconds_since(Clock::time_point start) {
 // Follows a series of numbers with a memory of about ten of them.
 double smooth(double average, double number) { return average + 0.1 * (number - average); }
 
+// Makes the first build in the background, so that the window answers and says what it is doing.
+std::unique_ptr<Build> build_while_waiting(Window& window, Screen& screen,
+                                           const std::function<std::unique_ptr<Build>()>& build) {
+    auto work = std::async(std::launch::async, build);
+    while (work.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+        window.poll_events();
+        screen.begin_frame();
+        ImGui::GetBackgroundDrawList()->AddText({20, 20}, IM_COL32_WHITE,
+                                                "Building what traces the rays and the shaders ...");
+        screen.show(nullptr, DisplayTransform::as_is, 0, {});
+    }
+    return work.get();
+}
+
 }  // namespace
 
 Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options,
                Scene scene)
-    : window_(window), session_(device, chapter, options, std::move(scene)), screen_(device, window) {}
+    : window_(window),
+      screen_(device, window),
+      session_(device, chapter, build_while_waiting(window, screen_, [&] {
+                   return make_build(device, chapter, options, BuildStage::scene, nullptr,
+                                     std::make_shared<Scene>(std::move(scene)));
+               })) {}
 
 bool Viewer::frame() {
     const bool has_work = !session_.is_paused && session_.samples() < session_.target_samples();
@@ -72,6 +91,7 @@ Rectangle Viewer::picture_rectangle() const {
 }
 
 void Viewer::move_camera(double seconds) {
+    if (session_.is_loading_scene()) return;
     const std::shared_ptr<const Scene>& scene = session_.build().scene;
     if (fitted_scene_ != scene) {
         fitted_scene_ = scene;

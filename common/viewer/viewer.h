@@ -29,8 +29,8 @@ class Viewer {
     Rectangle picture_rectangle() const;
 
     Window& window_;
-    Session session_;
     Screen screen_;
+    Session session_;
     CameraControl camera_control_;
     std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed fits to
     Controls controls_;

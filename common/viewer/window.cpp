@@ -112,8 +112,6 @@ double Window::refresh_seconds() const {
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 
-void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
-
 void Window::poll_events(double max_wait_seconds) {
     if (max_wait_seconds > 0)
         glfwWaitEventsTimeout(max_wait_seconds);

@@ -32,7 +32,6 @@ class Window {
     float scale() const;             // how much larger than on a common screen text has to be
     double refresh_seconds() const;  // between two pictures of the display
     bool should_close() const;
-    void set_title(const std::string& title);
 
     // Collects what happened, waiting for it at most so long.
     void poll_events(double max_wait_seconds = 0);

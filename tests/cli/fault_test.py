@@ -10,9 +10,7 @@ import time
 import unittest
 
 from image_files import Exr
-from program import BINARIES, CHAPTER, RenderTest
-
-FAULT_LAYER = {"VK_LAYER_PATH": str(BINARIES.parent / "layers"), "VK_INSTANCE_LAYERS": "VK_LAYER_LAB_fault"}
+from program import CHAPTER, FAULT_LAYER, RenderTest
 
 
 def remove(folder):

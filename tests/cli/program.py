@@ -17,6 +17,7 @@ PROJECT = Path(__file__).resolve().parents[2]
 BINARIES = Path(os.environ.get("LAB_BINARIES", PROJECT / "build" / "bin"))
 CHAPTER = BINARIES / "01_uniform_sampling"
 MERGE = BINARIES / "merge_images"
+FAULT_LAYER = {"VK_LAYER_PATH": str(BINARIES.parent / "layers"), "VK_INSTANCE_LAYERS": "VK_LAYER_LAB_fault"}
 
 # A quad that faces +Z under a sky, small enough to be rendered in no time.
 QUAD_OBJ = """mtllib quad.mtl

@@ -2,9 +2,12 @@
 
 import os
 import pty
+import shutil
 import subprocess
+import unittest
 
-from program import BINARIES, CHAPTER, ProgramTest
+from image_files import Exr
+from program import BINARIES, CHAPTER, FAULT_LAYER, ProgramTest
 
 GUARD_EXIT_CODE = 77  # of tests/faults/glfw_guard.cpp
 GUARD = {"LD_PRELOAD": str(BINARIES.parent / "layers" / "libglfw_guard.so"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
@@ -52,6 +55,15 @@ class Windows(ProgramTest):
     def test_a_window_without_a_display_is_refused(self):
         self.assert_refused([*RENDER, "--window"], "display", "--headless", environment=NO_DISPLAY)
         self.assert_refused([*RENDER, "--window"], "no window", "--headless", environment=SOME_DISPLAY)
+
+    @unittest.skipUnless(shutil.which("xvfb-run"), "xvfb is not installed")
+    def test_a_lost_device_leaves_what_was_read_last(self):
+        fault = {**FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "300"}
+        command = ["-a", CHAPTER, "cornell_box", "--width=32", "--height=32", "--backend=compute", "--window", "--output=a.exr"]
+        code, _, err = self.run_program(*command, program="xvfb-run", environment={**NO_DISPLAY, **fault})
+        self.assertEqual(code, 3, err)
+        self.assertRegex(err, r"\Aerror: [^\n]*the outputs hold \d+ samples a pixel; --resume continues\n\Z")
+        self.assertIn(Exr(self.folder / "a.exr").text("samples"), err)
 
     def test_a_window_does_not_go_with_everything(self):
         for option in ("--headless", "--report=r.json", "--time-limit=9", "--target-error=1", "--save-every=9"):
