@@ -154,7 +154,7 @@ void Screen::make_swapchain() {
 }
 
 void Screen::remake_swapchain() {
-    (*device_->handle()).waitIdle(*device_->handle().getDispatcher());
+    device_->handle().waitIdle();
     make_swapchain();
 }
 
@@ -179,7 +179,8 @@ double Screen::show(const DisplayPass* pass, DisplayTransform transform, float e
     const auto start = Clock::now();
     uint32_t image = 0;
     try {
-        image = swapchain_.acquireNextImage(UINT64_MAX, *acquired_).second;
+        const auto [result, index] = swapchain_.acquireNextImage(UINT64_MAX, *acquired_);
+        image = index;
     } catch (const vk::OutOfDateKHRError&) {
         remake_swapchain();  // the next frame will be shown
         return seconds_since(start);
