@@ -15,6 +15,7 @@ from pathlib import Path
 
 try:
     import figure_plots
+    from command_line import Parser
     from make_results import kind_of, load_records
     from measurement import BINARIES, CHAPTERS, digest_of_sources, last_line
     from progress import show_progress
@@ -124,8 +125,7 @@ FIGURES = {
 
 
 def parse():
-    parser = argparse.ArgumentParser(prog="./lab figures", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.error = lambda message: sys.exit(f"error: {message}; ./lab figures --help tells more")
+    parser = Parser(prog="./lab figures", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}")
     parser.add_argument("--output", type=Path, default=PICTURES, metavar="FOLDER", help="default: docs/pictures")
     options = parser.parse_args()

@@ -14,6 +14,7 @@ from typing import Callable
 try:
     import numpy as np
     import sample_plots
+    from command_line import Parser
     from report_numbers import two_sided
 except ImportError as error:
     sys.exit(f"error: {error}: ./lab sample needs the Python packages numpy and matplotlib")
@@ -153,9 +154,8 @@ def whole(low, high):
 
 def parse():
     names = "\n".join(f"  {name:15s} {playground.title}" for name, playground in PLAYGROUNDS.items())
-    parser = argparse.ArgumentParser(prog="./lab sample", description=__doc__, epilog=f"names:\n{names}",
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.error = lambda message: sys.exit(f"error: {message}; ./lab sample --help lists names and options")
+    parser = Parser(prog="./lab sample", description=__doc__, epilog=f"names:\n{names}",
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("name", nargs="?", metavar="NAME", help="what to sample; without, the names are listed")
     parser.add_argument("--count", type=whole(16, 1 << 22), default=4096, help="number of points; default: 4096")
     parser.add_argument("--seed", type=whole(0, 2**32 - 1), default=0, help="chooses the random numbers; default: 0")

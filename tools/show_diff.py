@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Shows how chapter N's path_trace.glsl differs from the one before: the lesson. Counts what has changed."""
-import argparse
 import os
 import re
 import shutil
 import sys
 from difflib import SequenceMatcher
 from pathlib import Path
+
+from command_line import Parser
 
 ROOT = Path(__file__).resolve().parents[1]
 CHAPTERS = {int(path.name[:2]): path for path in sorted((ROOT / "chapters").glob("[0-9]*"))}
@@ -98,8 +99,7 @@ def summary(number, counts, moved):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="./lab diff", description=__doc__)
-    parser.error = lambda message: sys.exit(f"error: {message}; ./lab diff --help tells more")
+    parser = Parser(prog="./lab diff", description=__doc__)
     parser.add_argument("chapter", metavar="N", help="number of a chapter from 2, or 'all' for the counts of every step")
     word = parser.parse_args().chapter
     known = [number for number in CHAPTERS if number - 1 in CHAPTERS]
