@@ -60,9 +60,21 @@ Image block_means(const Image& image) {
 
 }  // namespace
 
+Reference::Part Reference::part(size_t channel, glm::uvec2 corner, glm::uvec2 size) const {
+    Part sum{0, 0};
+    for (uint32_t y = corner.y; y < corner.y + size.y; ++y)
+        for (uint32_t x = corner.x; x < corner.x + size.x; ++x) {
+            const size_t i = 3 * (size_t{y} * mean.width + x) + channel;
+            sum.mean += mean.pixels[i];
+            if (variance) sum.variance += variance->pixels[i];
+        }
+    const double count = static_cast<double>(size_t{size.x} * size.y);
+    return {sum.mean / count, sum.variance / (count * count)};
+}
+
 Reference read_reference(const std::filesystem::path& file) {
     ExrFile exr = read_exr(file);
-    Reference reference{std::move(exr.image), std::nullopt};
+    Reference reference{std::move(exr.image), std::nullopt, std::move(exr.attributes)};
     if (!std::all_of(reference.mean.pixels.begin(), reference.mean.pixels.end(),
                      [](float value) { return std::isfinite(value); }))
         throw UserError(file.string() + ": has infinite pixels: it cannot serve as a reference");

@@ -1,7 +1,10 @@
 // How far an image is from a reference, or from its own expectation.
 #pragma once
 #include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "image/image.h"
 
@@ -19,6 +22,15 @@ struct ErrorMetrics {
 struct Reference {
     Image mean;
     std::optional<Image> variance;  // of the mean, from the channels variance.R, variance.G, variance.B
+    std::map<std::string, std::string> attributes = {};  // of the file: scene, scene_hash, max_path_length, …
+
+    // Mean of a channel over the rectangle with this corner and size in pixels, and the variance of that mean
+    // (0 if unknown).
+    struct Part {
+        double mean;
+        double variance;
+    };
+    Part part(size_t channel, glm::uvec2 corner, glm::uvec2 size) const;
 };
 
 // Throws UserError if the file is damaged.

@@ -32,6 +32,29 @@ struct MeanEstimate {
 // Needs at least two numbers.
 MeanEstimate estimate_mean(std::span<const double> numbers);
 
+// Relative error that rounding may cause: estimates without noise have to be exact but for this.
+inline constexpr double rounding_error = 1e-6;
+
+// How far an estimate is from what it should be, or from another estimate of the same number.
+struct Difference {
+    double value = 0;
+    double standard_error = 0;
+    double degrees_of_freedom = 0;  // of the standard error, which is itself an estimate
+
+    // Student's t-test of a difference of 0.
+    double p_value() const;
+    // The standard normal number with this sign and p-value: how many standard errors it is off.
+    double z() const;
+    // Smallest difference that the t-test finds with probability `power`.
+    double smallest_detectable(double level, double power) const;
+    // All but the degrees of freedom divided by a scale.
+    Difference relative_to(double scale) const;
+};
+// Of the mean of independent numbers from the expected one.
+Difference difference_from(std::span<const double> numbers, double expected);
+// Of the means of two independent series (Welch).
+Difference difference_of(std::span<const double> first, std::span<const double> second);
+
 // Smallest bias that a two-sided test of a normally distributed estimate finds with probability `power`.
 double smallest_detectable_bias(double standard_error, double significance, double power);
 

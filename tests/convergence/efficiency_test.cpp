@@ -41,7 +41,7 @@ void expect_gain(const std::string& what, const Cost& before, const Cost& techni
     std::printf(
         "  %s: error x %.3f, rays x %.2f, error times rays x %.3f, p = %.2g; finds a gain of x %.2f\n",
         what.c_str(), technique.error / before.error, technique.rays / before.rays, std::exp(gain.value),
-        gain.p_value(), std::exp(-gain.smallest_detectable(significance)));
+        gain.p_value(), std::exp(-gain.smallest_detectable(significance, power)));
     EXPECT_TRUE(gain.value < 0 && gain.p_value() < significance) << what << " does not pay";
 }
 

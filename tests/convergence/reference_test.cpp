@@ -73,29 +73,15 @@ struct Comparison {
 
     // Difference of the means over a rectangle, as part of `scale`. The variance of the reference counts.
     Difference difference(int channel, uvec2 corner, uvec2 size, double scale) const {
-        double sum = 0, variance = 0;
-        for (uint32_t y = corner.y; y < corner.y + size.y; ++y)
-            for (uint32_t x = corner.x; x < corner.x + size.x; ++x) {
-                const size_t i = 3 * (size_t{y} * batches.width + x) + static_cast<size_t>(channel);
-                sum += reference.mean.pixels[i];
-                variance += reference.variance->pixels[i];
-            }
-        const double count = static_cast<double>(size_t{size.x} * size.y);
-        Difference difference = difference_from(batches.means(channel, corner, size), sum / count);
+        const Reference::Part expected = reference.part(static_cast<size_t>(channel), corner, size);
+        Difference difference = difference_from(batches.means(channel, corner, size), expected.mean);
         // Emission alone has no variance, but the two programs round it differently.
-        const double rounding = 1e-5 * std::abs(sum / count);
+        const double rounding = 1e-5 * std::abs(expected.mean);
         difference.standard_error =
-            std::hypot(difference.standard_error, std::sqrt(variance) / count, rounding);
+            std::hypot(difference.standard_error, std::sqrt(expected.variance), rounding);
         return difference.relative_to(scale);
     }
 };
-
-// Mean of a channel of an image.
-double channel_mean(const Image& image, size_t channel) {
-    double sum = 0;
-    for (size_t i = channel; i < image.pixels.size(); i += 3) sum += image.pixels[i];
-    return sum / static_cast<double>(image.pixels.size() / 3);
-}
 
 // Mean excess kurtosis of the tiles' batch means: about 0 where batches are long enough for their spread to
 // tell the error of the mean.
@@ -149,8 +135,8 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     const ReferenceCase& c = reference_cases[GetParam()];
     if (c.run == Run::with_all && !runs_all_tests()) GTEST_SKIP() << "runs with ./lab test --all";
     const auto file = project_folder() / "assets" / "references" / (c.reference + ".exr");
-    const auto attributes = read_exr(file).attributes;
     const Reference reference = read_reference(file);
+    const auto& attributes = reference.attributes;
     const Scene scene = load_shipped_scene(attributes.at("scene"));
     ASSERT_EQ(attributes.at("scene_hash"), hexadecimal(scene.hash))
         << file << " is stale: its scene has changed; run ./lab reference --all";
@@ -171,7 +157,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     std::vector<double> p_values;
     ZMap map{size.x / tile, size.y / tile, {}};
     for (int channel = 0; channel < 3; ++channel) {
-        const double mean = channel_mean(reference.mean, static_cast<size_t>(channel));
+        const double mean = reference.part(static_cast<size_t>(channel), {0, 0}, size).mean;
         of_image.push_back(comparison.difference(channel, {0, 0}, size, mean));
         for (uint32_t y = 0; y < size.y; y += tile)
             for (uint32_t x = 0; x < size.x; x += tile) {

@@ -160,11 +160,12 @@ TEST_P(Roulette, ConvergesSlowlyWhereItsVarianceIsInfinite) {
     };
     const Difference good = difference_from(slopes(0.5f), -0.5),
                      bad = difference_from(slopes(0.125f), -0.5 + tolerance);
-    const double finds = tolerance + bad.smallest_detectable(significance);
+    const double finds = tolerance + bad.smallest_detectable(significance, power);
     std::printf("  slope %.3f at p = a, %.3f at p = a²/2; flags a slope that differs by %.3f from -1/2\n",
                 good.value - 0.5, bad.value - 0.5 + tolerance, finds);
     EXPECT_LT(std::abs(good.value), tolerance);
-    EXPECT_LT(good.smallest_detectable(significance), tolerance) << "the test is too weak, take more samples";
+    EXPECT_LT(good.smallest_detectable(significance, power), tolerance)
+        << "the test is too weak, take more samples";
     EXPECT_LT(finds, 1.0 / 6) << "the test is too weak, take more samples";
     EXPECT_TRUE(bad.value > 0 && bad.p_value() < significance)
         << "a survival probability of infinite variance is not flagged";

@@ -31,65 +31,13 @@ static void record_smallest_error(double error) {
 // Numbers that fit better than all but this share of independent ones do are not independent.
 static constexpr double too_good = 1 - 1e-9;
 
-// Relative error that rounding may cause: estimates without noise have to be exact but for this.
-static constexpr double rounding_error = 1e-6;
-
-// Wallace's transformation of Student's t with ν degrees of freedom to a standard normal number of the same
-// p-value (Annals of Mathematical Statistics 30(4), 1959), and its inverse: z within 0.01 for ν > 20.
-static double wallace_factor(double degrees_of_freedom) {
-    return (8 * degrees_of_freedom + 1) / (8 * degrees_of_freedom + 3);
-}
-static double normal_of_student(double t, double degrees_of_freedom) {
-    return wallace_factor(degrees_of_freedom) *
-           std::sqrt(degrees_of_freedom * std::log1p(t * t / degrees_of_freedom));
-}
-static double student_of_normal(double z, double degrees_of_freedom) {
-    const double scaled = z / wallace_factor(degrees_of_freedom);
-    return std::sqrt(degrees_of_freedom * std::expm1(scaled * scaled / degrees_of_freedom));
-}
-
-double Difference::p_value() const {
-    if (value == 0) return 1;
-    return normal_p_value(normal_of_student(value / standard_error, degrees_of_freedom));
-}
-
-double Difference::smallest_detectable(double level) const {
-    // Of the noncentral t-distribution: near the critical value t the statistic has a variance of
-    // 1 + t²/(2ν).
-    const double t = student_of_normal(normal_quantile(0.5 * level), degrees_of_freedom);
-    return standard_error * (t + normal_quantile(power) * std::sqrt(1 + 0.5 * t * t / degrees_of_freedom));
-}
-
-Difference Difference::relative_to(double scale) const {
-    return {value / scale, standard_error / scale, degrees_of_freedom};
-}
-
-Difference difference_from(std::span<const double> numbers, double expected) {
-    const MeanEstimate estimate = estimate_mean(numbers);
-    const double rounding = rounding_error * std::abs(expected);
-    return {estimate.mean - expected, std::max(estimate.standard_error, rounding),
-            static_cast<double>(numbers.size() - 1)};
-}
-
-Difference difference_of(std::span<const double> first, std::span<const double> second) {
-    const MeanEstimate a = estimate_mean(first), b = estimate_mean(second);
-    const auto square = [](double x) { return x * x; };
-    const double rounding = rounding_error * std::abs(b.mean);
-    const double variance_a = square(std::max(a.standard_error, rounding)),
-                 variance_b = square(std::max(b.standard_error, rounding));
-    const double degrees_of_freedom =
-        square(variance_a + variance_b) / (square(variance_a) / static_cast<double>(first.size() - 1) +
-                                           square(variance_b) / static_cast<double>(second.size() - 1));
-    return {a.mean - b.mean, std::sqrt(variance_a + variance_b), degrees_of_freedom};
-}
-
 void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences,
                           double largest_difference, size_t comparisons) {
     const double level = sidak(significance, relative_differences.size() * comparisons);
     Difference worst;
     double smallest_p_value = 1, weakest = 0;
     for (const Difference& difference : relative_differences) {
-        weakest = std::max(weakest, difference.smallest_detectable(level));
+        weakest = std::max(weakest, difference.smallest_detectable(level, power));
         const double p_value = difference.p_value();
         if (p_value > smallest_p_value) continue;
         smallest_p_value = p_value;

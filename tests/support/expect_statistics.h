@@ -21,24 +21,6 @@ inline constexpr double power = 0.99;
 void expect_mean(const std::string& what, const MeanEstimate& estimate, double expected,
                  double largest_relative_bias, size_t comparisons = 1);
 
-// How far an estimate is from what it should be, or from another estimate of the same number.
-struct Difference {
-    double value = 0;
-    double standard_error = 0;
-    double degrees_of_freedom = 0;  // of the standard error, which is itself an estimate
-
-    // Student's t-test of a difference of 0.
-    double p_value() const;
-    // Smallest difference that the t-test finds with probability `power`.
-    double smallest_detectable(double level) const;
-    // All but the degrees of freedom divided by a scale.
-    Difference relative_to(double scale) const;
-};
-// Of the mean of independent numbers from the expected one.
-Difference difference_from(std::span<const double> numbers, double expected);
-// Of the means of two independent series (Welch).
-Difference difference_of(std::span<const double> first, std::span<const double> second);
-
 // All relative differences are 0, and in each of them `largest_difference` would have been found. They share
 // the significance of this test, and with `comparisons` tests like it.
 void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences,

@@ -36,17 +36,6 @@ void write_both(const std::filesystem::path& folder, const std::string& name, co
     write_png(folder / (name + ".png"), texture);
 }
 
-Texture draw(const ZMap& map) {
-    constexpr uint32_t magnification = 8;
-    Texture texture = blank(map.width * magnification, map.height * magnification);
-    for (uint32_t y = 0; y < texture.height; ++y)
-        for (uint32_t x = 0; x < texture.width; ++x) {
-            const double z = map.values[size_t{y} / magnification * map.width + x / magnification] / 5;
-            set_pixel(texture, x, y, {1 + std::min(z, 0.0), 1 - std::abs(z), 1 - std::max(z, 0.0)});
-        }
-    return texture;
-}
-
 Texture draw_histogram(const ZMap& map) {
     constexpr uint32_t bars = 20, bar_width = 12, height = 120;
     std::array<size_t, bars> counts{};
@@ -76,7 +65,7 @@ void write_failure(const std::string& what, const Image& image, const Image& ref
     write_both(folder, "image", image);
     write_both(folder, "reference", reference);
     write_both(folder, "difference", difference);
-    write_png(folder / "z_map.png", draw(map));
+    write_png(folder / "z_map.png", draw_z_map(map, 8));
     write_png(folder / "p_histogram.png", draw_histogram(map));
     std::printf("  see %s\n", folder.string().c_str());
 }

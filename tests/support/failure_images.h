@@ -1,18 +1,10 @@
 // What is left of an image comparison that failed, for people to look at.
 #pragma once
 #include <string>
-#include <vector>
 
-#include "image/image.h"
+#include "film/z_map.h"
 
 namespace lab {
-
-// How many standard errors each tile is off; positive where it is too bright. Row by row, one channel.
-struct ZMap {
-    uint32_t width = 0;
-    uint32_t height = 0;
-    std::vector<double> values;
-};
 
 // Writes output/failed/NAME, named after the test and what of it failed: image, reference and their
 // difference as EXR and PNG, the z-map (red: too bright, blue: too dark, full colour at 5 standard errors)

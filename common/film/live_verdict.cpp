@@ -1,0 +1,213 @@
+#include "film/live_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "error.h"
+
+namespace lab {
+namespace {
+
+constexpr uint32_t tile = 8;  // pixels of the reference
+constexpr uint32_t first_test = 16, most_batches = 64;
+constexpr double power = 0.99;
+// Paths from which on the mean of a region is normally distributed, also where one path in 1000 meets a
+// light.
+constexpr double reliable_paths = 1 << 17;
+// In tiles that light hardly reaches, what is a small part of the image's mean is taken for noise.
+constexpr double tile_floor = 5e-4;
+// Another renderer rounds differently.
+constexpr double renderer_rounding = 1e-5;
+
+double square(double x) { return x * x; }
+
+std::string percent(const char* format, double part) {
+    char text[32];
+    std::snprintf(text, sizeof text, format, 100 * part);
+    return text;
+}
+
+// "-14 % ± 1 %": the interval holds the bias with probability 0.95. As many digits as the interval has one.
+std::string interval_text(const Difference& difference) {
+    const double half_width = 1.96 * difference.standard_error;
+    const int digits =
+        std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(100 * half_width, 1e-9)))), 0, 3);
+    char text[64];
+    std::snprintf(text, sizeof text, "%+.*f %% ± %.*f %%", digits, 100 * difference.value, digits,
+                  100 * half_width);
+    return text;
+}
+
+}  // namespace
+
+LiveVerdict::LiveVerdict(Reference reference, glm::uvec2 image_size, double false_alarms)
+    : reference_(std::move(reference)), false_alarms_(false_alarms) {
+    const glm::uvec2 size(reference_.mean.width, reference_.mean.height);
+    if (image_size % size != glm::uvec2(0) || image_size.x / size.x != image_size.y / size.y)
+        throw UserError("the reference has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                        " pixels, the image " + std::to_string(image_size.x) + "x" +
+                        std::to_string(image_size.y) + ": it must be a whole number of times larger");
+    scale_ = image_size.x / size.x;
+    tiles_ = (size + tile - 1u) / tile;
+    const auto samples = reference_.attributes.find("samples");
+    reference_samples_ =
+        samples == reference_.attributes.end() ? 0 : std::strtod(samples->second.c_str(), nullptr);
+    restart();
+}
+
+void LiveVerdict::restart() {
+    batch_samples_ = 1;
+    batches_.clear();
+    total_.assign(size_t{tiles_.x} * tiles_.y, {});
+    tests_ = 0;
+    verdict_.reset();
+}
+
+LiveVerdict::TileSums LiveVerdict::tile_sums(const FilmImage& film) const {
+    TileSums sums(total_.size());
+    for (uint32_t y = 0; y < film.height; ++y)
+        for (uint32_t x = 0; x < film.width; ++x) {
+            const FilmPixel& pixel = film.pixels[size_t{y} * film.width + x];
+            auto& sum = sums[size_t{y / (tile * scale_)} * tiles_.x + x / (tile * scale_)];
+            for (int channel = 0; channel < 3; ++channel)
+                sum[static_cast<size_t>(channel)] +=
+                    double{pixel.sum[channel]} + double{pixel.compensation[channel]};
+        }
+    return sums;
+}
+
+void LiveVerdict::add(const FilmImage& film) {
+    TileSums sums = tile_sums(film);
+    TileSums& batch = batches_.emplace_back(sums);
+    for (size_t i = 0; i < batch.size(); ++i)
+        for (size_t channel = 0; channel < 3; ++channel) batch[i][channel] -= total_[i][channel];
+    total_ = std::move(sums);
+
+    if (samples() >= first_test && (samples() & (samples() - 1)) == 0 &&
+        1.0 * film.width * film.height * samples() >= reliable_paths)
+        test();
+    if (batches_.size() == most_batches) merge_batches();
+}
+
+void LiveVerdict::merge_batches() {
+    for (size_t i = 0; i < most_batches / 2; ++i) {
+        TileSums merged = batches_[2 * i];
+        for (size_t j = 0; j < merged.size(); ++j)
+            for (size_t channel = 0; channel < 3; ++channel)
+                merged[j][channel] += batches_[2 * i + 1][j][channel];
+        batches_[i] = std::move(merged);
+    }
+    batches_.resize(most_batches / 2);
+    batch_samples_ *= 2;
+}
+
+// Of a channel's mean over a region, in units of radiance.
+Difference LiveVerdict::difference(const Region& region, size_t channel) const {
+    const glm::uvec2 corner = region.first * tile;
+    const glm::uvec2 size =
+        glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height)) - corner;
+    const double paths_of_sample = square(scale_) * size.x * size.y;
+    std::vector<double> means;
+    for (const TileSums& batch : batches_) {
+        double sum = 0;
+        for (uint32_t y = region.first.y; y < region.end.y; ++y)
+            for (uint32_t x = region.first.x; x < region.end.x; ++x)
+                sum += batch[size_t{y} * tiles_.x + x][channel];
+        means.push_back(sum / (paths_of_sample * batch_samples_));
+    }
+    const Reference::Part expected = reference_.part(channel, corner, size);
+    Difference difference = difference_from(means, expected.mean);
+    double variance = square(difference.standard_error);
+    // Where light is found by chance, too few finds make the mean and its spread too small together. Rare
+    // events have a variance proportional to their mean: what the reference's mean would give counts.
+    const double mean = expected.mean + difference.value;
+    if (mean > 0) variance *= std::max(expected.mean / mean, 1.0);
+    // What never occurred yet does not show in the spread at all. The reference's renderer has seen it.
+    const double reference_samples = reference_samples_ / square(scale_);
+    variance = std::max(variance, expected.variance * reference_samples / samples());
+    difference.standard_error =
+        std::sqrt(variance + expected.variance + square(renderer_rounding * expected.mean));
+    return difference;
+}
+
+// Smallest edge, in tiles, of square regions with enough paths; 0 if not even the image has them.
+uint32_t LiveVerdict::finest_reliable_edge() const {
+    const double paths_of_tile = square(tile * scale_) * samples();
+    for (uint32_t edge = 1; edge < std::max(tiles_.x, tiles_.y); edge *= 2)
+        if (square(edge) * paths_of_tile >= reliable_paths) return edge;
+    return 0;
+}
+
+void LiveVerdict::test() {
+    const double level = 0.5 * false_alarms_ / ((tests_ + 1.0) * (tests_ + 2.0));
+    ++tests_;
+    Verdict verdict{.samples = samples(),
+                    .is_biased = verdict_ && verdict_->is_biased,
+                    .differences = {},
+                    .map = {tiles_.x, tiles_.y, std::vector<double>(total_.size())}};
+    const auto is_off = [](const Difference& difference, double level_of_one) {
+        return difference.p_value() < level_of_one;
+    };
+    std::array<double, 3> scales;
+    for (size_t channel = 0; channel < 3; ++channel) {
+        const double mean =
+            reference_.part(channel, {0, 0}, {reference_.mean.width, reference_.mean.height}).mean;
+        scales[channel] = mean > 0 ? mean : 1;
+        verdict.differences[channel] = difference({{0, 0}, tiles_}, channel).relative_to(scales[channel]);
+        verdict.smallest_detectable[channel] =
+            verdict.differences[channel].smallest_detectable(sidak(level, 3), power);
+        verdict.is_biased |= is_off(verdict.differences[channel], sidak(level, 3));
+    }
+    // Of a region the channel that is farthest off.
+    const auto worst = [&](uint32_t x, uint32_t y, uint32_t edge) {
+        Difference farthest;
+        for (size_t channel = 0; channel < 3; ++channel) {
+            Difference d = difference({{x, y}, glm::min(glm::uvec2(x, y) + edge, tiles_)}, channel);
+            d.standard_error = std::hypot(d.standard_error, tile_floor * scales[channel]);
+            if (channel == 0 || std::abs(d.z()) > std::abs(farthest.z())) farthest = d;
+        }
+        return farthest;
+    };
+    for (uint32_t y = 0; y < tiles_.y; ++y)
+        for (uint32_t x = 0; x < tiles_.x; ++x)
+            verdict.map.values[size_t{y} * tiles_.x + x] = worst(x, y, 1).z();
+    if (const uint32_t edge = finest_reliable_edge(); edge > 0) {
+        verdict.tile_size = edge * tile * scale_;
+        const glm::uvec2 regions = (tiles_ + edge - 1u) / edge;
+        verdict.tiles = regions.x * regions.y;
+        for (uint32_t y = 0; y < tiles_.y; y += edge)
+            for (uint32_t x = 0; x < tiles_.x; x += edge) {
+                const Difference d = worst(x, y, edge);
+                if (!is_off(d, sidak(level, size_t{3} * verdict.tiles))) continue;
+                ++(d.value > 0 ? verdict.bright_tiles : verdict.dark_tiles);
+                verdict.is_biased = true;
+            }
+    }
+    verdict_ = std::move(verdict);
+}
+
+std::string to_text(const Verdict& verdict) {
+    if (!verdict.is_biased) {
+        const double largest =
+            *std::max_element(verdict.smallest_detectable.begin(), verdict.smallest_detectable.end());
+        return "agrees with the reference: a bias above " + percent("%.2g %%", largest) +
+               " would show by now";
+    }
+    const auto& differences = verdict.differences;
+    std::string text = "biased: red " + interval_text(differences[0]) + ", green " +
+                       interval_text(differences[1]) + ", blue " + interval_text(differences[2]);
+    const uint32_t off = verdict.bright_tiles + verdict.dark_tiles;
+    if (off > 0)
+        text += "; too bright in " + std::to_string(verdict.bright_tiles) + " (red), too dark in " +
+                std::to_string(verdict.dark_tiles) + " (blue) of " + std::to_string(verdict.tiles) +
+                " tiles of " + std::to_string(verdict.tile_size) + " pixels";
+    return text;
+}
+
+std::string LiveVerdict::text() const {
+    if (verdict_) return to_text(*verdict_);
+    return "no verdict before " + std::to_string(first_test) + " samples a pixel";
+}
+
+}  // namespace lab

@@ -1,0 +1,82 @@
+// Tells while an image renders whether it will be that of the reference.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/error_metrics.h"
+#include "film/film.h"
+#include "film/statistics.h"
+#include "film/z_map.h"
+
+namespace lab {
+
+struct Verdict {
+    uint32_t samples = 0;  // a pixel, when it was found
+    bool is_biased = false;
+    // Of each channel's mean over the image, as part of the reference's; and the smallest bias that would
+    // have been found by then with probability 0.99.
+    std::array<Difference, 3> differences;
+    std::array<double, 3> smallest_detectable{};
+    uint32_t tile_size = 0;  // of the tiles that were tested, in pixels of the image; 0: none yet
+    uint32_t tiles = 0, bright_tiles = 0, dark_tiles = 0;  // all, significantly too bright, too dark
+    ZMap map;  // tiles of 8 x 8 pixels of the reference, of each the channel that is farthest off
+};
+
+// "agrees with the reference: …" or "biased: …", in one line.
+std::string to_text(const Verdict& verdict);
+
+// The film keeps sums only, but the differences between its snapshots are independent estimates, whose spread
+// tells how exact their mean is: the film is read each time that next_samples() are there, 16 to 32 times
+// while the samples double. Only sums over tiles are kept.
+//
+// Looking again and again raises the chance to see a difference where there is none. So the image is tested
+// only at 16, 32, 64, … samples, and test number j spends 1/((j + 1)(j + 2)) of the probability of a false
+// alarm: all of them together spend it once, however long one looks. Half of it is for the channels' means,
+// half for tiles.
+class LiveVerdict {
+  public:
+    // Probability that a render without bias is called biased at any time.
+    static constexpr double default_false_alarms = 1e-3;
+
+    // The image may be a whole number of times larger than the reference. Throws UserError if it is not.
+    LiveVerdict(Reference reference, glm::uvec2 image_size, double false_alarms = default_false_alarms);
+
+    // The film has begun anew.
+    void restart();
+    // Samples a pixel at which add() wants the film.
+    uint32_t next_samples() const { return samples() + batch_samples_; }
+    // The film when all pixels have next_samples() samples.
+    void add(const FilmImage& film);
+    // The latest; none before 16 samples. Once it is biased it stays so.
+    const std::optional<Verdict>& verdict() const { return verdict_; }
+    // What there is to say, in one line.
+    std::string text() const;
+
+  private:
+    using TileSums = std::vector<std::array<double, 3>>;  // one of each tile: over pixels and samples
+    // Tiles that are tested together.
+    struct Region {
+        glm::uvec2 first, end;  // in tiles
+    };
+    uint32_t samples() const { return static_cast<uint32_t>(batches_.size()) * batch_samples_; }
+    TileSums tile_sums(const FilmImage& film) const;
+    Difference difference(const Region& region, size_t channel) const;
+    uint32_t finest_reliable_edge() const;
+    void test();
+    void merge_batches();
+
+    Reference reference_;
+    double reference_samples_;  // a pixel
+    double false_alarms_;
+    uint32_t scale_;  // image pixels in a row of a reference pixel
+    glm::uvec2 tiles_;
+    uint32_t batch_samples_ = 1;
+    std::vector<TileSums> batches_;
+    TileSums total_;
+    uint32_t tests_ = 0;
+    std::optional<Verdict> verdict_;
+};
+
+}  // namespace lab

@@ -1,0 +1,79 @@
+#include "rendering/scene_reference.h"
+
+#include <algorithm>
+
+#include "error.h"
+#include "gpu/cache.h"
+#include "gpu/shader_compiler.h"
+#include "scene/features.h"
+
+namespace lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+// All images in assets/references that say they show this file, in the order of their names.
+std::vector<Reference> references_of(const fs::path& scene_file) {
+    std::vector<fs::path> files;
+    std::error_code none;  // a project without references has no verdict
+    for (const auto& entry : fs::directory_iterator(project_folder() / "assets" / "references", none))
+        if (entry.path().extension() == ".exr" &&
+            entry.path().filename().string().starts_with(scene_file.stem().string()))
+            files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    std::vector<Reference> references;
+    for (const auto& file : files) {
+        Reference reference = read_reference(file);
+        if (reference.attributes["scene"] == scene_file.filename())
+            references.push_back(std::move(reference));
+    }
+    return references;
+}
+
+bool are_equal(const Camera& a, const Camera& b) {
+    return a.position == b.position && a.forward == b.forward && a.right == b.right && a.up == b.up;
+}
+
+// What makes the image another one than that of the scene's file, if anything.
+std::string difference_from_file(const Scene& scene, const RenderParameters& parameters) {
+    const Scene file = load_scene(scene.file);
+    const RenderParameters of_file = default_parameters(file, parameters.image_size);
+    if (!are_equal(parameters.camera, of_file.camera)) return "the camera has moved";
+    if (parameters.background != of_file.background || parameters.probe_rotation != of_file.probe_rotation)
+        return "the background is another one";
+    if (features_of(scene).specular != features_of(file).specular) return "the specular lobe is another one";
+    if (parameters.only_path_length >= 0) return "the picture shows a single path length";
+    return "";
+}
+
+}  // namespace
+
+std::variant<Reference, std::string> find_reference(const Scene& scene, const RenderParameters& parameters) {
+    std::string lengths;
+    bool is_stale = false;
+    for (Reference& reference : references_of(scene.file)) {
+        if (reference.attributes["scene_hash"] != hexadecimal(scene.hash)) {
+            is_stale = true;
+            continue;
+        }
+        const std::string length = reference.attributes["max_path_length"];
+        if (length != std::to_string(parameters.max_path_length)) {
+            lengths += (lengths.empty() ? "" : " and ") + length;
+            continue;
+        }
+        if (!reference.variance) return "the reference does not say how exact it is";
+        const uvec2 size(reference.mean.width, reference.mean.height);
+        if (parameters.image_size % size != uvec2(0) ||
+            parameters.image_size.x / size.x != parameters.image_size.y / size.y)
+            return "the reference has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                   " pixels, the image is no whole number of times larger";
+        const std::string difference = difference_from_file(scene, parameters);
+        if (!difference.empty()) return difference;
+        return std::move(reference);
+    }
+    if (!lengths.empty()) return "this scene's references are for a maximal path length of " + lengths;
+    if (is_stale) return "this scene's reference is older than the scene: ./lab reference --all";
+    return "this scene has no reference";
+}
+
+}  // namespace lab

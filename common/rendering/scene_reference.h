@@ -1,0 +1,15 @@
+// The image that a scene should converge to, if one has been made (./lab reference).
+#pragma once
+#include <variant>
+
+#include "film/error_metrics.h"
+#include "rendering/renderer.h"
+
+namespace lab {
+
+// The reference in assets/references that shows what is rendered with these parameters, or why there is none:
+// in one line, to be shown after "no verdict: ". `scene` may differ from its file, which is read again, as
+// may the parameters: moved cameras, another sky and other path lengths have other images.
+std::variant<Reference, std::string> find_reference(const Scene& scene, const RenderParameters& parameters);
+
+}  // namespace lab

@@ -1,0 +1,80 @@
+// The live verdict on the chapters: what a viewer says while they render.
+#include "film/live_verdict.h"
+
+#include <cstdio>
+#include <variant>
+
+#include "rendering/scene_reference.h"
+#include "support/gpu_test.h"
+#include "support/render.h"
+
+namespace lab {
+namespace {
+
+RenderParameters parameters_for(const Scene& scene, uint32_t max_path_length, uint32_t seed) {
+    RenderSettings settings{.width = 128, .height = 128, .max_path_length = max_path_length, .seed = seed};
+    settings.splitting_factor = 2;
+    return make_parameters(scene, settings);
+}
+
+class LiveVerdictOf : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(, LiveVerdictOf, testing::ValuesIn(all_chapters), chapter_name);
+
+TEST_P(LiveVerdictOf, AgreesWithTheReference) {
+    const Scene scene = load_shipped_scene("cornell_box.json");
+    const GpuScene gpu_scene(test_device(), scene);
+    const auto acceleration_structure =
+        build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
+    // Chapter 1 finds the light by chance: direct light will do.
+    const uint32_t max_path_length = chapter_number(GetParam()) <= 2 ? 1 : 6;
+    const uint32_t seeds = runs_all_tests() ? 40 : 2;
+    RenderParameters parameters = parameters_for(scene, max_path_length, 1);
+    Renderer renderer(test_device(), *acceleration_structure, chapter_estimator(GetParam()), parameters);
+    for (uint32_t seed = 1; seed <= seeds; ++seed) {
+        parameters.seed_key = seed_key(test_seed((seed << 8) + chapter_number(GetParam())));
+        renderer.restart(parameters);
+        const auto reference = find_reference(scene, parameters);
+        ASSERT_TRUE(std::holds_alternative<Reference>(reference)) << std::get<std::string>(reference);
+        LiveVerdict verdict(std::get<Reference>(reference), parameters.image_size);
+        while (verdict.next_samples() <= 32) {
+            while (renderer.advance(verdict.next_samples())) {
+            }
+            verdict.add(renderer.film().read());
+        }
+        std::printf("  seed %u: %s\n", seed, verdict.text().c_str());
+        EXPECT_FALSE(verdict.verdict()->is_biased) << verdict.text();
+        for (const double smallest : verdict.verdict()->smallest_detectable) EXPECT_LT(smallest, 0.15);
+    }
+}
+
+std::string why_not(const Scene& scene, const RenderParameters& parameters) {
+    const auto reference = find_reference(scene, parameters);
+    return std::holds_alternative<Reference>(reference) ? "" : std::get<std::string>(reference);
+}
+
+TEST(SceneReference, IsThatOfTheSameImageOnly) {
+    Scene scene = load_shipped_scene("cornell_box.json");
+    const RenderParameters good = parameters_for(scene, 6, 1);
+    EXPECT_EQ(why_not(scene, good), "");
+    EXPECT_EQ(why_not(scene, parameters_for(scene, 5, 1)),
+              "this scene's references are for a maximal path length of 1 and 6");
+    RenderParameters changed = good;
+    changed.camera.position.x += 0.01f;
+    EXPECT_EQ(why_not(scene, changed), "the camera has moved");
+    changed = good;
+    changed.background = vec3(1);
+    EXPECT_EQ(why_not(scene, changed), "the background is another one");
+    changed = good;
+    changed.only_path_length = 6;
+    EXPECT_EQ(why_not(scene, changed), "the picture shows a single path length");
+    changed = good;
+    changed.image_size = {200, 200};
+    EXPECT_EQ(why_not(scene, changed),
+              "the reference has 128x128 pixels, the image is no whole number of times larger");
+    scene.hash ^= 1;
+    EXPECT_EQ(why_not(scene, good), "this scene's reference is older than the scene: ./lab reference --all");
+    EXPECT_EQ(why_not(load_shipped_scene("furnace.json"), good), "this scene has no reference");
+}
+
+}  // namespace
+}  // namespace lab
