@@ -136,7 +136,8 @@ std::vector<fs::path> shader_files(const ShaderSource& source) {
 }
 
 std::vector<uint32_t> compile_shader(const ShaderSource& source) {
-    const std::string text = Includer(source).expand(source.file);
+    std::string text = Includer(source).expand(source.file);
+    if (source.edit) text = source.edit(text);
     std::string preamble = "#extension GL_GOOGLE_cpp_style_line_directive : require\n";
     for (const auto& define : source.defines) preamble += "#define " + define + "\n";
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct ShaderSource {
     // What #include "name" stands for. Other names are looked up beside the includer and in shaders/. A
     // file's text is included once, even where an #if skips it.
     std::map<std::string, std::filesystem::path> named_includes = {};
+    // Changes the whole text before it is compiled, if there is anything to change; line by line the same.
+    std::function<std::string(const std::string&)> edit = {};
 };
 
 // Folder of the project, which holds shaders/ and assets/: found upwards from the running program.

@@ -36,7 +36,9 @@ ShaderSource shader_source(const std::string& name, ShaderStage stage, const Gpu
     ShaderSource source{.file = project_folder() / "shaders" / name,
                         .stage = stage,
                         .defines = scene.defines(),
-                        .named_includes = {{"path_trace.glsl", estimator.file}}};
+                        .named_includes = {{"path_trace.glsl", estimator.file}},
+                        .edit = estimator.edit};
+    if (!estimator.observed.empty()) source.named_includes["observed.glsl"] = estimator.observed;
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     return source;
 }

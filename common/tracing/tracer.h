@@ -2,6 +2,7 @@
 // traced.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <set>
 #include <span>
@@ -17,6 +18,10 @@ namespace lab {
 struct Estimator {
     std::filesystem::path file;
     std::vector<std::string> defines = {};
+    // Where `file` is an estimator that looks over another one's shoulder: that one's file, included as
+    // "observed.glsl", and what is done to the text of both.
+    std::filesystem::path observed = {};
+    std::function<std::string(const std::string&)> edit = {};
 };
 
 // The files that an estimator is compiled from, with whatever backend: the shared shaders and its own.

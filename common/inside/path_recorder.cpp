@@ -1,0 +1,191 @@
+#include "inside/path_recorder.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "inside/recording_calls.h"
+#include "shaders/inside/recorded_path.h"
+
+namespace lab {
+namespace {
+
+constexpr uint32_t max_events = 4096;
+
+// The start of the buffer; the events follow.
+struct Header {
+    uint32_t pixel;
+    uint32_t sample;
+    uint32_t event_count;
+};
+
+bool is_ray(const RecordedEvent& event) { return event.kind == EVENT_RAY || event.kind == EVENT_SHADOW_RAY; }
+
+// Makes vertices of events.
+class PathBuilder {
+  public:
+    explicit PathBuilder(std::span<const RecordedEvent> events) : events_(events) {}
+
+    RecordedPath build() {
+        for (next_ = 0; next_ < events_.size();) {
+            const RecordedEvent& event = events_[next_++];
+            switch (event.kind) {
+                case EVENT_RAY:
+                    add_vertex(event);
+                    break;
+                case EVENT_SHADOW_RAY:
+                    add_light_sample(event);
+                    break;
+                case EVENT_THROUGHPUT_STARTS:
+                    end_roulette();
+                    start_branch();
+                    [[fallthrough]];
+                case EVENT_THROUGHPUT:
+                    throughput_ = event.value;
+                    break;
+                case EVENT_RADIANCE_STARTS:
+                case EVENT_RADIANCE:
+                    add_radiance(event);
+                    break;
+                case EVENT_SURVIVAL:
+                    end_roulette();
+                    survival_probability_ = event.value.x;
+                    break;
+                default:
+                    path_.radiance = event.value;
+            }
+        }
+        end_roulette();
+        return std::move(path_);
+    }
+
+  private:
+    // The vertex that a ray starts from. Rays start off the surface by a few units in the last place only, so
+    // it is the nearest, and the latest of several at one place.
+    int vertex_at(const vec3& origin) const {
+        int nearest = -1;
+        float smallest = std::numeric_limits<float>::infinity();
+        for (size_t i = path_.vertices.size(); i-- > 0;) {
+            const PathVertex& vertex = path_.vertices[i];
+            if (!vertex.is_hit) continue;
+            const float distance = glm::length(vertex.position - origin);
+            if (distance < smallest) {
+                smallest = distance;
+                nearest = static_cast<int>(i);
+            }
+        }
+        return nearest;
+    }
+
+    void add_vertex(const RecordedEvent& event) {
+        PathVertex vertex{.parent = vertex_at(event.origin),
+                          .origin = event.origin,
+                          .direction = glm::normalize(event.direction),
+                          .is_hit = event.is_hit != 0,
+                          .position = event.position,
+                          .normal = event.normal,
+                          .throughput = throughput_,
+                          .survival_probability = survival_probability_,
+                          .light_samples = {},
+                          .lost_roulettes = {}};
+        survival_probability_.reset();
+        path_.vertices.push_back(std::move(vertex));
+        site_ = static_cast<int>(path_.vertices.size()) - 1;
+        is_light_sampled_ = false;
+    }
+
+    void add_light_sample(const RecordedEvent& event) {
+        site_ = vertex_at(event.origin);
+        if (site_ < 0) return;
+        site().light_samples.push_back(
+            {.point = event.origin + event.end * event.direction, .is_visible = event.is_hit == 0});
+        is_light_sampled_ = true;
+    }
+
+    // What follows happens where the branch's first ray starts.
+    void start_branch() {
+        const auto ray =
+            std::find_if(events_.begin() + static_cast<std::ptrdiff_t>(next_), events_.end(), is_ray);
+        if (ray != events_.end()) site_ = vertex_at(ray->origin);
+    }
+
+    void add_radiance(const RecordedEvent& event) {
+        const vec3 before = event.kind == EVENT_RADIANCE_STARTS ? vec3(0) : radiances_[event.variable];
+        // A sum over branches holds what has been added in them.
+        const bool is_sum = event.kind == EVENT_RADIANCE && event.variable != latest_variable_;
+        radiances_[event.variable] = event.value;
+        latest_variable_ = event.variable;
+        if (is_sum || site_ < 0) return;
+        site().radiance += event.value - before;
+        if (is_light_sampled_) site().light_samples.back().radiance = event.value - before;
+        is_light_sampled_ = false;
+    }
+
+    // A survival probability after which no ray was traced: the path has ended.
+    void end_roulette() {
+        if (survival_probability_ && site_ >= 0) site().lost_roulettes.push_back(*survival_probability_);
+        survival_probability_.reset();
+    }
+
+    PathVertex& site() { return path_.vertices[static_cast<size_t>(site_)]; }
+
+    std::span<const RecordedEvent> events_;
+    size_t next_ = 0;
+    RecordedPath path_;
+    int site_ = -1;  // the vertex where things happen
+    vec3 throughput_{1};
+    std::optional<float> survival_probability_;
+    std::map<uint32_t, vec3> radiances_;  // of each variable of that name
+    uint32_t latest_variable_ = 0;
+    bool is_light_sampled_ = false;  // and not added yet
+};
+
+}  // namespace
+
+Estimator recording(const Estimator& estimator) {
+    return {.file = project_folder() / "shaders" / "inside" / "record_path.glsl",
+            .defines = estimator.defines,
+            .observed = estimator.file,
+            .edit = add_recording_calls};
+}
+
+PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure,
+                           const Estimator& estimator, uvec2 image_size)
+    : device_(&device),
+      film_(device, image_size.x, image_size.y),
+      parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
+      ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent),
+              vk::BufferUsageFlagBits::eStorageBuffer) {
+    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_),
+                                        film_.binding(), storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
+                                        storage_binding(BINDING_RECORDED_PATH, events_)};
+    tracer_ = acceleration_structure.make_tracer(recording(estimator), bindings);
+}
+
+RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample) {
+    RenderParameters of_sample = parameters;
+    of_sample.first_sample = sample;
+    parameters_.write(&of_sample, sizeof of_sample);
+    film_.clear();
+    const Header header{pixel.y * film_.width() + pixel.x, sample, 0};
+    events_.write(&header, sizeof header);
+
+    const uint32_t blocks_per_row = (film_.width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH;
+    const uint32_t block = pixel.y / BLOCK_HEIGHT * blocks_per_row + pixel.x / BLOCK_WIDTH;
+    device_->submit([&](const vk::raii::CommandBuffer& commands) {
+        tracer_->record(commands, {block, 1}, 1);
+    });
+
+    std::vector<std::byte> bytes(events_.size());
+    events_.read(bytes.data(), bytes.size());
+    Header result;
+    std::memcpy(&result, bytes.data(), sizeof result);
+    std::vector<RecordedEvent> events(std::min(result.event_count, max_events));
+    std::memcpy(events.data(), bytes.data() + sizeof result, events.size() * sizeof(RecordedEvent));
+    RecordedPath path = PathBuilder(events).build();
+    path.is_complete = result.event_count <= max_events;
+    return path;
+}
+
+}  // namespace lab

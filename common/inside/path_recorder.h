@@ -1,0 +1,61 @@
+// Follows a single path: what the estimator of a chapter, or of a student, does for one sample of a pixel.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "film/film.h"
+#include "tracing/tracer.h"
+
+namespace lab {
+
+// A point on a light that a shadow ray was sent to.
+struct LightSample {
+    vec3 point;
+    bool is_visible = false;
+    vec3 radiance{0};  // that it added: throughput included
+};
+
+// Where a ray has arrived, or where to it has left the scene.
+struct PathVertex {
+    int parent =
+        -1;  // the vertex that the ray came from; -1: the camera. Several have the same where paths split.
+    vec3 origin;     // of the ray
+    vec3 direction;  // of the ray, unit length
+    bool is_hit = false;
+    vec3 position{0};                           // of the hit
+    vec3 normal{0};                             // for shading, on the ray's side
+    vec3 throughput{1};                         // that the ray was traced with
+    std::optional<float> survival_probability;  // of the Russian roulette that the ray has survived
+    std::vector<LightSample> light_samples;
+    vec3 radiance{0};                   // that was added here, throughput included, light samples as well
+    std::vector<float> lost_roulettes;  // survival probabilities of paths that ended here
+};
+
+struct RecordedPath {
+    vec3 radiance{0};                  // what the sample adds to the film
+    std::vector<PathVertex> vertices;  // in the order of their rays; a parent comes before its children
+    bool is_complete = true;           // false: there was no room for all of it
+};
+
+class PathRecorder {
+  public:
+    // The device and the acceleration structure must outlive it. Throws UserError if the estimator does not
+    // compile.
+    PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure,
+                 const Estimator& estimator, uvec2 image_size);
+
+    // Of the sample with this index (as first_sample counts). The image size is that of the constructor. The
+    // numbers are those of a render with these parameters on the same backend.
+    RecordedPath record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample);
+
+  private:
+    const Device* device_;
+    Film film_;
+    Buffer parameters_, ray_counters_, events_;
+    std::unique_ptr<Tracer> tracer_;
+};
+
+// The estimator with everything in it that recording takes.
+Estimator recording(const Estimator& estimator);
+
+}  // namespace lab

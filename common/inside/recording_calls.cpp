@@ -1,0 +1,131 @@
+#include "inside/recording_calls.h"
+
+#include <cctype>
+#include <string_view>
+
+namespace lab {
+namespace {
+
+bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+class Scanner {
+  public:
+    explicit Scanner(const std::string& text) : text_(text) {}
+
+    std::string run() {
+        while (at_ < text_.size()) {
+            const char c = text_[at_];
+            if (const size_t skipped = comment_or_directive(at_); skipped > 0) {
+                copy(skipped);
+            } else if (is_word(c)) {
+                if (!(begins_statement_ && copy_recorded_statement())) copy_word();
+            } else {
+                if (c == '(') ++parentheses_;
+                if (c == ')') --parentheses_;
+                if (c == '{') ++braces_;
+                if (c == '}') --braces_;
+                if (!std::isspace(static_cast<unsigned char>(c)))
+                    begins_statement_ =
+                        parentheses_ == 0 && std::string_view("{};)").find(c) != std::string::npos;
+                copy(1);
+            }
+        }
+        return result_;
+    }
+
+  private:
+    void copy(size_t count) {
+        result_.append(text_, at_, count);
+        at_ += count;
+    }
+
+    void copy_word() {
+        const std::string_view word = word_at(at_);
+        copy(word.size());
+        begins_statement_ = word == "else" || word == "do";
+    }
+
+    std::string_view word_at(size_t at) const {
+        size_t end = at;
+        while (end < text_.size() && is_word(text_[end])) ++end;
+        return std::string_view(text_).substr(at, end - at);
+    }
+
+    size_t skip_space(size_t at) const {
+        while (at < text_.size() && std::isspace(static_cast<unsigned char>(text_[at]))) ++at;
+        return at;
+    }
+
+    // Length of the comment or of the preprocessor's line that starts here, or 0.
+    size_t comment_or_directive(size_t at) const {
+        const std::string_view rest = std::string_view(text_).substr(at);
+        if (rest.starts_with("//") || rest.starts_with("#")) return std::min(rest.find('\n'), rest.size());
+        if (rest.starts_with("/*")) return std::min(rest.find("*/"), rest.size() - 2) + 2;
+        return 0;
+    }
+
+    // Length up to the semicolon, or 0 if there is none before the block ends.
+    size_t statement_length(size_t at) const {
+        for (size_t end = at; end < text_.size();) {
+            if (const size_t skipped = comment_or_directive(end)) {
+                end += skipped;
+                continue;
+            }
+            if (text_[end] == '{' || text_[end] == '}') return 0;
+            if (text_[end++] == ';') return end - at;
+        }
+        return 0;
+    }
+
+    // Copies the statement that starts here with its call, if it is one to be recorded.
+    bool copy_recorded_statement() {
+        if (braces_ == 0) return false;
+        const std::string_view first = word_at(at_);
+        std::string_view variable = first;
+        const bool is_declaration = first == "vec3" || first == "float";
+        if (is_declaration) {
+            const size_t name = skip_space(at_ + first.size());
+            variable = word_at(name);
+            const size_t after = skip_space(name + variable.size());
+            if (after >= text_.size() || text_[after] != '=') return false;
+        }
+        const std::string call = recording_call(variable, is_declaration);
+        const size_t length = call.empty() ? 0 : statement_length(at_);
+        if (length == 0) return false;
+        // Braces, since it may be all that belongs to an if.
+        if (!is_declaration) result_ += "{ ";
+        copy(length);
+        result_ += call;
+        if (!is_declaration) result_ += " }";
+        begins_statement_ = true;
+        return true;
+    }
+
+    std::string recording_call(std::string_view variable, bool is_declaration) {
+        const std::string starts = is_declaration ? "_STARTS" : "";
+        if (variable == "throughput")
+            return " record_throughput(EVENT_THROUGHPUT" + starts + ", throughput);";
+        if (variable == "radiance") {
+            if (is_declaration) ++radiances_;
+            if (radiances_ == 0) return "";  // somebody else's
+            return " record_radiance(EVENT_RADIANCE" + starts + ", radiance, " + std::to_string(radiances_) +
+                   "u);";
+        }
+        if (variable == "survival_probability" && is_declaration)
+            return " record_survival(survival_probability);";
+        return "";
+    }
+
+    const std::string& text_;
+    std::string result_;
+    size_t at_ = 0;
+    bool begins_statement_ = false;
+    int parentheses_ = 0, braces_ = 0;
+    int radiances_ = 0;  // declared so far
+};
+
+}  // namespace
+
+std::string add_recording_calls(const std::string& text) { return Scanner(text).run(); }
+
+}  // namespace lab

@@ -1,0 +1,12 @@
+// Makes an estimator tell what it computes, without a trace of it in the chapters' shaders.
+#pragma once
+#include <string>
+
+namespace lab {
+
+// The text of a shader with a call of record_throughput(), record_radiance() or record_survival(), see
+// shaders/inside/record_path.glsl, after every statement that begins with `throughput` or `radiance`, or
+// declares one of them or `survival_probability` with a value. All lines keep their numbers.
+std::string add_recording_calls(const std::string& text);
+
+}  // namespace lab

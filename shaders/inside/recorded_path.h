@@ -1,0 +1,38 @@
+// What an estimator has done for one sample of one pixel, in order. Shared by C++ and GLSL.
+#ifdef __cplusplus
+#include <shaders/interface.h>
+namespace lab {
+#endif
+
+SHARED_CONSTANT BINDING_RECORDED_PATH = 41u;
+
+SHARED_CONSTANT EVENT_RAY = 0u;         // trace_ray()
+SHARED_CONSTANT EVENT_SHADOW_RAY = 1u;  // is_occluded()
+SHARED_CONSTANT EVENT_THROUGHPUT_STARTS = 2u;  // a declaration of `throughput`: a path or a branch begins
+SHARED_CONSTANT EVENT_THROUGHPUT = 3u;         // an assignment to it
+SHARED_CONSTANT EVENT_RADIANCE_STARTS = 4u;    // a declaration of `radiance`
+SHARED_CONSTANT EVENT_RADIANCE = 5u;           // an assignment to it
+SHARED_CONSTANT EVENT_SURVIVAL = 6u;           // the value of `survival_probability`
+SHARED_CONSTANT EVENT_RESULT = 7u;             // what path_trace() returned
+
+struct RecordedEvent {
+    uint kind;
+    // Of radiance: which of the variables of this name, counted through the text.
+    uint variable;
+    vec3 value;  // of throughput and radiance after the assignment, or survival probability
+
+    vec3 origin;  // of a ray
+    vec3 direction;
+    float end;    // of a ray, in lengths of the direction: where it would have ended without a hit
+    uint is_hit;  // 0 or 1
+    // Of a hit that is not a shadow ray's.
+    uint instance;
+    uint triangle;  // index into the scene's triangles
+    vec2 barycentrics;
+    vec3 position;
+    vec3 normal;  // for shading, on the ray's side
+};
+
+#ifdef __cplusplus
+}  // namespace lab
+#endif

@@ -1,0 +1,235 @@
+// The path recorder: what it tells of a path is what the chapters' estimators do.
+#include "inside/path_recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "support/gpu_test.h"
+#include "support/render.h"
+#include "support/scenes.h"
+#include "tracing/backends.h"
+#include "tracing/bvh.h"
+
+namespace lab {
+namespace {
+
+constexpr uint32_t extent = 24;
+
+struct Recorded {
+    uvec2 pixel;
+    uint32_t sample;
+    RecordedPath path;
+};
+
+// Paths of `count` pixels all over the image, each of another sample.
+std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
+    const GpuScene gpu_scene(test_device(), scene, settings.light_sampling);
+    const auto acceleration_structure =
+        build_acceleration_structure(settings.backend, test_device(), gpu_scene);
+    PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator,
+                          {settings.width, settings.height});
+    std::vector<Recorded> paths;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t index = i * 7919 % (settings.width * settings.height);
+        const uvec2 pixel(index % settings.width, index / settings.width);
+        paths.push_back({pixel, i % 5, recorder.record(make_parameters(scene, settings), pixel, i % 5)});
+        EXPECT_TRUE(paths.back().path.is_complete);
+    }
+    return paths;
+}
+
+RenderSettings settings_for(const std::string& chapter) {
+    RenderSettings settings{.width = extent, .height = extent, .max_path_length = 6};
+    settings.splitting_factor = 2;
+    settings.roulette_start = 2;
+    settings.estimator = chapter_estimator(chapter);
+    return settings;
+}
+
+Scene scene_for(const std::string& chapter) {
+    return load_shipped_scene(chapter == "06_dielectrics" ? "glass.json" : "cornell_box.json");
+}
+
+float distance_to_triangle(const BvhTriangle& triangle, const vec3& point) {
+    const auto vertex = [&](int i) { return vec3(triangle.x[i], triangle.y[i], triangle.z[i]); };
+    const vec3 a = vertex(0), ab = vertex(1) - a, ac = vertex(2) - a, p = point - a;
+    const vec3 normal = glm::normalize(glm::cross(ab, ac));
+    const float area = glm::dot(glm::cross(ab, ac), normal);
+    const float v = glm::dot(glm::cross(p, ac), normal) / area,
+                w = glm::dot(glm::cross(ab, p), normal) / area;
+    const bool is_inside = v > -1e-3f && w > -1e-3f && v + w < 1.002f;
+    return is_inside ? std::abs(glm::dot(normal, p)) : std::numeric_limits<float>::infinity();
+}
+
+float distance_to_surface(const std::vector<BvhTriangle>& triangles, const vec3& point) {
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const BvhTriangle& triangle : triangles)
+        nearest = std::min(nearest, distance_to_triangle(triangle, point));
+    return nearest;
+}
+
+class PathRecorderOf : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(, PathRecorderOf, testing::ValuesIn(all_chapters), chapter_name);
+
+TEST_P(PathRecorderOf, RecordsTheSampleThatTheRenderAdds) {
+    const Scene scene = scene_for(GetParam());
+    const RenderSettings settings = settings_for(GetParam());
+    const uint32_t paths = chapter_number(GetParam()) <= 2 ? 300 : 40;  // bounces hardly ever meet the light
+    std::vector<FilmImage> films;
+    for (uint32_t sample = 0; sample < 5; ++sample) {
+        RenderSettings one = settings;
+        one.first_sample = sample;
+        one.samples = 1;
+        films.push_back(render(scene, one));
+    }
+    uint32_t bright = 0;
+    for (const auto& [pixel, sample, path] : record_paths(scene, settings, paths)) {
+        EXPECT_EQ(path.radiance, films[sample].pixels[pixel.y * extent + pixel.x].sum)
+            << "pixel " << pixel.x << "," << pixel.y << " sample " << sample;
+        bright += path.radiance != vec3(0);
+    }
+    EXPECT_GT(bright, 3u);
+}
+
+TEST_P(PathRecorderOf, FollowsRaysFromSurfaceToSurface) {
+    const Scene scene = scene_for(GetParam());
+    const auto triangles = world_triangles(scene);
+    size_t hits = 0, longest = 0, splits = 0;
+    for (const auto& [pixel, sample, path] : record_paths(scene, settings_for(GetParam()), 40)) {
+        ASSERT_FALSE(path.vertices.empty());
+        EXPECT_EQ(path.vertices.front().parent, -1);
+        EXPECT_EQ(path.vertices.front().origin, scene.camera.position);
+        longest = std::max(longest, path.vertices.size());
+        std::vector<int> children(path.vertices.size());
+        for (size_t i = 0; i < path.vertices.size(); ++i) {
+            const PathVertex& vertex = path.vertices[i];
+            EXPECT_NEAR(glm::length(vertex.direction), 1, 1e-5f);
+            if (i > 0) {
+                ASSERT_GE(vertex.parent, 0);
+                ASSERT_LT(vertex.parent, static_cast<int>(i));
+                EXPECT_LT(
+                    glm::length(path.vertices[static_cast<size_t>(vertex.parent)].position - vertex.origin),
+                    1e-4f);
+                splits += ++children[static_cast<size_t>(vertex.parent)] == 2;
+            }
+            if (!vertex.is_hit) continue;
+            ++hits;
+            EXPECT_LT(glm::length(glm::cross(vertex.position - vertex.origin, vertex.direction)), 1e-4f);
+            EXPECT_LT(glm::dot(vertex.normal, vertex.direction), 0);
+            EXPECT_LT(distance_to_surface(triangles, vertex.position), 1e-4f);
+        }
+    }
+    EXPECT_GT(hits, 80u);
+    EXPECT_GT(longest, 4u);
+    EXPECT_EQ(splits > 0, chapter_number(GetParam()) >= 4);
+}
+
+TEST_P(PathRecorderOf, TellsWhereRadianceWasFound) {
+    RenderSettings settings = settings_for(GetParam());
+    settings.splitting_factor = 1;  // where a path splits, each branch counts 1/s
+    uint32_t visible = 0, occluded = 0;
+    for (const auto& [pixel, sample, path] : record_paths(scene_for(GetParam()), settings, 60)) {
+        vec3 sum(0);
+        for (const PathVertex& vertex : path.vertices) {
+            sum += vertex.radiance;
+            for (const LightSample& light : vertex.light_samples) {
+                ++(light.is_visible ? visible : occluded);
+                EXPECT_EQ(light.radiance.g > 0, light.is_visible);
+                EXPECT_LE(light.radiance.g, vertex.radiance.g);
+            }
+        }
+        EXPECT_LT(glm::length(sum - path.radiance), 1e-5f * (1 + glm::length(path.radiance)));
+    }
+    EXPECT_EQ(visible > 20, chapter_number(GetParam()) >= 3);
+    EXPECT_EQ(occluded > 3, chapter_number(GetParam()) >= 3);
+}
+
+TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
+    // Every bounce reflects (0.9, 0.5, 0.3) of the light, and chapters from 2 on weigh all directions alike.
+    const vec3 albedo(0.9f, 0.5f, 0.3f);
+    const bool is_weighted_alike = chapter_number(GetParam()) >= 2;
+    const bool has_roulette = chapter_number(GetParam()) >= 5;
+    uint32_t survived = 0, lost = 0;
+    for (const auto& [pixel, sample, path] :
+         record_paths(closed_box(diffuse_material(albedo)), settings_for(GetParam()), 30)) {
+        for (const PathVertex& vertex : path.vertices) {
+            lost += static_cast<uint32_t>(vertex.lost_roulettes.size());
+            if (vertex.parent < 0) {
+                EXPECT_EQ(vertex.throughput, vec3(1));
+                continue;
+            }
+            const PathVertex& before = path.vertices[static_cast<size_t>(vertex.parent)];
+            vec3 expected = before.throughput * albedo;
+            if (vertex.survival_probability) {
+                ++survived;
+                EXPECT_NEAR(*vertex.survival_probability, std::min(expected.r, 0.95f), 1e-6f);
+                expected /= *vertex.survival_probability;
+            }
+            if (is_weighted_alike)
+                EXPECT_LT(glm::length(vertex.throughput - expected), 1e-5f);
+            else  // colours have the albedo's ratio to each other
+                EXPECT_NEAR(vertex.throughput.r * expected.g, vertex.throughput.g * expected.r, 1e-5f);
+        }
+    }
+    EXPECT_EQ(survived > 10, has_roulette);
+    EXPECT_EQ(lost > 3, has_roulette);
+}
+
+TEST(PathRecorder, FollowsATreeThatSplitsAtEveryHit) {
+    RenderSettings settings = settings_for("04_splitting");
+    settings.estimator.file = settings.estimator.file.parent_path() / "path_trace_every_hit.glsl";
+    settings.max_path_length = 4;
+    size_t largest = 0;
+    for (const auto& [pixel, sample, path] :
+         record_paths(closed_box(diffuse_material(vec3(0.5f))), settings, 4)) {
+        std::vector<uint32_t> lengths;
+        for (const PathVertex& vertex : path.vertices) {
+            lengths.push_back(vertex.parent < 0 ? 0 : lengths[static_cast<size_t>(vertex.parent)] + 1);
+            EXPECT_LT(
+                glm::length(vertex.throughput - vec3(std::pow(0.5f, static_cast<float>(lengths.back())))),
+                1e-6f);
+        }
+        largest = std::max(largest, path.vertices.size());
+    }
+    EXPECT_EQ(largest, 1u + 2 + 4 + 8 + 16);
+}
+
+TEST(PathRecorder, RecordsTheSameOnEveryBackend) {
+    const Scene scene = scene_for("03_next_event_estimation");
+    RenderSettings settings = settings_for("03_next_event_estimation");
+    const auto expected = record_paths(scene, settings, 20);
+    for (const Backend backend : all_backends) {
+        if (!test_device().description().supports(backend)) continue;
+        settings.backend = backend;
+        const auto paths = record_paths(scene, settings, 20);
+        for (size_t i = 0; i < paths.size(); ++i) {
+            ASSERT_EQ(paths[i].path.vertices.size(), expected[i].path.vertices.size());
+            EXPECT_LT(glm::length(paths[i].path.radiance - expected[i].path.radiance),
+                      1e-3f * (1 + glm::length(expected[i].path.radiance)));
+        }
+    }
+}
+
+// Names of a shader's functions and variables are in its SPIR-V.
+bool mentions(const std::vector<uint32_t>& words, const std::string& name) {
+    const auto bytes = std::as_bytes(std::span(words));
+    const auto same = [](std::byte a, char b) { return static_cast<char>(a) == b; };
+    return std::search(bytes.begin(), bytes.end(), name.begin(), name.end(), same) != bytes.end();
+}
+
+TEST(PathRecorder, LeavesNoTraceInShadersThatRender) {
+    const Scene scene = scene_for("05_russian_roulette");
+    const GpuScene gpu_scene(test_device(), scene);
+    const Estimator estimator = chapter_estimator("05_russian_roulette");
+    const auto compile = [&](const Estimator& e) {
+        ShaderSource source = shader_source("render.comp", ShaderStage::compute, gpu_scene, e);
+        source.defines.push_back("BVH_STACK_SIZE 32");
+        return compile_shader(source);
+    };
+    EXPECT_FALSE(mentions(compile(estimator), "record"));
+    EXPECT_TRUE(mentions(compile(recording(estimator)), "record"));
+}
+
+}  // namespace
+}  // namespace lab
