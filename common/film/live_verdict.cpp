@@ -145,7 +145,8 @@ void LiveVerdict::test() {
     Verdict verdict{.samples = samples(),
                     .is_biased = verdict_ && verdict_->is_biased,
                     .differences = {},
-                    .map = {tiles_.x, tiles_.y, std::vector<double>(total_.size())}};
+                    .map = {tiles_.x, tiles_.y, std::vector<double>(total_.size())},
+                    .map_tile_size = tile * scale_};
     const auto is_off = [](const Difference& difference, double level_of_one) {
         return difference.p_value() < level_of_one;
     };

@@ -22,6 +22,7 @@ struct Verdict {
     uint32_t tile_size = 0;  // of the tiles that were tested, in pixels of the image; 0: none yet
     uint32_t tiles = 0, bright_tiles = 0, dark_tiles = 0;  // all, significantly too bright, too dark
     ZMap map;  // tiles of 8 x 8 pixels of the reference, of each the channel that is farthest off
+    uint32_t map_tile_size = 0;  // of these, in pixels of the image
 };
 
 // "agrees with the reference: …" or "biased: …", in one line.

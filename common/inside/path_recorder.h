@@ -17,11 +17,13 @@ struct LightSample {
 
 // Where a ray has arrived, or where to it has left the scene.
 struct PathVertex {
-    int parent =
-        -1;  // the vertex that the ray came from; -1: the camera. Several have the same where paths split.
-    vec3 origin;     // of the ray
-    vec3 direction;  // of the ray, unit length
+    int parent = -1;  // vertex that the ray came from; -1: the camera. Where paths split, several have one.
+    vec3 origin;      // of the ray
+    vec3 direction;   // of the ray, unit length
     bool is_hit = false;
+    uint32_t instance = 0;
+    uint32_t triangle = 0;  // index into the scene's triangles
+    vec2 barycentrics{0};
     vec3 position{0};                           // of the hit
     vec3 normal{0};                             // for shading, on the ray's side
     vec3 throughput{1};                         // that the ray was traced with
