@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "rendering/outputs.h"
+#include "rendering/scene_reference.h"
 #include "rendering/settings.h"
 
 namespace lab {
@@ -159,8 +160,27 @@ void Session::begin(uint32_t reduction) {
     parameters.image_size = glm::max(parameters.image_size / reduction_, uvec2(1));
     build_->renderer->restart(parameters);
     seconds_ = 0;
-    snapshot_ = {};
+    snapshot_ = earlier_snapshot_ = {};
     snapshot_error_.reset();
+    verdict_.reset();
+    no_verdict_ = "the picture is reduced";
+    if (reduction_ == 1) find_verdict();
+}
+
+void Session::find_verdict() {
+    if (build_->options.view) {
+        no_verdict_ = "the picture shows no radiance";
+        return;
+    }
+    try {
+        auto reference = find_reference(*build_->scene, build_->job.parameters);
+        if (auto* found = std::get_if<Reference>(&reference))
+            verdict_.emplace(std::move(*found), build_->job.parameters.image_size);
+        else
+            no_verdict_ = std::get<std::string>(reference);
+    } catch (const UserError& error) {
+        no_verdict_ = shortened(error.what());
+    }
 }
 
 uint32_t Session::find_reduction(double seconds) const {
@@ -189,13 +209,11 @@ void Session::render(double seconds) {
         uint32_t next = 1;
         while (next <= done) next = next > target_samples() / 2 ? target_samples() : 2 * next;
         next = std::min(next, target_samples());
+        if (verdict_ && reduction_ == 1) next = std::min(next, verdict_->next_samples());
         renderer.set_dispatch_seconds(std::max(seconds - elapsed, 0.1 * seconds));
         const bool is_complete = !renderer.advance(next);
         elapsed = seconds_since(start);
-        // Reading the film back takes time: not while powers of two pass by in quick succession.
-        constexpr double seconds_of_first_snapshot = 0.25;
-        if (is_complete && reduction_ == 1 && seconds_ + elapsed > seconds_of_first_snapshot)
-            take_snapshot(next);
+        if (is_complete && reduction_ == 1) take_snapshots(next, seconds_ + elapsed);
     }
     seconds_ += elapsed;
     const double pixels = static_cast<double>(renderer.film().width()) * renderer.film().height();
@@ -203,11 +221,21 @@ void Session::render(double seconds) {
         paths_per_second_ = (renderer.samples() - first_samples) * pixels / elapsed;
 }
 
-void Session::take_snapshot(uint32_t samples) {
+void Session::take_snapshots(uint32_t samples, double seconds) {
+    // Reading the film back takes time: not while powers of two pass by in quick succession.
+    constexpr double seconds_of_first_snapshot = 0.25;
+    const bool is_for_verdict = verdict_ && samples == verdict_->next_samples();
+    const bool is_power_of_two = (samples & (samples - 1)) == 0;
+    const bool is_for_error =
+        seconds > seconds_of_first_snapshot && (is_power_of_two || samples == target_samples());
+    if (!is_for_verdict && !is_for_error) return;
     FilmImage film = build_->renderer->film().read();
+    if (is_for_verdict) verdict_->add(film);
+    if (!is_for_error) return;
     if (snapshot_.min_samples() > 0 && samples == 2 * snapshot_.min_samples())
         snapshot_error_ =
             std::sqrt(estimate_error(snapshot_.mean(), samples_after(snapshot_, film).mean()).rel_mse);
+    earlier_snapshot_ = std::move(snapshot_);
     snapshot_ = std::move(film);
 }
 

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <future>
 
-#include "film/error_metrics.h"
+#include "film/live_verdict.h"
 #include "viewer/build.h"
 
 namespace lab {
@@ -48,9 +48,16 @@ class Session {
     // Relative error (root of rel_mse) estimated from two halves of the samples, from 2 samples on.
     std::optional<double> relative_error() const;
 
+    // Whether the picture will be the scene's reference: null where there is nothing to compare with, and
+    // why in verdict_text().
+    const LiveVerdict* verdict() const { return verdict_ ? &*verdict_ : nullptr; }
+    std::string verdict_text() const { return verdict_ ? verdict_->text() : "no verdict: " + no_verdict_; }
+
     // Writes what there is so far, each file in the format of its ending, as a run without a window does.
     void save(const std::vector<std::filesystem::path>& files);
     const FilmImage& last_snapshot() const { return snapshot_; }  // what remains if the device is lost
+    // The snapshot before that, mostly of half as many samples; without pixels if there is only one.
+    const FilmImage& earlier_snapshot() const { return earlier_snapshot_; }
 
   private:
     void look_for_changed_shaders();
@@ -58,7 +65,8 @@ class Session {
     void adopt_finished_build();
     void begin(uint32_t reduction);
     void render(double seconds);
-    void take_snapshot(uint32_t samples);
+    void take_snapshots(uint32_t samples, double seconds);
+    void find_verdict();
     uint32_t find_reduction(double seconds) const;
     void take_back(const std::string& why);
 
@@ -79,7 +87,10 @@ class Session {
     uint32_t reduction_ = 1;
     double paths_per_second_ = 0;  // camera paths, measured
     double seconds_ = 0;
-    FilmImage snapshot_;  // at the last power of two
+    FilmImage snapshot_;          // at the last power of two
+    FilmImage earlier_snapshot_;  // at the one before
+    std::optional<LiveVerdict> verdict_;
+    std::string no_verdict_ = "the render goes on from an earlier one";  // why there is none
     std::optional<double> snapshot_error_;
 };
 

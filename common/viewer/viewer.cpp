@@ -43,10 +43,13 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
                Scene scene)
     : window_(window),
       screen_(device, window),
-      session_(device, chapter, build_while_waiting(window, screen_, [&] {
-                   return make_build(device, chapter, options, BuildStage::scene, nullptr,
-                                     std::make_shared<Scene>(std::move(scene)));
-               })) {}
+      session_(device, chapter,
+               build_while_waiting(window, screen_,
+                                   [&] {
+                                       return make_build(device, chapter, options, BuildStage::scene, nullptr,
+                                                         std::make_shared<Scene>(std::move(scene)));
+                                   })),
+      inside_panel_(device) {}
 
 bool Viewer::frame() {
     const bool has_work = !session_.is_paused && session_.samples() < session_.target_samples();
@@ -59,7 +62,10 @@ bool Viewer::frame() {
 
     screen_.begin_frame();
     open_dropped_files();
-    if (shows_controls_) controls_.draw(session_, camera_control_, frames_per_second_);
+    if (shows_controls_) {
+        controls_.draw(session_, camera_control_, frames_per_second_);
+        inside_panel_.draw(session_, picture_rectangle(), 0.2 * window_.refresh_seconds());
+    }
     handle_keys();
     move_camera(std::min(seconds, 0.2));
     window_.clear_events();
@@ -129,6 +135,7 @@ void Viewer::handle_keys() {
     if (window_.was_key_pressed(GLFW_KEY_TAB)) shows_controls_ = !shows_controls_;
     if (window_.was_key_pressed(GLFW_KEY_SPACE)) session_.is_paused = !session_.is_paused;
     if (window_.was_key_pressed(GLFW_KEY_R)) session_.restart();
+    if (window_.was_key_pressed(GLFW_KEY_T)) inside_panel_.show_next_overlay();
 }
 
 void Viewer::open_dropped_files() {

@@ -2,6 +2,7 @@
 #pragma once
 #include "viewer/camera_control.h"
 #include "viewer/controls.h"
+#include "viewer/inside_panel.h"
 #include "viewer/screen.h"
 #include "viewer/session.h"
 
@@ -20,6 +21,7 @@ class Viewer {
     Session& session() { return session_; }
     Screen& screen() { return screen_; }
     const Controls& controls() const { return controls_; }
+    const InsidePanel& inside_panel() const { return inside_panel_; }
     double frames_per_second() const { return frames_per_second_; }
 
   private:
@@ -34,6 +36,7 @@ class Viewer {
     CameraControl camera_control_;
     std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed fits to
     Controls controls_;
+    InsidePanel inside_panel_;
     bool shows_controls_ = true;
     double interface_seconds_ = 0.01;  // of a frame, smoothed
     double frames_per_second_ = 0;     // smoothed

@@ -1,0 +1,82 @@
+#include "viewer/inside_drawing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "inside/hemisphere_view.h"
+#include "inside/projection.h"
+
+namespace lab {
+namespace {
+
+// Radiance as the picture shows it without exposure.
+uint32_t colour_of(const float* radiance, float scale) {
+    const auto channel = [&](int i) {
+        return static_cast<uint32_t>(std::lround(255 * linear_to_srgb(std::min(scale * radiance[i], 1.0f))));
+    };
+    return IM_COL32(channel(0), channel(1), channel(2), 255);
+}
+
+}  // namespace
+
+Placement::Placement(const Rectangle& picture) {
+    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+    corner = glm::vec2(picture.corner) / glm::vec2(scale.x, scale.y);
+    size = glm::vec2(picture.size) / glm::vec2(scale.x, scale.y);
+}
+
+void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, const Rectangle& picture) {
+    const Placement placement(picture);
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.PushClipRect(placement.at({0, 0}), placement.at({1, 1}));
+    const auto draw_line = [&](const vec3& from, const vec3& to, uint32_t colour, float width) {
+        if (const auto ends = project_segment(camera, from, to))
+            list.AddLine(placement.at((*ends)[0]), placement.at((*ends)[1]), colour, width);
+    };
+    const auto& vertices = path.vertices;
+    for (const PathVertex& vertex : vertices)
+        for (const LightSample& light : vertex.light_samples)
+            draw_line(vertex.position, light.point,
+                      light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200), 1);
+    for (const PathVertex& vertex : vertices) {
+        if (vertex.parent < 0) continue;  // the camera's own ray is a point in the picture
+        const vec3 start = vertices[static_cast<size_t>(vertex.parent)].position;
+        constexpr float far = 1e3f;
+        const vec3 end = vertex.is_hit
+                             ? vertex.position
+                             : start + far * glm::length(start - camera.position) * vertex.direction;
+        draw_line(start, end, IM_COL32(60, 200, 255, 255), 2);
+    }
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        const auto position = vertices[i].is_hit ? project(camera, vertices[i].position) : std::nullopt;
+        if (position)
+            list.AddCircleFilled(placement.at(*position), i == chosen ? 6.0f : 4.0f,
+                                 i == chosen ? IM_COL32(255, 80, 200, 255) : IM_COL32(60, 200, 255, 255));
+    }
+    list.PopClipRect();
+}
+
+void draw_disc(const Image& picture, float scale, float width) {
+    constexpr uint32_t cells = 40, extent = HemisphereView::extent;
+    const float cell = std::floor(width / cells);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    for (uint32_t y = 0; y < cells; ++y)
+        for (uint32_t x = 0; x < cells; ++x) {
+            const glm::vec2 centre = 2.0f * (glm::vec2(x, y) + 0.5f) / static_cast<float>(cells) - 1.0f;
+            if (glm::dot(centre, centre) >= 1) continue;
+            const glm::uvec2 first = glm::uvec2(x, y) * extent / cells,
+                             last = glm::uvec2(x + 1, y + 1) * extent / cells;
+            vec3 sum(0);
+            for (uint32_t py = first.y; py < last.y; ++py)
+                for (uint32_t px = first.x; px < last.x; ++px)
+                    for (uint32_t channel = 0; channel < 3; ++channel)
+                        sum[static_cast<int>(channel)] += picture.pixels[3 * (py * extent + px) + channel];
+            const vec3 mean = sum / static_cast<float>((last.x - first.x) * (last.y - first.y));
+            const ImVec2 a(corner.x + cell * static_cast<float>(x), corner.y + cell * static_cast<float>(y));
+            list.AddRectFilled(a, {a.x + cell, a.y + cell}, colour_of(&mean.x, scale));
+        }
+    ImGui::Dummy({cell * cells, cell * cells});
+}
+
+}  // namespace lab

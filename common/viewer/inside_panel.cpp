@@ -1,0 +1,174 @@
+#include "viewer/inside_panel.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "film/noise.h"
+#include "viewer/inside_drawing.h"
+
+namespace lab {
+namespace {
+
+const ImVec4 grey(0.65f, 0.65f, 0.65f, 1), green(0.45f, 0.9f, 0.45f, 1), red(1.0f, 0.45f, 0.4f, 1);
+
+void text_vector(const char* name, const vec3& v) { ImGui::Text("%s %.4g %.4g %.4g", name, v.x, v.y, v.z); }
+
+}  // namespace
+
+void InsidePanel::draw(const Session& session, const Rectangle& picture, double seconds) {
+    select_clicked_pixel(session, picture);
+    inspection_.update(session, seconds);
+    overlay_.draw(session, picture);
+    if (inspection_.path())
+        draw_path(*inspection_.path(), inspection_.parameters().camera, inspection_.selection()->vertex,
+                  picture);
+
+    const float width = 27 * ImGui::GetFontSize();
+    ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - width, 0}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({width, 0});
+    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, ImGui::GetIO().DisplaySize.y});
+    if (ImGui::Begin("Look inside")) {
+        draw_verdict(session);
+        draw_pixel(session);
+        if (inspection_.path()) {
+            draw_path_list();
+            draw_hemisphere();
+        }
+    }
+    ImGui::End();
+}
+
+void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& picture) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::uvec2 size = session.build().job.parameters.image_size;
+    const Placement placement(picture);
+    const glm::vec2 position = (glm::vec2(io.MousePos.x, io.MousePos.y) - placement.corner) / placement.size;
+    hovered_.reset();
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) was_dragged_ = io.WantCaptureMouse;
+    if (ImGui::IsMouseDragging(ImGuiMouseButton_Left)) was_dragged_ = true;
+    const bool is_inside = glm::all(glm::greaterThanEqual(position, glm::vec2(0))) &&
+                           glm::all(glm::lessThan(position, glm::vec2(1)));
+    if (io.WantCaptureMouse || !is_inside) return;
+    hovered_ = glm::min(glm::uvec2(position * glm::vec2(size)), size - 1u);
+    // A drag moves the camera instead.
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !was_dragged_) inspection_.select(*hovered_);
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) inspection_.deselect();
+}
+
+void InsidePanel::draw_verdict(const Session& session) {
+    const bool is_known = session.verdict() && session.verdict()->verdict();
+    const bool is_biased = is_known && session.verdict()->verdict()->is_biased;
+    ImGui::PushStyleColor(ImGuiCol_Text, !is_known ? grey : is_biased ? red : green);
+    ImGui::TextWrapped("%s", session.verdict_text().c_str());
+    ImGui::PopStyleColor();
+    if (is_known && ImGui::IsItemHovered())
+        ImGui::SetTooltip("An unbiased render is ever called biased with a probability of %.3g",
+                          LiveVerdict::default_false_alarms);
+    int overlay = static_cast<int>(overlay_.shown);
+    ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));
+    overlay_.shown = static_cast<Overlay>(overlay);
+    if (!overlay_.legend().empty()) ImGui::TextWrapped("%s", overlay_.legend().c_str());
+}
+
+void InsidePanel::draw_pixel(const Session& session) {
+    ImGui::Separator();
+    const std::optional<Inspection::Selection>& selection = inspection_.selection();
+    const FilmImage& film = session.last_snapshot();
+    const std::optional<glm::uvec2> pixel = hovered_    ? hovered_
+                                            : selection ? std::optional(selection->pixel)
+                                                        : std::nullopt;
+    if (pixel && pixel->x < film.width && pixel->y < film.height) {
+        const NoiseEstimate value = estimate_noise(session.earlier_snapshot(), film, *pixel, {1, 1});
+        const glm::uvec2 corner = *pixel - glm::min(*pixel, glm::uvec2(3));
+        const NoiseEstimate around = estimate_noise(session.earlier_snapshot(), film, corner, {7, 7});
+        ImGui::Text("pixel %u,%u: %.4g %.4g %.4g", pixel->x, pixel->y, value.mean[0], value.mean[1],
+                    value.mean[2]);
+        ImGui::Text("%.0f samples, %llu invalid, error about %.2g", value.samples,
+                    static_cast<unsigned long long>(value.invalid_samples), around.standard_error);
+    } else {
+        ImGui::TextColored(grey, "point at a pixel for its value");
+    }
+    if (!selection) ImGui::TextColored(grey, "click: follow a path; right click: leave it");
+    if (inspection_.is_building()) ImGui::TextColored(grey, "compiling the recorder ...");
+    if (!inspection_.message().empty()) ImGui::TextWrapped("%s", inspection_.message().c_str());
+}
+
+void InsidePanel::draw_path_list() {
+    ImGui::Separator();
+    auto& selection = *inspection_.selection();
+    const RecordedPath& path = *inspection_.path();
+    ImGui::Text("sample %u: radiance %.4g %.4g %.4g", selection.sample, path.radiance.x, path.radiance.y,
+                path.radiance.z);
+    ImGui::SameLine();
+    if (ImGui::SmallButton("<") && selection.sample > 0) --selection.sample;
+    ImGui::SameLine();
+    if (ImGui::SmallButton(">")) ++selection.sample;
+    if (!path.is_complete) ImGui::TextColored(red, "too long to be shown as a whole");
+    ImGui::BeginChild("vertices", {0, 16 * ImGui::GetFontSize()}, true);
+    for (size_t i = 0; i < path.vertices.size(); ++i) {
+        const PathVertex& vertex = path.vertices[i];
+        ImGui::PushID(static_cast<int>(i));
+        char title[80];
+        std::snprintf(title, sizeof title, vertex.parent < 0 ? "x%zu, seen by the camera" : "x%zu, after x%d",
+                      i + 1, vertex.parent + 1);
+        if (ImGui::Selectable(title, i == selection.vertex)) selection.vertex = i;
+        if (vertex.survival_probability)
+            ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
+        text_vector("throughput", vertex.throughput);
+        if (vertex.is_hit) {
+            text_vector("position", vertex.position);
+            text_vector("normal", vertex.normal);
+        } else {
+            text_vector("leaves the scene towards", vertex.direction);
+        }
+        for (const LightSample& light : vertex.light_samples) {
+            text_vector(light.is_visible ? "light sample, visible," : "light sample, hidden,", light.point);
+            if (light.is_visible) text_vector("  adds", light.radiance);
+        }
+        if (vertex.radiance != vec3(0)) text_vector("radiance found", vertex.radiance);
+        for (const float probability : vertex.lost_roulettes)
+            ImGui::Text("Russian roulette: ended, survival %.3g", probability);
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+}
+
+void InsidePanel::draw_hemisphere() {
+    if (!inspection_.has_hemisphere()) {
+        ImGui::TextColored(grey, "no hemisphere: glass, or beyond the scene");
+        return;
+    }
+    const HemisphereView& view = inspection_.hemisphere();
+    if (view.samples() < 1) return;
+    // Twice as many samples look different enough; also fewer, after the point has changed.
+    if (pictures_samples_ < 0 || view.samples() < pictures_samples_ ||
+        view.samples() >= 2 * pictures_samples_) {
+        pictures_ = view.pictures();
+        pictures_samples_ = std::floor(view.samples());
+    }
+    const size_t vertex = inspection_.selection()->vertex + 1;
+    const auto largest = [](const Image& image) {
+        return std::max(*std::max_element(image.pixels.begin(), image.pixels.end()), 1e-9f);
+    };
+    double mean = 0;
+    for (const float value : pictures_.incoming_radiance.pixels) mean += value;
+    mean /= static_cast<double>(pictures_.incoming_radiance.pixels.size());
+    ImGui::Text("what x%zu sees: incoming radiance, BRDF, cosine", vertex);
+    const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+    draw_disc(pictures_.incoming_radiance, mean > 0 ? static_cast<float>(0.25 / mean) : 1, width);
+    ImGui::SameLine();
+    draw_disc(pictures_.brdf, 1 / largest(pictures_.brdf), width);
+    ImGui::SameLine();
+    draw_disc(pictures_.cosine, 1, width);
+    const vec3 reflected = pictures_.reflected_radiance();
+    ImGui::Text("product reflects %.3g %.3g %.3g, %.0f samples", reflected.x, reflected.y, reflected.z,
+                pictures_samples_);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "The hemisphere seen from above, in equal areas: the normal in the middle, the horizon at the "
+            "rim");
+}
+
+}  // namespace lab

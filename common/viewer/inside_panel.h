@@ -1,0 +1,33 @@
+// The window that looks inside the render: the live verdict, tiles of the picture, a pixel's path and what
+// its points see.
+#pragma once
+#include "viewer/inspection.h"
+#include "viewer/tile_overlay.h"
+
+namespace lab {
+
+class InsidePanel {
+  public:
+    explicit InsidePanel(const Device& device) : inspection_(device) {}
+
+    // Between Screen::begin_frame() and Screen::show(); renders hemispheres for about so many seconds.
+    void draw(const Session& session, const Rectangle& picture, double seconds);
+    const Inspection& inspection() const { return inspection_; }
+    void show_next_overlay() { overlay_.show_next(); }
+
+  private:
+    void select_clicked_pixel(const Session& session, const Rectangle& picture);
+    void draw_verdict(const Session& session);
+    void draw_pixel(const Session& session);
+    void draw_path_list();
+    void draw_hemisphere();
+
+    Inspection inspection_;
+    TileOverlay overlay_;
+    std::optional<glm::uvec2> hovered_;  // pixel
+    bool was_dragged_ = false;           // the mouse, since its button went down
+    HemisphereView::Pictures pictures_;
+    double pictures_samples_ = -1;
+};
+
+}  // namespace lab

@@ -1,0 +1,90 @@
+#include "viewer/inspection.h"
+
+#include <cstring>
+
+#include "error.h"
+#include "rendering/settings.h"
+
+namespace lab {
+
+std::unique_ptr<Inspection::Tools> Inspection::wanted_tools(const Session& session) const {
+    const Build& build = session.build();
+    Options options = build.options;
+    options.view = nullptr;
+    auto tools = std::make_unique<Tools>();
+    tools->scene = build.scene;
+    tools->gpu_scene = build.gpu_scene;
+    tools->acceleration_structure = build.acceleration_structure;
+    tools->estimator = make_estimator(session.chapter(), options);
+    tools->shader_hash = build.shader_hash;
+    tools->image_size = build.job.parameters.image_size;
+    return tools;
+}
+
+std::unique_ptr<Inspection::Tools> Inspection::make_tools(const Device& device,
+                                                          std::unique_ptr<Tools> tools) {
+    const AccelerationStructure& structure = *tools->acceleration_structure;
+    tools->recorder = std::make_unique<PathRecorder>(device, structure, tools->estimator, tools->image_size);
+    tools->hemisphere = std::make_unique<HemisphereView>(device, structure, tools->estimator);
+    return tools;
+}
+
+// Whether there are tools for what the session renders; if not, starts making them.
+bool Inspection::have_tools(const Session& session) {
+    if (work_.valid()) {
+        if (work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+        try {
+            tools_ = work_.get();
+            shown_.reset();
+            message_.clear();
+        } catch (const UserError& error) {
+            message_ = error.what();
+            failed_shader_hash_ = session.build().shader_hash;
+        } catch (const DeviceFailure& error) {
+            message_ = error.what();
+            failed_shader_hash_ = session.build().shader_hash;
+        }
+    }
+    auto wanted = wanted_tools(session);
+    if (tools_ && tools_->acceleration_structure == wanted->acceleration_structure &&
+        tools_->shader_hash == wanted->shader_hash && tools_->estimator.file == wanted->estimator.file &&
+        tools_->image_size == wanted->image_size)
+        return true;
+    if (wanted->shader_hash == failed_shader_hash_) return false;
+    work_ = std::async(std::launch::async, make_tools, std::cref(device_), std::move(wanted));
+    return false;
+}
+
+void Inspection::update(const Session& session, double seconds) {
+    if (!selection_ || session.reduction() > 1 || !have_tools(session)) {
+        path_.reset();
+        shown_.reset();
+        has_hemisphere_ = false;
+        return;
+    }
+    const RenderParameters& parameters = session.build().job.parameters;
+    selection_->pixel = glm::min(selection_->pixel, parameters.image_size - 1u);
+    if (shown_ != selection_ || std::memcmp(&parameters, &parameters_, sizeof parameters) != 0) {
+        const bool is_new_path = !shown_ || shown_->pixel != selection_->pixel ||
+                                 shown_->sample != selection_->sample ||
+                                 std::memcmp(&parameters, &parameters_, sizeof parameters) != 0;
+        parameters_ = parameters;
+        if (is_new_path)
+            path_ = tools_->recorder->record(parameters, selection_->pixel,
+                                             parameters.first_sample + selection_->sample);
+        selection_->vertex = std::min(selection_->vertex, path_->vertices.size() - 1);
+        const PathVertex& vertex = path_->vertices[selection_->vertex];
+        const Scene& scene = *tools_->scene;
+        // Glass reflects and refracts into single directions: its BRDF is no function.
+        has_hemisphere_ =
+            vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
+        if (has_hemisphere_) tools_->hemisphere->look_at(vertex, parameters);
+        shown_ = selection_;
+    }
+    constexpr uint32_t enough_samples = 256;
+    if (!has_hemisphere_) return;
+    tools_->hemisphere->set_dispatch_seconds(seconds);
+    tools_->hemisphere->advance(enough_samples);
+}
+
+}  // namespace lab

@@ -1,0 +1,65 @@
+// What happens at a pixel that the user has chosen: one path after the other, and what its points see.
+#pragma once
+#include <future>
+
+#include "inside/hemisphere_view.h"
+#include "viewer/session.h"
+
+namespace lab {
+
+class Inspection {
+  public:
+    explicit Inspection(const Device& device) : device_(device) {}
+
+    void select(uvec2 pixel) { selection_ = {pixel, 0, 0}; }
+    void deselect() { selection_.reset(); }
+    struct Selection {
+        uvec2 pixel;
+        uint32_t sample;  // counted from the render's first one
+        size_t vertex;    // of its path, whose hemisphere is shown
+        bool operator==(const Selection&) const = default;
+    };
+    // Changes take effect with the next update.
+    std::optional<Selection>& selection() { return selection_; }
+    const std::optional<Selection>& selection() const { return selection_; }
+
+    // Brings path and hemisphere up to date with the session and renders the hemisphere for about so many
+    // seconds.
+    void update(const Session& session, double seconds);
+
+    bool is_building() const { return work_.valid(); }       // its shaders, in the background
+    const std::string& message() const { return message_; }  // why there is nothing to see; may be empty
+    // None while the shaders are compiled or the camera moves.
+    const std::optional<RecordedPath>& path() const { return path_; }
+    const RenderParameters& parameters() const { return parameters_; }  // of the path
+    bool has_hemisphere() const { return has_hemisphere_; }             // at the chosen vertex
+    const HemisphereView& hemisphere() const { return *tools_->hemisphere; }
+
+  private:
+    // They keep what they need of a build that may be replaced.
+    struct Tools {
+        std::shared_ptr<const Scene> scene;
+        std::shared_ptr<const GpuScene> gpu_scene;
+        std::shared_ptr<const AccelerationStructure> acceleration_structure;
+        Estimator estimator;
+        uint64_t shader_hash;
+        uvec2 image_size;
+        std::unique_ptr<PathRecorder> recorder;
+        std::unique_ptr<HemisphereView> hemisphere;
+    };
+    static std::unique_ptr<Tools> make_tools(const Device& device, std::unique_ptr<Tools> tools);
+    std::unique_ptr<Tools> wanted_tools(const Session& session) const;
+    bool have_tools(const Session& session);
+
+    const Device& device_;
+    std::optional<Selection> selection_, shown_;
+    std::unique_ptr<Tools> tools_;
+    std::future<std::unique_ptr<Tools>> work_;
+    uint64_t failed_shader_hash_ = 0;
+    std::string message_;
+    std::optional<RecordedPath> path_;
+    RenderParameters parameters_{};
+    bool has_hemisphere_ = false;
+};
+
+}  // namespace lab

@@ -1,0 +1,131 @@
+#include "viewer/tile_overlay.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "film/noise.h"
+#include "viewer/inside_drawing.h"
+
+namespace lab {
+namespace {
+
+constexpr float opacity = 0.7f;
+constexpr uint32_t most_tiles = 64;  // in a row: more would take long to draw
+
+// From dark blue for 0 to yellow for 1.
+uint32_t heat(double value) {
+    const float x = static_cast<float>(std::clamp(value, 0.0, 1.0));
+    return ImGui::GetColorU32(ImVec4(std::min(1.6f * x, 1.0f), x, 0.4f * (1 - x), opacity));
+}
+
+std::string text(const char* format, double a, double b) {
+    char buffer[120];
+    std::snprintf(buffer, sizeof buffer, format, a, b);
+    return buffer;
+}
+
+// Edge of square tiles that are neither too small nor too many.
+uint32_t tile_size_for(const glm::uvec2& image_size) {
+    return std::max(8u, (std::max(image_size.x, image_size.y) + most_tiles - 1) / most_tiles);
+}
+
+}  // namespace
+
+void TileOverlay::show_next() {
+    shown = static_cast<Overlay>((static_cast<size_t>(shown) + 1) % std::size(overlay_names));
+}
+
+void TileOverlay::draw(const Session& session, const Rectangle& picture) {
+    update(session);
+    if (colours_.empty()) return;
+    const Placement placement(picture);
+    const glm::uvec2 image = session.build().job.parameters.image_size;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (uint32_t y = 0; y < tiles_.y; ++y)
+        for (uint32_t x = 0; x < tiles_.x; ++x) {
+            const glm::uvec2 first(x * tile_size_, y * tile_size_),
+                last = glm::min(first + tile_size_, image);
+            list.AddRectFilled(placement.at(glm::vec2(first) / glm::vec2(image)),
+                               placement.at(glm::vec2(last) / glm::vec2(image)),
+                               colours_[size_t{y} * tiles_.x + x]);
+        }
+}
+
+// Only when there is something new to see.
+void TileOverlay::update(const Session& session) {
+    if (shown == Overlay::none || session.reduction() > 1) {
+        colours_.clear();
+        legend_.clear();
+        coloured_ = Overlay::none;
+        return;
+    }
+    uint32_t samples = session.last_snapshot().min_samples();
+    if (shown == Overlay::bias)
+        samples =
+            session.verdict() && session.verdict()->verdict() ? session.verdict()->verdict()->samples : 0;
+    const auto now = std::chrono::steady_clock::now();
+    const bool is_old = shown == Overlay::samples && now - last_update_ > std::chrono::milliseconds(500);
+    if (coloured_ == shown && coloured_samples_ == samples && !is_old) return;
+    coloured_ = shown;
+    coloured_samples_ = samples;
+    last_update_ = now;
+    colours_.clear();
+    if (shown == Overlay::bias) return colour_bias(session);
+    const glm::uvec2 image = session.build().job.parameters.image_size;
+    tile_size_ = tile_size_for(image);
+    tiles_ = (image + tile_size_ - 1u) / tile_size_;
+    if (shown == Overlay::noise) return colour_noise(session);
+    colour_samples(session);
+}
+
+void TileOverlay::colour_bias(const Session& session) {
+    if (!session.verdict() || !session.verdict()->verdict()) {
+        legend_ = session.verdict_text();
+        return;
+    }
+    const Verdict& verdict = *session.verdict()->verdict();
+    tile_size_ = verdict.map_tile_size;
+    tiles_ = {verdict.map.width, verdict.map.height};
+    const Texture map = draw_z_map(verdict.map, 1);
+    for (size_t i = 0; i < map.pixels.size(); i += 4)
+        colours_.push_back(IM_COL32(map.pixels[i], map.pixels[i + 1], map.pixels[i + 2], 255 * opacity));
+    legend_ = "red: too bright, blue: too dark, full colour at 5 standard errors";
+}
+
+void TileOverlay::colour_noise(const Session& session) {
+    const FilmImage& later = session.last_snapshot();
+    if (session.earlier_snapshot().pixels.empty()) {
+        legend_ = "the noise is not known yet";
+        return;
+    }
+    // Decades from 0.1 % to 100 %.
+    for (uint32_t y = 0; y < tiles_.y; ++y)
+        for (uint32_t x = 0; x < tiles_.x; ++x) {
+            const NoiseEstimate noise = estimate_noise(session.earlier_snapshot(), later,
+                                                       glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_));
+            colours_.push_back(heat((3 + std::log10(std::max(noise.relative_error, 1e-9))) / 3));
+        }
+    legend_ =
+        text("standard error of a pixel as part of its tile's mean: dark 0.1 %%, yellow 100 %%; %.0f samples",
+             later.min_samples(), 0);
+}
+
+void TileOverlay::colour_samples(const Session& session) {
+    const FilmImage film = session.build().renderer->film().read();
+    const auto [fewest, most] = std::minmax_element(
+        film.pixels.begin(), film.pixels.end(),
+        [](const FilmPixel& a, const FilmPixel& b) { return a.sample_count < b.sample_count; });
+    const double low = fewest->sample_count, high = most->sample_count;
+    for (uint32_t y = 0; y < tiles_.y; ++y)
+        for (uint32_t x = 0; x < tiles_.x; ++x) {
+            const NoiseEstimate tile =
+                estimate_noise({}, film, glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_));
+            colours_.push_back(heat(high > low ? (tile.samples - low) / (high - low) : 1));
+        }
+    legend_ = text("samples of a pixel: dark %.0f, yellow %.0f", low, high);
+}
+
+}  // namespace lab

@@ -1,0 +1,39 @@
+// Colours tiles of the picture by what is known about them.
+#pragma once
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "viewer/screen.h"
+#include "viewer/session.h"
+
+namespace lab {
+
+enum class Overlay { none, bias, noise, samples };
+inline constexpr const char* overlay_names[] = {"none", "bias (live verdict)", "noise", "sample count"};
+
+class TileOverlay {
+  public:
+    Overlay shown = Overlay::none;
+    void show_next();
+
+    // Between Screen::begin_frame() and Screen::show(), over the picture.
+    void draw(const Session& session, const Rectangle& picture);
+    const std::string& legend() const { return legend_; }  // of the colours
+
+  private:
+    void update(const Session& session);
+    void colour_bias(const Session& session);
+    void colour_noise(const Session& session);
+    void colour_samples(const Session& session);
+
+    Overlay coloured_ = Overlay::none;
+    uint32_t coloured_samples_ = 0;
+    std::chrono::steady_clock::time_point last_update_{};
+    uint32_t tile_size_ = 8;  // in pixels of the image
+    glm::uvec2 tiles_{0};
+    std::vector<uint32_t> colours_;  // as Dear ImGui has them
+    std::string legend_;
+};
+
+}  // namespace lab

@@ -1,0 +1,122 @@
+// Looking inside the render: the live verdict, the path at a pixel and the views of tiles.
+#include "viewer_fixture.h"
+
+namespace lab {
+namespace {
+
+class InsideTest : public ViewerTest {
+  protected:
+    // Of the same size and path length as a reference.
+    Options options_with_reference() const {
+        Options options = make_options();
+        options.width = options.height = 128;
+        options.max_path_length = 6;
+        return options;
+    }
+    const Inspection& inspection() const { return viewer_->inside_panel().inspection(); }
+
+    void click(float x, float y) {
+        point_at(x, y);
+        press_mouse(true);
+        run_frames(2);
+        press_mouse(false);
+        run_frames(2);
+    }
+    void wait_for_verdict() {
+        wait_until("a verdict", [&] { return session().verdict() && session().verdict()->verdict(); });
+    }
+};
+
+TEST_F(InsideTest, TheVerdictFollowsTheShader) {
+    // A chapter of its own, so that the sources stay as they are.
+    const fs::path shader = folder_.path() / "path_trace.glsl";
+    const std::string good = text_of(project_folder() / "chapters" / chapter_.name / "path_trace.glsl");
+    const std::string mistaken_line = "throughput /= survival_probability;";
+    const size_t at = good.find(mistaken_line);
+    ASSERT_NE(at, std::string::npos);
+    write(shader, good);
+    chapter_.name = folder_.path().string();
+    chapter_.split_every_hit = false;
+    open(options_with_reference());
+    wait_for_verdict();
+    EXPECT_FALSE(session().verdict()->verdict()->is_biased) << session().verdict_text();
+
+    write(shader, std::string(good).erase(at, mistaken_line.size()));
+    wait_until("biased", [&] {
+        return session().verdict() && session().verdict()->verdict() &&
+               session().verdict()->verdict()->is_biased;
+    });
+    EXPECT_LT(session().verdict()->verdict()->differences[1].value, 0);
+    // Where it is too dark the tiles are blue.
+    press(GLFW_KEY_T);
+    run_frames(1);
+    press(GLFW_KEY_T, false);
+    take_screenshot("viewer_biased");
+    const auto blueness = [&] {
+        const Texture& shown = viewer_->screen().captured();
+        double sum = 0;  // over the picture's left half: the panel covers some of the right one
+        for (uint32_t y = 0; y < shown.height; ++y)
+            for (uint32_t x = 360; x < 550; ++x) {
+                const uint8_t* pixel = &shown.pixels[4 * (size_t{y} * shown.width + x)];
+                sum += pixel[2] - pixel[0];
+            }
+        return sum;
+    };
+    const double with_bias = blueness();
+    for (const char* tiles : {"noise", "samples", "none"}) {
+        press(GLFW_KEY_T);
+        run_frames(1);
+        press(GLFW_KEY_T, false);
+        take_screenshot(std::string("viewer_tiles_") + tiles);
+    }
+    EXPECT_GT(with_bias, blueness() + 1e5);
+
+    write(shader, good);
+    wait_until("unbiased", [&] {
+        return session().verdict() && session().verdict()->verdict() &&
+               !session().verdict()->verdict()->is_biased;
+    });
+}
+
+TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {
+    open(options_with_reference());
+    wait_for_verdict();
+    press(GLFW_KEY_W);
+    run_frames(2);
+    press(GLFW_KEY_W, false);
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    EXPECT_EQ(session().verdict(), nullptr);
+    EXPECT_EQ(session().verdict_text(), "no verdict: the camera has moved");
+}
+
+TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
+    open(options_with_reference());
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    drag({500, 400}, {520, 400});
+    EXPECT_FALSE(inspection().selection());
+    click(500, 450);
+    ASSERT_TRUE(inspection().selection());
+    wait_until("a path", [&] { return inspection().path().has_value() && inspection().has_hemisphere(); });
+    const RecordedPath path = *inspection().path();
+    ASSERT_FALSE(path.vertices.empty());
+    EXPECT_EQ(path.vertices.front().origin, session().camera().position);
+
+    // It is the sample that the render has added.
+    Options options = session().options();
+    options.samples = 1;
+    session().change(options);
+    session().restart();
+    run_frames(1);
+    wait_until("one sample", [&] { return session().reduction() == 1 && session().samples() == 1; });
+    wait_until("a path", [&] { return inspection().path().has_value(); });
+    const uvec2 pixel = inspection().selection()->pixel;
+    EXPECT_EQ(saved_film("one.exr").pixels[pixel.y * 128 + pixel.x].sum, inspection().path()->radiance);
+    options.samples.reset();
+    session().change(options);
+    wait_until("many samples", [&] { return session().samples() >= 64 && inspection().has_hemisphere(); });
+    wait_until("the hemisphere", [&] { return inspection().hemisphere().samples() >= 16; });
+    take_screenshot("viewer_inside");
+}
+
+}  // namespace
+}  // namespace lab

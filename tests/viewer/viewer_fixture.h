@@ -1,0 +1,159 @@
+// Drives the window of a chapter as a user would: under a virtual display in continuous integration.
+#pragma once
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+
+#include "support/temporary_folder.h"
+#include "viewer/viewer.h"
+
+namespace lab {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+inline const fs::path scenes = project_folder() / "assets" / "scenes";
+
+inline std::string text_of(const fs::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+class ViewerTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (!Window::has_display()) GTEST_SKIP() << "there is no display: use xvfb-run -a -s -noreset";
+    }
+
+    void TearDown() override {
+        viewer_.reset();
+        if (!device_) return;
+        for (const auto& message : device_->validation_messages())
+            ADD_FAILURE() << "validation layer: " << message;
+        device_.reset();
+        window_.reset();
+    }
+
+    // A small picture, so that many samples take no time.
+    Options make_options() const {
+        Options options;
+        options.scene = scenes / "cornell_box.json";
+        options.width = 48;
+        options.height = 40;
+        options.backend = "compute";
+        options.chapter_values.resize(chapter_.options.size());
+        return options;
+    }
+
+    void open(const Options& options) {
+        window_ = std::make_unique<Window>("test", uvec2(900, 640));
+        device_ = std::make_unique<Device>(DeviceOptions{
+            .choice = "",
+            .validation = true,
+            .instance_extensions = window_->instance_extensions(),
+            .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); }});
+        ASSERT_TRUE(*device_->surface());
+        viewer_ = std::make_unique<Viewer>(*window_, *device_, chapter_, options,
+                                           load_scene(options.scene, options.specular));
+        glfwFocusWindow(window_->handle());
+        run_frames(2);
+    }
+
+    Session& session() { return viewer_->session(); }
+
+    void run_frames(int count) {
+        for (int i = 0; i < count; ++i) ASSERT_TRUE(viewer_->frame());
+    }
+
+    // Runs frames until something is so; fails if that takes far too long.
+    void wait_until(const char* what, const std::function<bool()>& is_so) {
+        const auto start = Clock::now();
+        while (!is_so()) {
+            ASSERT_TRUE(viewer_->frame());
+            ASSERT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 60)
+                << "still not: " << what;
+        }
+    }
+
+    void finish_build() {
+        run_frames(1);
+        wait_until("built", [&] { return !session().is_building(); });
+    }
+
+    // Events as GLFW would report them, through whatever callbacks are installed.
+    void press(int key, bool is_down = true) {
+        GLFWwindow* window = window_->handle();
+        const auto callback = glfwSetKeyCallback(window, nullptr);
+        glfwSetKeyCallback(window, callback);
+        callback(window, key, 0, is_down ? GLFW_PRESS : GLFW_RELEASE, 0);
+    }
+    void drop(const fs::path& file) {
+        GLFWwindow* window = window_->handle();
+        const auto callback = glfwSetDropCallback(window, nullptr);
+        glfwSetDropCallback(window, callback);
+        const std::string name = file.string();
+        const char* names[] = {name.c_str()};
+        callback(window, 1, names);
+    }
+    void press_mouse(bool is_down) {
+        GLFWwindow* window = window_->handle();
+        const auto callback = glfwSetMouseButtonCallback(window, nullptr);
+        glfwSetMouseButtonCallback(window, callback);
+        callback(window, GLFW_MOUSE_BUTTON_LEFT, is_down ? GLFW_PRESS : GLFW_RELEASE, 0);
+    }
+    // Moves the pointer and waits until the window knows.
+    void point_at(float x, float y) {
+        glfwSetCursorPos(window_->handle(), x, y);
+        wait_until("pointed at", [&] { return std::abs(ImGui::GetIO().MousePos.x - x) < 1.5f; });
+    }
+
+    // Moves the pointer with the button held down. GLFW reports a button once, but Dear ImGui before 1.87
+    // asks it for the state in each frame.
+    void drag(const vec2& from, const vec2& to) {
+        point_at(from.x, from.y);
+        for (int step = 0; step <= 10; ++step) {
+            const vec2 position = glm::mix(from, to, static_cast<float>(step) / 10);
+            glfwSetCursorPos(window_->handle(), position.x, position.y);
+            press_mouse(true);
+            run_frames(1);
+        }
+        press_mouse(false);
+        run_frames(2);
+    }
+
+    FilmImage saved_film(const char* name) {
+        const fs::path file = folder_.path() / name;
+        session().save({file});
+        return read_film(file).image;
+    }
+
+    // Keeps what the window shows as a picture.
+    void take_screenshot(const std::string& name) {
+        viewer_->screen().capture_next();
+        run_frames(1);
+        const Texture& shown = viewer_->screen().captured();
+        ASSERT_EQ(uvec2(shown.width, shown.height), window_->framebuffer_size());
+        fs::create_directories("output");
+        write_png(fs::path("output") / (name + ".png"), shown);
+    }
+
+    TemporaryFolder folder_;
+    Chapter chapter_{.name = "05_russian_roulette",
+                     .title = "A test",
+                     .light_sampling = true,
+                     .split_every_hit = true,
+                     .unlimited_path_length = true,
+                     .options = {splitting_factor, survival_cap, roulette_start}};
+    std::unique_ptr<Window> window_;
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<Viewer> viewer_;
+};
+
+}  // namespace lab
