@@ -14,6 +14,7 @@ import os
 import re
 import sys
 from pathlib import Path
+from statistics import median
 
 from cost_tables import FEATURES, GROWTH, feature_table, growth_tables
 from report_numbers import estimate, last_rows, mean_of, products, ratio
@@ -41,9 +42,9 @@ BACKENDS = """
 ## Backends
 
 Next event estimation with Russian roulette (tests/benchmark/path_trace.glsl), at most eight bounces, in a Cornell box
-with a bumpy sphere; median of five stretches of device time. The bare rate is that of a shader that only traces the very
-same rays once more, from memory: the difference is shading and what is kept alive for it. What limits each backend is in
-[backends.md](backends.md).
+with a bumpy sphere; median of five runs of device time. The bare rate is that of a shader that only traces the very same
+rays once more, from memory, in turns with the others: the difference is shading and what is kept alive for it. Of the
+quotient the range of the runs is in brackets. What limits each backend is in [backends.md](backends.md).
 """
 
 
@@ -158,6 +159,14 @@ def page_tables(name, page):
     return text or "Not measured yet: `./lab report --record FILE.json` does it.\n\n"
 
 
+def over_bare(rates):
+    """Rays per second over the bare rate: the median of runs in turns and its range, or what older records tell."""
+    if "runs" not in rates:
+        return f"{rates['rays_per_second'] / rates['bare_rays_per_second']:.2f}"
+    ratios = [a / b for a, b in zip(rates["runs"]["rays_per_second"], rates["runs"]["bare_rays_per_second"])]
+    return f"{median(ratios):.2f} ({min(ratios):.2f} – {max(ratios):.2f})"
+
+
 def backend_table(record):
     """The Markdown table of one device."""
     size = record["size"]
@@ -172,7 +181,7 @@ def backend_table(record):
             lines.append(
                 f"| {scene['triangles']:,} | `{name}` | {rates['paths_per_second'] / 1e6:.4g} "
                 f"| {rates['rays_per_second'] / 1e6:.4g} | {rates['bare_rays_per_second'] / 1e6:.4g} "
-                f"| {rates['rays_per_second'] / rates['bare_rays_per_second']:.2f} "
+                f"| {over_bare(rates)} "
                 f"| {rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s |"
             )
     return "\n".join(lines) + "\n"

@@ -56,13 +56,13 @@ json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
         Renderer replayer(device, *structure, replay, parameters, {&ray_binding, 1});
         const auto runs = measure_in_turns({&path_tracer, &replayer}, 0.5);
         const Rates rates = median(runs[0]), bare = median(runs[1]);
-        json ratios = json::array();
-        for (size_t i = 0; i < runs[0].size(); ++i)
-            ratios.push_back(runs[0][i].rays_per_second / runs[1][i].rays_per_second);
+        json all_runs{{"rays_per_second", json::array()}, {"bare_rays_per_second", json::array()}};
+        for (const Rates& run : runs[0]) all_runs["rays_per_second"].push_back(run.rays_per_second);
+        for (const Rates& run : runs[1]) all_runs["bare_rays_per_second"].push_back(run.rays_per_second);
         result["backends"][to_string(backend)] = {{"paths_per_second", rates.paths_per_second},
                                                   {"rays_per_second", rates.rays_per_second},
                                                   {"bare_rays_per_second", bare.rays_per_second},
-                                                  {"ratios_of_runs", ratios},
+                                                  {"runs", all_runs},
                                                   {"structure_bytes", structure->bytes()},
                                                   {"structure_seconds", structure->build_seconds()}};
         std::printf(
