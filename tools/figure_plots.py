@@ -1,10 +1,16 @@
 """The figures of the pages, made of images, reports and points of samplers."""
+import shutil
+import subprocess
+import sys
+
 import matplotlib
 
 matplotlib.use("agg")
 import numpy as np
 import sample
 from matplotlib import image, pyplot
+from measurement import BINARIES
+from reference_image import ROOT
 from report_plots import COLOURS, MARKERS, encode_srgb
 from sample_plots import scatter, style
 
@@ -160,3 +166,15 @@ def random_numbers(folder, images, reports):
         axis.set(title=f"{title}\n{len(corner):,} of {len(points):,} points", xlabel="u_x", ylabel="u_y")
         axis.set_aspect("equal")
     save(figure, folder / "random_numbers.png")
+
+
+def window(output, images, reports):
+    """What the test of the window has seen: a chapter in it, and the same after a mistake was made in its shader."""
+    command = [BINARIES / "viewer_tests", "--gtest_filter=ViewerTest.ShowsThePicture*"]
+    if shutil.which("xvfb-run"):
+        command = ["xvfb-run", "-a", *command]
+    process = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if process.returncode != 0 or "SKIPPED" in process.stdout:
+        sys.exit("error: window: its test " + ("failed" if process.returncode != 0 else "needs xvfb-run or a display"))
+    for name in ("window.png", "window_broken_shader.png"):
+        shutil.copyfile(ROOT / "output" / name, output / name)

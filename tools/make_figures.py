@@ -121,6 +121,7 @@ FIGURES = {
     "one_over_root_n": ([], figure_plots.one_over_root_n),
     "grid_and_random": ([], figure_plots.grid_and_random),
     "random_numbers": ([], figure_plots.random_numbers),
+    "window": ([], figure_plots.window),
 }
 
 

@@ -109,17 +109,14 @@ void run(const Chapter& chapter, const Options& options) {
     const Backend backend = choose_backend(options, device, gpu_scene, estimator, job.parameters);
     const auto acceleration_structure = build_acceleration_structure(backend, device, gpu_scene);
     job.acceleration = {acceleration_structure->bytes(), acceleration_structure->build_seconds()};
-    job.record.device = device.description().name;
-    job.record.backend = to_string(backend);
+    record_device(job, device.description().name, to_string(backend));
     if (!options.quiet)
         std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
-                  << job.parameters.image_size.y << ", " << job.samples << " samples, " << job.record.device
-                  << ", backend " << job.record.backend << std::endl;
+                  << job.parameters.image_size.y << ", " << job.samples << " samples, "
+                  << device.description().name << ", backend " << to_string(backend) << std::endl;
     if (!options.quiet && chapter.unlimited_path_length && !options.max_path_length &&
         !options.split_every_hit)
         std::cout << "path length    " << safety_limit_text(scene) << std::endl;
-    if (job.resumed && job.resumed->record.device != job.record.device) job.record.device = "several";
-    if (job.resumed && job.resumed->record.backend != job.record.backend) job.record.backend = "several";
     render_headless(device, *acceleration_structure, estimator, job);
     check_validation(device, options);
 }

@@ -79,7 +79,9 @@ std::string readable(const std::string& log) {
     std::istringstream lines(log);
     std::string line, text;
     while (std::getline(lines, line)) {
-        if (line.rfind("ERROR: ", 0) != 0 || line.find("compilation errors") != std::string::npos) continue;
+        if (line.rfind("ERROR: ", 0) != 0 || line.find("compilation errors") != std::string::npos ||
+            line.find("compilation terminated") != std::string::npos)
+            continue;
         text += (text.empty() ? "" : "\n") + line.substr(std::strlen("ERROR: "));
     }
     return text.empty() ? log : text;

@@ -53,6 +53,11 @@ RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& 
     return job;
 }
 
+void record_device(RenderJob& job, const std::string& device, const std::string& backend) {
+    job.record.device = !job.resumed || job.resumed->record.device == device ? device : "several";
+    job.record.backend = !job.resumed || job.resumed->record.backend == backend ? backend : "several";
+}
+
 void set_options(RenderJob& job, const Chapter& chapter, const Scene& scene, const Options& options) {
     job.options = &options;
     job.parameters = make_parameters(chapter, scene, options);

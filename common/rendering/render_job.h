@@ -24,6 +24,9 @@ void check_scene(const Chapter& chapter, const Scene& scene);
 RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& estimator,
                    const Options& options);
 
+// Notes what the job runs on; "several" where it continues a run on something else.
+void record_device(RenderJob& job, const std::string& device, const std::string& backend);
+
 // Puts other options into a job of the same scene and estimator; what it continues is forgotten.
 void set_options(RenderJob& job, const Chapter& chapter, const Scene& scene, const Options& options);
 

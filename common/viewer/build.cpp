@@ -69,8 +69,7 @@ std::unique_ptr<Build> make_build(const Device& device, const Chapter& chapter, 
     }
     build->job.acceleration = {build->acceleration_structure->bytes(),
                                build->acceleration_structure->build_seconds()};
-    build->job.record.device = device.description().name;
-    build->job.record.backend = to_string(build->backend);
+    record_device(build->job, device.description().name, to_string(build->backend));
 
     const uvec2 size = build->job.parameters.image_size;
     build->renderer =

@@ -23,12 +23,12 @@ class Viewer {
     const Controls& controls() const { return controls_; }
     const InsidePanel& inside_panel() const { return inside_panel_; }
     double frames_per_second() const { return frames_per_second_; }
+    Rectangle picture_rectangle() const;  // where the window shows the picture
 
   private:
     void move_camera(double seconds);
     void handle_keys();
     void open_dropped_files();
-    Rectangle picture_rectangle() const;
 
     Window& window_;
     Screen screen_;
