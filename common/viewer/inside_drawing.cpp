@@ -58,7 +58,7 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
 
 void draw_disc(const Image& picture, float scale, float width) {
     constexpr uint32_t cells = 40, extent = HemisphereView::extent;
-    const float cell = std::floor(width / cells);
+    const float cell = width / cells;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     for (uint32_t y = 0; y < cells; ++y)

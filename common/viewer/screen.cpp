@@ -168,8 +168,7 @@ void Screen::begin_frame() {
     ImGui::NewFrame();
 }
 
-double Screen::show(const DisplayPass* pass, DisplayTransform transform, float exposure,
-                    const Rectangle& where) {
+double Screen::show(std::span<const Layer> layers) {
     ImGui::Render();
     const uvec2 window_size = window_->framebuffer_size();
     if (window_size.x == 0 || window_size.y == 0) return 0;
@@ -188,7 +187,7 @@ double Screen::show(const DisplayPass* pass, DisplayTransform transform, float e
     double waited = seconds_since(start);
 
     commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    record(commands_, image, pass, transform, exposure, where);
+    record(commands_, image, layers);
     commands_.end();
     const vk::PipelineStageFlags stage = vk::PipelineStageFlagBits::eAllCommands;
     device_->queue().submit(vk::SubmitInfo(*acquired_, stage, *commands_, *drawn_[image]), *fence_);
@@ -210,32 +209,13 @@ double Screen::show(const DisplayPass* pass, DisplayTransform transform, float e
     return waited;
 }
 
-void Screen::record(const vk::raii::CommandBuffer& commands, uint32_t image, const DisplayPass* pass,
-                    DisplayTransform transform, float exposure, const Rectangle& where) {
+void Screen::record(const vk::raii::CommandBuffer& commands, uint32_t image, std::span<const Layer> layers) {
     constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
     const vk::ClearColorValue grey(std::array<float, 4>{0.07f, 0.07f, 0.07f, 1.0f});
-    if (pass) pass->record(commands, transform, exposure);
+    for (const Layer& layer : layers) layer.pass->record(commands, layer.transform, layer.exposure);
     change_layout(commands, images_[image], vk::ImageLayout::eUndefined, target_layout);
     commands.clearColorImage(images_[image], target_layout, grey, whole_image);
-    const glm::ivec2 end = where.corner + where.size;
-    // It was laid out for another window where that has just changed.
-    const bool fits = glm::all(glm::greaterThan(where.size, glm::ivec2(0))) &&
-                      glm::all(glm::lessThanEqual(end, glm::ivec2(size())));
-    if (pass && fits) {
-        change_layout(commands, images_[image], target_layout, target_layout);  // clear before blit
-        const vk::Image source = pass->picture().handle();
-        change_layout(commands, source, vk::ImageLayout::eGeneral, vk::ImageLayout::eTransferSrcOptimal);
-        const vk::ImageBlit blit(
-            whole_layer,
-            {vk::Offset3D(0, 0, 0), vk::Offset3D(static_cast<int>(pass->picture().width()),
-                                                 static_cast<int>(pass->picture().height()), 1)},
-            whole_layer, {vk::Offset3D(where.corner.x, where.corner.y, 0), vk::Offset3D(end.x, end.y, 1)});
-        // Enlarged pixels stay visible as such.
-        const bool enlarges = where.size.x >= static_cast<int>(pass->picture().width());
-        commands.blitImage(source, vk::ImageLayout::eTransferSrcOptimal, images_[image], target_layout, blit,
-                           enlarges ? vk::Filter::eNearest : vk::Filter::eLinear);
-        change_layout(commands, source, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::eGeneral);
-    }
+    for (const Layer& layer : layers) draw(commands, image, layer);
     commands.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffers_[image], {{0, 0}, extent_}),
                              vk::SubpassContents::eInline);
     ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
@@ -252,6 +232,37 @@ void Screen::record(const vk::raii::CommandBuffer& commands, uint32_t image, con
         vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {extent_.width, extent_.height, 1}));
     change_layout(commands, images_[image], vk::ImageLayout::eTransferSrcOptimal,
                   vk::ImageLayout::ePresentSrcKHR);
+}
+
+void Screen::draw(const vk::raii::CommandBuffer& commands, uint32_t image, const Layer& layer) const {
+    constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
+    const Rectangle& where = layer.where;
+    const glm::ivec2 end = where.corner + where.size;
+    // It was laid out for another window where that has just changed.
+    const bool fits = glm::all(glm::greaterThan(where.size, glm::ivec2(0))) &&
+                      glm::all(glm::lessThanEqual(end, glm::ivec2(size())));
+    const int width = static_cast<int>(layer.pass->picture().width()),
+              height = static_cast<int>(layer.pass->picture().height());
+    // Parts begin and end between pixels of the picture.
+    const auto pixel_at = [&](float fraction) {
+        return std::clamp(static_cast<int>(std::lround(fraction * static_cast<float>(width))), 0, width);
+    };
+    const int from = pixel_at(layer.from), to = pixel_at(layer.to);
+    if (!fits || from >= to) return;
+    const auto place = [&](int pixel) {
+        return where.corner.x + static_cast<int>(int64_t{pixel} * where.size.x / width);
+    };
+    change_layout(commands, images_[image], target_layout, target_layout);  // what came before this blit
+    const vk::Image source = layer.pass->picture().handle();
+    change_layout(commands, source, vk::ImageLayout::eGeneral, vk::ImageLayout::eTransferSrcOptimal);
+    const vk::ImageBlit blit(
+        whole_layer, {vk::Offset3D(from, 0, 0), vk::Offset3D(to, height, 1)}, whole_layer,
+        {vk::Offset3D(place(from), where.corner.y, 0), vk::Offset3D(place(to), end.y, 1)});
+    // Enlarged pixels stay visible as such.
+    const bool enlarges = where.size.x >= width;
+    commands.blitImage(source, vk::ImageLayout::eTransferSrcOptimal, images_[image], target_layout, blit,
+                       enlarges ? vk::Filter::eNearest : vk::Filter::eLinear);
+    change_layout(commands, source, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::eGeneral);
 }
 
 void Screen::keep_capture() {

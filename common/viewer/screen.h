@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "image/image.h"
 #include "viewer/display_pass.h"
@@ -15,6 +16,15 @@ struct Rectangle {
     glm::ivec2 size{0};
 };
 
+// A picture in the window, or the part of it between two fractions of its width.
+struct Layer {
+    const DisplayPass* pass;
+    DisplayTransform transform;
+    float exposure;   // stops
+    Rectangle where;  // of the whole picture
+    float from = 0, to = 1;
+};
+
 class Screen {
   public:
     // The device has the window's surface. There is at most one screen at a time, since Dear ImGui has one
@@ -25,9 +35,9 @@ class Screen {
     // Starts a frame of the user interface: Dear ImGui may be used until show().
     void begin_frame();
 
-    // Ends the frame and shows it: the picture fills the rectangle. `pass` may be null. Nothing is shown
+    // Ends the frame and shows it: the pictures, and the user interface on top of them. Nothing is shown
     // while the window is minimised. Returns the seconds that went into waiting for the display.
-    double show(const DisplayPass* pass, DisplayTransform transform, float exposure, const Rectangle& where);
+    double show(std::span<const Layer> layers);
 
     uvec2 size() const { return {extent_.width, extent_.height}; }  // pixels
     // What the window shows from the next show() on is also kept for a screenshot.
@@ -38,8 +48,8 @@ class Screen {
     void start_user_interface();
     void make_swapchain();
     void remake_swapchain();  // needs the lock of the queue
-    void record(const vk::raii::CommandBuffer& commands, uint32_t image, const DisplayPass* pass,
-                DisplayTransform transform, float exposure, const Rectangle& where);
+    void record(const vk::raii::CommandBuffer& commands, uint32_t image, std::span<const Layer> layers);
+    void draw(const vk::raii::CommandBuffer& commands, uint32_t image, const Layer& layer) const;
     void keep_capture();
 
     const Device* device_;

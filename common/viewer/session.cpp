@@ -194,12 +194,12 @@ uint32_t Session::find_reduction(double seconds) const {
 
 void Session::render(double seconds) {
     Renderer& renderer = *build_->renderer;
-    if (is_paused && renderer.samples() >= 1) return;
     const auto start = Clock::now();
     const double first_samples = renderer.samples();
     double elapsed = 0;
     // A reduced picture is shown when it is complete, unless that takes far too long.
     const auto goes_on = [&] {
+        if ((is_paused || waits) && renderer.samples() >= 1) return false;
         return elapsed < 0.75 * seconds ||
                (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
     };

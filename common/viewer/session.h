@@ -34,6 +34,7 @@ class Session {
     void update(double dispatch_seconds, bool is_moving);
 
     bool is_paused = false;
+    bool waits = false;  // for another session that is to keep up
     bool is_building() const { return work_.valid(); }
     // Another scene is on its way: camera and background are its own already.
     bool is_loading_scene() const { return reloads_scene_ || options_.scene != build_->options.scene; }

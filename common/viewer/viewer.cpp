@@ -32,7 +32,7 @@ std::unique_ptr<Build> build_while_waiting(Window& window, Screen& screen,
         screen.begin_frame();
         ImGui::GetBackgroundDrawList()->AddText({20, 20}, IM_COL32_WHITE,
                                                 "Building what traces the rays and the shaders ...");
-        screen.show(nullptr, DisplayTransform::as_is, 0, {});
+        screen.show({});
     }
     return work.get();
 }
@@ -49,7 +49,8 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
                                        return make_build(device, chapter, options, BuildStage::scene, nullptr,
                                                          std::make_shared<Scene>(std::move(scene)));
                                    })),
-      inside_panel_(device) {}
+      inside_panel_(device),
+      comparison_panel_(device) {}
 
 bool Viewer::frame() {
     const bool has_work = !session_.is_paused && session_.samples() < session_.target_samples();
@@ -60,11 +61,13 @@ bool Viewer::frame() {
     last_frame_ = start;
     if (seconds > 0) frames_per_second_ = smooth(frames_per_second_, 1 / seconds);
 
+    const double budget = rendering_seconds(window_.refresh_seconds(), interface_seconds_);
     screen_.begin_frame();
     open_dropped_files();
     if (shows_controls_) {
         controls_.draw(session_, camera_control_, frames_per_second_);
-        inside_panel_.draw(session_, picture_rectangle(), 0.2 * window_.refresh_seconds());
+        inside_panel_.draw(session_, picture_rectangle(), 0.15 * budget);
+        comparison_panel_.draw(session_, picture_rectangle());
     }
     handle_keys();
     move_camera(std::min(seconds, 0.2));
@@ -72,14 +75,11 @@ bool Viewer::frame() {
 
     const auto rendering = Clock::now();
     constexpr double rest = 0.2;  // seconds without motion after which the picture is rendered as asked for
-    session_.update(rendering_seconds(window_.refresh_seconds(), interface_seconds_),
-                    seconds_since(last_motion_) < rest);
+    Comparison& comparison = comparison_panel_.comparison();
+    comparison.update(session_, budget, seconds_since(last_motion_) < rest);
     const double rendered = seconds_since(rendering);
 
-    const Options& options = session_.build().options;
-    const DisplayTransform transform = options.view ? options.view->display : DisplayTransform::exposure;
-    const double waited = screen_.show(session_.build().display.get(), transform, session_.options().exposure,
-                                       picture_rectangle());
+    const double waited = screen_.show(comparison.layers(session_, picture_rectangle()));
     interface_seconds_ = smooth(interface_seconds_, seconds_since(start) - rendered - waited);
     return true;
 }

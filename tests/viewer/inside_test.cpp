@@ -113,9 +113,71 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     EXPECT_EQ(saved_film("one.exr").pixels[pixel.y * 128 + pixel.x].sum, inspection().path()->radiance);
     options.samples.reset();
     session().change(options);
-    wait_until("many samples", [&] { return session().samples() >= 64 && inspection().has_hemisphere(); });
-    wait_until("the hemisphere", [&] { return inspection().hemisphere().samples() >= 16; });
+    wait_until("many samples", [&] { return session().samples() >= 8 && inspection().has_hemisphere(); });
+    wait_until("the hemisphere", [&] { return inspection().hemisphere().samples() >= 2; });
     take_screenshot("viewer_inside");
+}
+
+TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
+    open(options_with_reference());
+    Comparison& comparison = viewer_->comparison();
+    comparison.start(session(), "03_next_event_estimation");
+    comparison.equal = Equal::samples;
+    wait_until("both", [&] { return comparison.is_active(); });
+    EXPECT_EQ(comparison.message(), "");
+    wait_until("samples", [&] { return comparison.second().samples() >= 32 && session().samples() >= 32; });
+    EXPECT_NEAR(session().samples(), comparison.second().samples(), 4);
+    const auto difference = comparison.difference(session());
+    ASSERT_TRUE(difference);
+    EXPECT_LT(difference->standard_error, 0.01);
+    EXPECT_LT(std::abs(difference->z()), 5) << difference->value;
+    ASSERT_TRUE(comparison.speedup(session()));
+    take_screenshot("viewer_comparison");
+
+    // The second follows the camera, and equal time means equal time.
+    comparison.equal = Equal::time;
+    CameraPose pose = session().camera();
+    pose.position.z += 1;
+    session().set_camera(pose);
+    run_frames(1);
+    wait_until("time", [&] { return session().reduction() == 1 && session().seconds() > 1; });
+    EXPECT_EQ(comparison.second().camera().position, pose.position);
+    EXPECT_NEAR(comparison.second().seconds(), session().seconds(), 0.6);
+    comparison.stop();
+    run_frames(2);
+    EXPECT_FALSE(session().waits);
+}
+
+TEST_F(InsideTest, TwoSettingsBesideEachOtherFollowTheView) {
+    open(options_with_reference());
+    Comparison& comparison = viewer_->comparison();
+    comparison.start(session(), chapter_.name);
+    wait_until("both", [&] { return comparison.is_active(); });
+    Options options = session().options();
+    options.only_path_length = 1;
+    options.chapter_values[0] = 16;  // which the second one does not follow
+    session().change(options);
+    run_frames(2);
+    const auto parameters = [](const Session& s) { return s.build().job.parameters; };
+    EXPECT_EQ(parameters(comparison.second()).only_path_length, 1);
+    EXPECT_EQ(parameters(session()).splitting_factor, 16u);
+    EXPECT_EQ(parameters(comparison.second()).splitting_factor, 4u);
+    EXPECT_NE(parameters(comparison.second()).seed_key, parameters(session()).seed_key);
+}
+
+TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
+    Options options = make_options();
+    options.scene = scenes / "glass.json";
+    chapter_.name = "06_dielectrics";
+    chapter_.dielectrics = true;
+    chapter_.split_every_hit = false;
+    open(options);
+    viewer_->comparison().start(session(), "03_next_event_estimation");
+    wait_until("refused", [&] { return !viewer_->comparison().message().empty(); });
+    EXPECT_NE(viewer_->comparison().message().find("dielectric"), std::string::npos);
+    EXPECT_FALSE(viewer_->comparison().is_active());
+    viewer_->comparison().start(session(), "06_dielectrics");
+    wait_until("both", [&] { return viewer_->comparison().is_active(); });
 }
 
 }  // namespace

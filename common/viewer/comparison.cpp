@@ -1,0 +1,135 @@
+#include "viewer/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+#include "film/noise.h"
+#include "rendering/chapter_folder.h"
+
+namespace lab {
+namespace {
+
+// `own` with everything that decides what is seen taken from `shown`.
+Options with_same_view(Options own, const Options& shown) {
+    own.scene = shown.scene;
+    own.specular = shown.specular;
+    own.width = shown.width;
+    own.height = shown.height;
+    own.max_path_length = shown.max_path_length;
+    own.only_path_length = shown.only_path_length;
+    own.view = shown.view;
+    own.camera_position = shown.camera_position;
+    own.camera_target = shown.camera_target;
+    own.camera_up = shown.camera_up;
+    own.vertical_fov = shown.vertical_fov;
+    own.background = shown.background;
+    own.exposure = shown.exposure;
+    own.samples = shown.samples;
+    return own;
+}
+
+}  // namespace
+
+Comparison::Comparison(const Device& device) : device_(device), chapters_(chapter_folders()) {}
+
+void Comparison::start(const Session& first, const std::string& chapter) {
+    stop();
+    Options options = first.options();
+    if (chapter == first.chapter().name) {
+        chapter_ = first.chapter();
+    } else {
+        chapter_ = chapter_in_folder(chapter);
+        options.chapter_values.assign(chapter_.options.size(), std::nullopt);
+        options.split_every_hit = false;
+    }
+    // Other random numbers: equal ones would make differences look smaller than they are.
+    ++options.seed;
+    options.resume.clear();
+    work_ = std::async(std::launch::async, [this, options, scene = first.build().scene] {
+        return make_build(device_, chapter_, options, BuildStage::scene, nullptr, scene);
+    });
+}
+
+void Comparison::stop() {
+    if (work_.valid()) work_.wait();
+    work_ = {};
+    second_.reset();
+    message_.clear();
+}
+
+void Comparison::adopt_finished_build() {
+    if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    try {
+        second_ = std::make_unique<Session>(device_, chapter_, work_.get());
+    } catch (const UserError& error) {
+        message_ = error.what();
+    } catch (const DeviceFailure& error) {
+        message_ = error.what();
+    }
+}
+
+void Comparison::update(Session& first, double seconds, bool is_moving) {
+    const bool had_second = is_active();
+    adopt_finished_build();
+    first.waits = false;
+    if (!second_) return first.update(seconds, is_moving);
+    if (!had_second) first.restart();  // both start together
+    second_->change(with_same_view(second_->options(), first.options()));
+    second_->is_paused = first.is_paused;
+    const auto progress = [&](const Session& session) {
+        return equal == Equal::time ? session.seconds() : session.samples();
+    };
+    // A reduced picture is about to be replaced: there is nothing to compare yet.
+    const bool are_complete = first.reduction() == 1 && second_->reduction() == 1;
+    first.waits = are_complete && progress(first) > progress(*second_);
+    second_->waits = are_complete && progress(*second_) > progress(first);
+    const bool is_one_waiting = first.waits || second_->waits;
+    first.update(is_one_waiting ? seconds : 0.5 * seconds, is_moving);
+    second_->update(is_one_waiting ? seconds : 0.5 * seconds, is_moving);
+}
+
+std::vector<Layer> Comparison::layers(const Session& first, const Rectangle& where) const {
+    const auto layer = [&](const Session& session, float from, float to) {
+        const Options& options = session.build().options;
+        return Layer{.pass = session.build().display.get(),
+                     .transform = options.view ? options.view->display : DisplayTransform::exposure,
+                     .exposure = session.options().exposure,
+                     .where = where,
+                     .from = from,
+                     .to = to};
+    };
+    if (!second_) return {layer(first, 0, 1)};
+    return {layer(first, 0, split), layer(*second_, split, 1)};
+}
+
+std::optional<Difference> Comparison::difference(const Session& first) const {
+    if (!second_ || first.earlier_snapshot().pixels.empty() || second_->earlier_snapshot().pixels.empty())
+        return std::nullopt;
+    // Snapshots of images of another size are about to be replaced.
+    const FilmImage &a = first.last_snapshot(), &b = second_->last_snapshot();
+    if (a.pixels.size() != b.pixels.size()) return std::nullopt;
+    const glm::uvec2 size(a.width, a.height);
+    const NoiseEstimate noise_a = estimate_noise(first.earlier_snapshot(), a, {0, 0}, size),
+                        noise_b = estimate_noise(second_->earlier_snapshot(), b, {0, 0}, size);
+    const auto mean = [](const NoiseEstimate& noise) {
+        return (noise.mean[0] + noise.mean[1] + noise.mean[2]) / 3;
+    };
+    if (!(mean(noise_b) > 0)) return std::nullopt;
+    // Pixels are independent, the channels of a pixel are not.
+    const double pixels = static_cast<double>(a.pixels.size());
+    const Difference difference{
+        mean(noise_a) - mean(noise_b),
+        std::hypot(noise_a.standard_error, noise_b.standard_error) / std::sqrt(pixels), pixels};
+    return difference.relative_to(mean(noise_b));
+}
+
+std::optional<double> Comparison::speedup(const Session& first) const {
+    if (!second_) return std::nullopt;
+    const auto error_a = first.relative_error(), error_b = second_->relative_error();
+    if (!error_a || !error_b) return std::nullopt;
+    // The squared error falls like 1/time.
+    return *error_b * *error_b * second_->seconds() / (*error_a * *error_a * first.seconds());
+}
+
+}  // namespace lab
