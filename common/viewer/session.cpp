@@ -199,6 +199,7 @@ void Session::render(double seconds) {
     double elapsed = 0;
     // A reduced picture is shown when it is complete, unless that takes far too long.
     const auto goes_on = [&] {
+        // A change is shown also while it pauses.
         if ((is_paused || waits) && renderer.samples() >= 1) return false;
         return elapsed < 0.75 * seconds ||
                (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);

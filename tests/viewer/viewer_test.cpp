@@ -259,11 +259,15 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken) {
     Options options = make_options();
     options.width = options.height = 256;
     options.samples = 16;
+    options.max_path_length = 6;  // as in the reference
     open(options);
     wait_until("all samples", [&] { return session().samples() >= 16; });
     take_screenshot("window");
 
+    const auto press_tab = [&] { press(GLFW_KEY_TAB), press(GLFW_KEY_TAB, false), run_frames(1); };
     const auto expect_picture = [&] {
+        press_tab();  // nothing lies on the picture
+        take_screenshot("window_without_controls");
         const Texture& shown = viewer_->screen().captured();
         const Texture picture = to_display(saved_film("picture.exr"), DisplayTransform::exposure, 0);
         const Rectangle where = viewer_->picture_rectangle();
@@ -283,6 +287,7 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken) {
             }
         // Where a pixel ends is a matter of rounding.
         EXPECT_LT(different, picture.pixels.size() / 100);
+        press_tab();
     };
     expect_picture();
 
