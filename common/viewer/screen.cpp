@@ -178,7 +178,10 @@ double Screen::show(std::span<const Layer> layers) {
     const auto start = Clock::now();
     uint32_t image = 0;
     try {
-        const auto [result, index] = swapchain_.acquireNextImage(UINT64_MAX, *acquired_);
+        // A hidden window may get no image at all: it must be possible to close it nevertheless.
+        constexpr uint64_t longest_wait = 100'000'000;  // ns
+        const auto [result, index] = swapchain_.acquireNextImage(longest_wait, *acquired_);
+        if (result == vk::Result::eTimeout || result == vk::Result::eNotReady) return seconds_since(start);
         image = index;
     } catch (const vk::OutOfDateKHRError&) {
         remake_swapchain();  // the next frame will be shown

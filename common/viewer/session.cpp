@@ -84,7 +84,8 @@ void Session::update(double dispatch_seconds, bool is_moving) {
         begin(find_reduction(dispatch_seconds));
     else if (reduction_ > 1 && !is_moving && build_->renderer->samples() >= 1)
         begin(1);
-    render(dispatch_seconds);
+    // What is built matters more than the picture that it replaces: both may need the same processor.
+    render(is_building() ? 0.1 * dispatch_seconds : dispatch_seconds);
 }
 
 void Session::look_for_changed_shaders() {

@@ -299,6 +299,17 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken) {
     EXPECT_EQ(session().message().find("output/"), 0u) << session().message();
     take_screenshot("window_broken_shader");
     expect_picture();
+
+    // Repaired, but not as it was: it has to be compiled.
+    const auto start = Clock::now();
+    const std::string division = "/= survival_probability";
+    ASSERT_NE(text.find(division), std::string::npos);
+    std::string repaired = text;
+    repaired.replace(text.find(division), division.size(), "/= survival_probability + 1e-20");
+    write(shader, repaired);
+    wait_until("repaired", [&] { return session().message().empty() && session().samples() > 0; });
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    RecordProperty("chapter_reload_seconds", std::to_string(seconds));
 }
 
 TEST_F(ViewerTest, ClosesWhileSomethingIsBuilt) {
