@@ -129,8 +129,13 @@ def run_case(case, settings, arguments):
             command += ["--output", Path(folder) / "picture.exr"]
         started = time.perf_counter()
         # In a session of its own Ctrl-C does not reach it, but ends it here.
-        process = subprocess.run(list(map(str, command)), cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True,
-                                 text=True, start_new_session=True)
+        limit = settings.get("time_limit")
+        try:
+            process = subprocess.run(list(map(str, command)), cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True,
+                                     text=True, start_new_session=True, timeout=limit)
+        except subprocess.TimeoutExpired:
+            raise UserError(f"{case['scene']}, {case['case']}: ended after {limit:g} s: does each loop of the shader end? "
+                            "On a slow machine allow more by --time-limit") from None
         seconds = time.perf_counter() - started
         if process.returncode != 0:
             error = last_line(process.stderr) or f"exit code {process.returncode}"

@@ -1,0 +1,89 @@
+"""./lab check: verdicts on shaders that are right, wrong, broken or endless."""
+
+import json
+import re
+import subprocess
+import sys
+import unittest
+
+from program import PROJECT, ProgramTest, python_with_plots
+
+sys.path.append(str(PROJECT / "tests/mistakes"))
+import mistake  # noqa: E402  (found by the line above)
+
+SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
+ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
+    float sum = 0.0;
+    while (sum >= 0.0) sum = abs(sum) + get_random_numbers(seed).x;
+    return vec3(sum);
+}
+"""
+
+
+class CheckTest(ProgramTest):
+    def check(self, *arguments):
+        """Exit code, standard output and standard error."""
+        command = [python_with_plots(), "-B", PROJECT / "tools/check.py", *arguments]
+        result = subprocess.run(list(map(str, command)), cwd=self.folder, capture_output=True, text=True)
+        return result.returncode, result.stdout, result.stderr
+
+    def check_few(self, *arguments):
+        code, out, err = self.check(3, "--runs", 3, "--samples", 4, "--json", *arguments)
+        self.assertIn(code, (0, 1), err)
+        return code, json.loads(out)
+
+    def test_the_chapters_own_shader_is_correct(self):
+        code, result = self.check_few()
+        self.assertEqual((code, result["verdict"]), (0, "correct"), result)
+        for scene in result["scenes"]:
+            self.assertAlmostEqual(scene["rays"], 1, delta=0.02)
+            self.assertLess(max(test["detectable"] for test in scene["image"]), 0.2, "too weak")
+
+    def test_mistakes_are_biased_to_their_side(self):
+        for name, sign in (("emission-counted-twice", 1), ("wrong-measure", 1)):
+            made = mistake.load()[name]
+            self.assertEqual(PROJECT / made["file"], SHADER)
+            file = self.write("path_trace.glsl", SHADER.read_text(encoding="utf-8").replace(made["find"], made["replace"]))
+            code, result = self.check_few(file)
+            box = result["scenes"][0]
+            self.assertEqual((code, result["verdict"], box["verdict"]), (1, "biased", "biased"), result)
+            self.assertTrue(all(sign * test["value"] > 0.1 for test in box["image"]), box["image"])
+            self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
+
+    def test_more_noise_or_rays_than_needed_are_reported(self):
+        # Each sample counts twice or not at all: the mean stays, the error of a sample more than doubles.
+        text = SHADER.read_text(encoding="utf-8")
+        wasteful = text.replace("vec3 path_trace(", "vec3 trace_path(") + (
+            "vec3 path_trace(Ray ray, inout uvec2 seed) {\n"
+            "    vec3 radiance = trace_path(ray, seed);\n"
+            "    return get_random_numbers(seed).x < 0.5 ? 2.0 * radiance : vec3(0.0);\n}\n")
+        code, result = self.check_few(self.write("noisy.glsl", wasteful))
+        self.assertEqual((code, result["verdict"]), (1, "noisy"), result)
+        expensive = wasteful.replace("get_random_numbers(seed).x < 0.5 ? 2.0 * radiance : vec3(0.0)",
+                                     "0.5 * (radiance + trace_path(ray, seed))")
+        code, result = self.check_few(self.write("expensive.glsl", expensive))
+        self.assertEqual((code, result["verdict"]), (1, "expensive"), result)
+
+    def test_a_broken_shader_is_reported_by_file_and_line(self):
+        lines = SHADER.read_text(encoding="utf-8").splitlines()
+        line = next(i for i, line in enumerate(lines) if "throughput = " in line)
+        lines[line] = lines[line].replace(";", "")
+        file = self.write("mine.glsl", "\n".join(lines) + "\n")
+        code, _, err = self.check(3, file)
+        self.assertEqual(code, 2)
+        self.assertRegex(err, rf"\Aerror: [^\n]*{re.escape(str(file))}:{line + 2}: [^\n]+\n\Z")
+
+    def test_an_endless_loop_is_ended(self):
+        code, _, err = self.check(3, self.write("endless.glsl", ENDLESS), "--time-limit", 3)
+        self.assertEqual(code, 2)
+        self.assertRegex(err, r"\Aerror: [^\n]*(ended after 3 s|device)[^\n]*\n\Z")
+
+    def test_what_cannot_be_graded(self):
+        for arguments in ((99,), (3, "nothing.glsl"), ("three",)):
+            code, out, err = self.check(*arguments)
+            self.assertEqual((code, out), (2, ""))
+            self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")
+
+
+if __name__ == "__main__":
+    unittest.main()
