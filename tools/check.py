@@ -14,6 +14,7 @@ import signal
 import sys
 import tempfile
 import time
+import traceback
 from pathlib import Path
 
 try:
@@ -57,7 +58,7 @@ def parse():
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.add_argument("--record", action="store_true",
                         help="write error and rays of this shader to tools/check_levels.json: the others' yardstick")
-    return parser.parse_args()
+    return parser.parse_intermixed_args()
 
 
 def make_tree(chapter, file, tree):
@@ -74,7 +75,7 @@ def regions(image):
     """Means of red, green and blue over the whole image [3], and of all channels over its tiles [rows * columns]."""
     height, width, _ = image.shape
     tiles = image.mean(axis=2).reshape(height // TILE, TILE, width // TILE, TILE).mean(axis=(1, 3))
-    return [*image.mean(axis=(0, 1)), *tiles.ravel()]
+    return [*image.mean(axis=(0, 1)).tolist(), *tiles.ravel().tolist()]
 
 
 def reference_regions(file):
@@ -240,4 +241,8 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Exception:  # Python's exit code would be that of a biased shader
+        traceback.print_exc()
+        sys.exit(UNGRADED)

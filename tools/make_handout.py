@@ -116,7 +116,7 @@ def main():
     parser.add_argument("folder", type=Path, nargs="?", metavar="DIR", help="to be made; must not exist")
     parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
     parser.add_argument("--runs", default="12", help="of ./lab check where that is tried; default: 12")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     known = [number for number in CHAPTERS if exercises(number)]
     if options.chapter not in [*known, *([None] if options.verify else [])]:
         parser.error(f"N must be a chapter with an exercise in tools/exercises.json: {', '.join(map(str, known))}")
