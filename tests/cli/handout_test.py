@@ -1,0 +1,52 @@
+"""./lab handout: each chapter's tree works, fails its check before the solution is filled in, and gives nothing away."""
+
+import json
+import os
+import subprocess
+import unittest
+
+from program import BINARIES, PROJECT, ProgramTest, python_with_plots
+
+EXERCISES = json.loads((PROJECT / "tools/exercises.json").read_text(encoding="utf-8"))
+CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
+
+
+class HandoutTest(ProgramTest):
+    def handout(self, *arguments):
+        command = [python_with_plots(), "-B", PROJECT / "tools/make_handout.py", *arguments]
+        return subprocess.run(list(map(str, command)), cwd=self.folder, capture_output=True, text=True,
+                              env=os.environ | {"LAB_BINARIES": str(BINARIES)})
+
+    def test_every_chapter_fails_before_and_passes_with_the_solution(self):
+        result = self.handout("--verify")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
+    def test_the_tree_has_nothing_of_later_chapters_and_no_solution(self):
+        self.assertEqual(sorted({exercise["chapter"] for exercise in EXERCISES}), [int(name[:2]) for name in CHAPTERS])
+        for exercise in EXERCISES:
+            number = exercise["chapter"]
+            tree = self.folder / f"handout_{number}"
+            result = self.handout(number, tree)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(sorted(os.listdir(tree / "chapters")), CHAPTERS[:number])
+            self.assertFalse((tree / "tests").exists() or (tree / ".git").exists())
+            self.assertIn("TODO", (tree / exercise["file"]).read_text(encoding="utf-8"))
+            for path in (path for name in ("chapters", "shaders", "tools", "docs") for path in (tree / name).rglob("*")):
+                if path.suffix in (".glsl", ".md", ".py", ".json"):
+                    self.assertNotIn(exercise["last"], path.read_text(encoding="utf-8"), path)
+
+    def test_commands_that_need_the_tests_say_so(self):
+        self.assertEqual(self.handout(1, "lab").returncode, 0)
+        result = subprocess.run(["./lab", "test"], cwd=self.folder / "lab", capture_output=True, text=True)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"\Alab: this student's tree has no 'test'[^\n]*\n\Z")
+
+    def test_what_cannot_be_written_is_refused(self):
+        for arguments in ((), (1,), (99, "lab"), (1, "."), (1, "lab", "--verify")):
+            result = self.handout(*arguments)
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stderr, r"\Aerror: [^\n]{12,}\n\Z")
+
+
+if __name__ == "__main__":
+    unittest.main()
