@@ -25,7 +25,8 @@ FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "README.md", "lab"]
 # What only teachers need: it names solutions or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "tools/exercises.json", "tools/make_handout.py",
-            "tools/make_figures.py", "tools/figure_plots.py", "tools/make_numerics.py", "tools/make_results.py"]
+            "tools/make_benchmark.py", "tools/make_figures.py", "tools/figure_plots.py",
+            "tools/make_numerics.py", "tools/make_results.py"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 FEW = ["--runs", "4", "--samples", "8"]  # enough to tell a TODO from its solution
 
