@@ -7,20 +7,20 @@
 
 namespace lab {
 
-void ComparisonPanel::draw(const Session& first, const Rectangle& picture) {
-    if (ImGui::Begin("Look inside")) {
-        ImGui::Separator();
-        draw_choice(first);
-        if (comparison_.is_building()) ImGui::TextUnformatted("building ...");
-        if (!comparison_.message().empty()) ImGui::TextWrapped("%s", comparison_.message().c_str());
-        if (comparison_.is_active()) draw_numbers(first);
-    }
-    ImGui::End();
+void ComparisonPanel::draw_split(const Rectangle& picture) const {
     if (!comparison_.is_active()) return;
     const Placement placement(picture);
     ImGui::GetBackgroundDrawList()->AddLine(placement.at({comparison_.split, 0}),
                                             placement.at({comparison_.split, 1}),
                                             IM_COL32(255, 255, 255, 200));
+}
+
+void ComparisonPanel::draw_controls(const Session& first) {
+    if (!ImGui::CollapsingHeader("compare")) return;
+    draw_choice(first);
+    if (comparison_.is_building()) ImGui::TextUnformatted("building ...");
+    if (!comparison_.message().empty()) ImGui::TextWrapped("%s", comparison_.message().c_str());
+    if (comparison_.is_active()) draw_numbers(first);
 }
 
 void ComparisonPanel::draw_choice(const Session& first) {

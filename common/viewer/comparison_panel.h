@@ -8,8 +8,10 @@ class ComparisonPanel {
   public:
     explicit ComparisonPanel(const Device& device) : comparison_(device) {}
 
-    // Between Screen::begin_frame() and Screen::show(). Appends to the window of the InsidePanel.
-    void draw(const Session& first, const Rectangle& picture);
+    // The line between the pictures. Between Screen::begin_frame() and Screen::show().
+    void draw_split(const Rectangle& picture) const;
+    // A section of the controls.
+    void draw_controls(const Session& first);
     Comparison& comparison() { return comparison_; }
 
   private:

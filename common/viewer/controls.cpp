@@ -73,7 +73,8 @@ int Controls::width() const {
     return static_cast<int>(std::ceil(panel_width() * ImGui::GetIO().DisplayFramebufferScale.x));
 }
 
-void Controls::draw(Session& session, CameraControl& camera_control, double frames_per_second) {
+void Controls::draw(Session& session, CameraControl& camera_control, double frames_per_second,
+                    const std::function<void()>& further) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({panel_width(), ImGui::GetIO().DisplaySize.y});
     ImGui::Begin("Controls", nullptr,
@@ -82,6 +83,7 @@ void Controls::draw(Session& session, CameraControl& camera_control, double fram
     ImGui::PushItemWidth(0.5f * panel_width());
     draw_progress(session, frames_per_second);
     draw_actions(session);
+    further();
     Options options = session.options();
     draw_scene(session, options);
     draw_paths(session.chapter(), session.build().job.parameters, options);

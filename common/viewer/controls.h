@@ -1,5 +1,6 @@
 // The panel at the left of the window.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,9 @@ class Controls {
     Controls();
 
     // To be called between Screen::begin_frame() and Screen::show().
-    void draw(Session& session, CameraControl& camera_control, double frames_per_second);
+    // `further` draws sections of the panel that belong to others.
+    void draw(Session& session, CameraControl& camera_control, double frames_per_second,
+              const std::function<void()>& further);
     int width() const;                               // pixels of the framebuffer
     vec2 seed_field() const { return seed_field_; }  // where it was drawn last, for tests
 

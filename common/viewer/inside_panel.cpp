@@ -25,19 +25,34 @@ void InsidePanel::draw(const Session& session, const Rectangle& picture, double 
         draw_path(*inspection_.path(), inspection_.parameters().camera, inspection_.selection()->vertex,
                   picture);
 
+    if (!inspection_.selection()) return;
     const float width = 27 * ImGui::GetFontSize();
     ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - width, 0}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize({width, 0});
     ImGui::SetNextWindowSizeConstraints({width, 0}, {width, ImGui::GetIO().DisplaySize.y});
-    if (ImGui::Begin("Look inside")) {
-        draw_verdict(session);
-        draw_pixel(session);
+    bool is_open = true;
+    if (ImGui::Begin("A path", &is_open)) {
+        if (inspection_.is_building()) ImGui::TextColored(grey, "compiling the recorder ...");
+        if (!inspection_.message().empty()) ImGui::TextWrapped("%s", inspection_.message().c_str());
         if (inspection_.path()) {
             draw_path_list();
             draw_hemisphere();
         }
     }
     ImGui::End();
+    if (!is_open) inspection_.deselect();
+}
+
+void InsidePanel::draw_controls(const Session& session) {
+    ImGui::Separator();
+    draw_verdict(session);
+    if (ImGui::CollapsingHeader("look inside")) {
+        int overlay = static_cast<int>(overlay_.shown);
+        ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));
+        overlay_.shown = static_cast<Overlay>(overlay);
+        draw_pixel(session);
+    }
+    if (!overlay_.legend().empty()) ImGui::TextWrapped("%s", overlay_.legend().c_str());
 }
 
 void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& picture) {
@@ -60,20 +75,19 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
 void InsidePanel::draw_verdict(const Session& session) {
     const bool is_known = session.verdict() && session.verdict()->verdict();
     const bool is_biased = is_known && session.verdict()->verdict()->is_biased;
+    // Always as high, so that what follows does not jump.
+    ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false,
+                      ImGuiWindowFlags_NoScrollbar);
     ImGui::PushStyleColor(ImGuiCol_Text, !is_known ? grey : is_biased ? red : green);
     ImGui::TextWrapped("%s", session.verdict_text().c_str());
     ImGui::PopStyleColor();
+    ImGui::EndChild();
     if (is_known && ImGui::IsItemHovered())
         ImGui::SetTooltip("An unbiased render is ever called biased with a probability of %.3g",
                           LiveVerdict::default_false_alarms);
-    int overlay = static_cast<int>(overlay_.shown);
-    ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));
-    overlay_.shown = static_cast<Overlay>(overlay);
-    if (!overlay_.legend().empty()) ImGui::TextWrapped("%s", overlay_.legend().c_str());
 }
 
 void InsidePanel::draw_pixel(const Session& session) {
-    ImGui::Separator();
     const std::optional<Inspection::Selection>& selection = inspection_.selection();
     const FilmImage& film = session.last_snapshot();
     const std::optional<glm::uvec2> pixel = hovered_    ? hovered_
@@ -91,12 +105,9 @@ void InsidePanel::draw_pixel(const Session& session) {
         ImGui::TextColored(grey, "point at a pixel for its value");
     }
     if (!selection) ImGui::TextColored(grey, "click: follow a path; right click: leave it");
-    if (inspection_.is_building()) ImGui::TextColored(grey, "compiling the recorder ...");
-    if (!inspection_.message().empty()) ImGui::TextWrapped("%s", inspection_.message().c_str());
 }
 
 void InsidePanel::draw_path_list() {
-    ImGui::Separator();
     auto& selection = *inspection_.selection();
     const RecordedPath& path = *inspection_.path();
     ImGui::Text("sample %u: radiance %.4g %.4g %.4g", selection.sample, path.radiance.x, path.radiance.y,

@@ -1,5 +1,4 @@
-// The window that looks inside the render: the live verdict, tiles of the picture, a pixel's path and what
-// its points see.
+// Looks inside the render: the live verdict, tiles of the picture, a pixel's path and what its points see.
 #pragma once
 #include "viewer/inspection.h"
 #include "viewer/tile_overlay.h"
@@ -10,8 +9,11 @@ class InsidePanel {
   public:
     explicit InsidePanel(const Device& device) : inspection_(device) {}
 
-    // Between Screen::begin_frame() and Screen::show(); renders hemispheres for about so many seconds.
+    // Over the picture, and a window of its own where a pixel has been clicked. Between Screen::begin_frame()
+    // and Screen::show(); renders hemispheres for about so many seconds.
     void draw(const Session& session, const Rectangle& picture, double seconds);
+    // A section of the controls.
+    void draw_controls(const Session& session);
     const Inspection& inspection() const { return inspection_; }
     void show_next_overlay() { overlay_.show_next(); }
 

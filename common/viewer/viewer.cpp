@@ -66,9 +66,12 @@ bool Viewer::frame() {
     screen_.begin_frame();
     open_dropped_files();
     if (shows_controls_) {
-        controls_.draw(session_, camera_control_, frames_per_second_);
         inside_panel_.draw(session_, picture_rectangle(), 0.15 * budget);
-        comparison_panel_.draw(session_, picture_rectangle());
+        comparison_panel_.draw_split(picture_rectangle());
+        controls_.draw(session_, camera_control_, frames_per_second_, [&] {
+            inside_panel_.draw_controls(session_);
+            comparison_panel_.draw_controls(session_);
+        });
     }
     handle_keys();
     move_camera(std::min(seconds, 0.2));

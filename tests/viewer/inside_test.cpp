@@ -54,7 +54,7 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     take_screenshot("viewer_biased");
     const auto blueness = [&] {
         const Texture& shown = viewer_->screen().captured();
-        double sum = 0;  // over the picture's left half: the panel covers some of the right one
+        double sum = 0;  // over a part of the picture
         for (uint32_t y = 0; y < shown.height; ++y)
             for (uint32_t x = 360; x < 550; ++x) {
                 const uint8_t* pixel = &shown.pixels[4 * (size_t{y} * shown.width + x)];
