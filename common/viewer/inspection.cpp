@@ -72,6 +72,11 @@ void Inspection::update(const Session& session, double seconds) {
         if (is_new_path)
             path_ = tools_->recorder->record(parameters, selection_->pixel,
                                              parameters.first_sample + selection_->sample);
+        if (path_->vertices.empty()) {  // an estimator that traces no ray
+            has_hemisphere_ = false;
+            shown_ = selection_;
+            return;
+        }
         selection_->vertex = std::min(selection_->vertex, path_->vertices.size() - 1);
         const PathVertex& vertex = path_->vertices[selection_->vertex];
         const Scene& scene = *tools_->scene;

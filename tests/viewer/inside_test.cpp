@@ -118,6 +118,19 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     take_screenshot("viewer_inside");
 }
 
+TEST_F(InsideTest, AnEstimatorWithoutRaysHasAPathWithoutVertices) {
+    write(folder_.path() / "path_trace.glsl",
+          "vec3 path_trace(Ray ray, inout uvec2 seed) {\n    return vec3(0.25);\n}\n");
+    chapter_ = {.name = folder_.path().string(), .title = "Constant"};
+    open(make_options());
+    click(600, 400);
+    wait_until("a path", [&] { return inspection().path().has_value(); });
+    run_frames(3);
+    EXPECT_TRUE(inspection().path()->vertices.empty());
+    EXPECT_EQ(inspection().path()->radiance, vec3(0.25f));
+    EXPECT_FALSE(inspection().has_hemisphere());
+}
+
 TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
     open(options_with_reference());
     Comparison& comparison = viewer_->comparison();
