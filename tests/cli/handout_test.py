@@ -37,7 +37,7 @@ class HandoutTest(ProgramTest):
 
     def test_commands_that_need_the_tests_say_so(self):
         self.assertEqual(self.handout(1, "lab").returncode, 0)
-        result = subprocess.run(["./lab", "test"], cwd=self.folder / "lab", capture_output=True, text=True)
+        result = subprocess.run(["./lab", "test"], cwd=self.folder / "lab", capture_output=True, text=True, timeout=20)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"\Alab: this student's tree has no 'test'[^\n]*\n\Z")
 
