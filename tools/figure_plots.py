@@ -170,11 +170,9 @@ def random_numbers(folder, images, reports):
 
 def window(output, images, reports):
     """What the test of the window has seen: a chapter in it, and the same after a mistake was made in its shader."""
-    command = [BINARIES / "viewer_tests", "--gtest_filter=ViewerTest.ShowsThePicture*"]
-    if shutil.which("xvfb-run"):
-        command = ["xvfb-run", "-a", *command]
+    command = ["tests/support/with_display.sh", BINARIES / "viewer_tests", "--gtest_filter=ViewerTest.ShowsThePicture*"]
     process = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if process.returncode != 0 or "SKIPPED" in process.stdout:
-        sys.exit("error: window: its test " + ("failed" if process.returncode != 0 else "needs xvfb-run or a display"))
+        sys.exit("error: window: its test " + ("failed" if process.returncode != 0 else "needs Xvfb or a display"))
     for name in ("window.png", "window_broken_shader.png"):
         shutil.copyfile(ROOT / "output" / name, output / name)

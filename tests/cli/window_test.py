@@ -7,8 +7,9 @@ import subprocess
 import unittest
 
 from image_files import Exr
-from program import BINARIES, CHAPTER, FAULT_LAYER, ProgramTest
+from program import BINARIES, CHAPTER, FAULT_LAYER, PROJECT, ProgramTest
 
+WITH_DISPLAY = PROJECT / "tests/support/with_display.sh"
 GUARD_EXIT_CODE = 77  # of tests/faults/glfw_guard.cpp
 GUARD = {"LD_PRELOAD": str(BINARIES.parent / "layers" / "libglfw_guard.so"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
 NO_DISPLAY = {"DISPLAY": None, "WAYLAND_DISPLAY": None}
@@ -56,11 +57,11 @@ class Windows(ProgramTest):
         self.assert_refused([*RENDER, "--window"], "display", "--headless", environment=NO_DISPLAY)
         self.assert_refused([*RENDER, "--window"], "no window", "--headless", environment=SOME_DISPLAY)
 
-    @unittest.skipUnless(shutil.which("xvfb-run"), "xvfb is not installed")
+    @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
     def test_a_lost_device_leaves_what_was_read_last(self):
         fault = {**FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "300"}
-        command = ["-a", CHAPTER, "cornell_box", "--width=32", "--height=32", "--backend=compute", "--window", "--output=a.exr"]
-        code, _, err = self.run_program(*command, program="xvfb-run", environment={**NO_DISPLAY, **fault})
+        command = [CHAPTER, "cornell_box", "--width=32", "--height=32", "--backend=compute", "--window", "--output=a.exr"]
+        code, _, err = self.run_program(*command, program=WITH_DISPLAY, environment={**NO_DISPLAY, **fault})
         self.assertEqual(code, 3, err)
         self.assertRegex(err, r"\Aerror: [^\n]*the outputs hold \d+ samples a pixel; --resume continues\n\Z")
         self.assertIn(Exr(self.folder / "a.exr").text("samples"), err)
