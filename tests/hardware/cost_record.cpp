@@ -163,6 +163,7 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
 }
 
 void run(const Options& options) {
+    check_writable(options.output, {".json"});  // before minutes are spent
     const Device device({options.device});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size,

@@ -76,6 +76,7 @@ json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
 }
 
 void run(const std::string& choice, uint32_t size, const std::filesystem::path& output) {
+    check_writable(output, {".json"});  // before minutes are spent
     const Device device({choice});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), size, size);
