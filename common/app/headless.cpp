@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/progress.h"
+#include "clock.h"
 #include "error.h"
 #include "rendering/interrupt.h"
 #include "rendering/numbers_text.h"
@@ -87,10 +88,7 @@ class HeadlessRender {
         }
     }
 
-    double seconds() const {
-        return job_.record.seconds +
-               std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
+    double seconds() const { return job_.record.seconds + seconds_since(start_); }
 
     bool is_time_over() const {
         return options_.time_limit && renderer_.samples() > 0 &&
@@ -106,9 +104,8 @@ class HeadlessRender {
         // A snapshot is also what remains if the device is lost.
         constexpr double seconds_between_snapshots = 10;
         const double interval = options_.save_every.value_or(seconds_between_snapshots);
-        const auto now = std::chrono::steady_clock::now();
-        if (std::chrono::duration<double>(now - last_save_).count() < interval) return;
-        last_save_ = now;
+        if (seconds_since(last_save_) < interval) return;
+        last_save_ = std::chrono::steady_clock::now();
         snapshot_ = renderer_.film().read();
         if (!options_.save_every) return;
         try {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "clock.h"
+
 namespace lab {
 
 uvec2 seed_key(uint32_t seed) {
@@ -92,7 +94,7 @@ bool Renderer::advance(uint32_t target_samples) {
     device_seconds_ += device_->submit([&](const vk::raii::CommandBuffer& commands) {
         tracer_->record(commands, {next_block_, pass_samples_}, count);
     });
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     for (const uint32_t counter : counters) rays_ += counter;
 
     // Blocks differ in cost, so the rate follows the last dispatch and grows by a bounded factor.

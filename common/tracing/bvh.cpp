@@ -10,6 +10,8 @@
 #include <span>
 #include <tuple>
 
+#include "clock.h"
+
 namespace lab {
 namespace {
 
@@ -289,7 +291,7 @@ Bvh build_bvh(const std::vector<BvhTriangle>& triangles) {
     for (const auto& primitive : primitives) bvh.triangles.push_back(triangles[primitive.triangle]);
     bvh.max_stack_entries = max_stack_entries(bvh.nodes);
     bvh.surface_area_cost = surface_area_cost(bvh.nodes);
-    bvh.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    bvh.build_seconds = seconds_since(start);
     return bvh;
 }
 

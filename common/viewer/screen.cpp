@@ -8,16 +8,13 @@
 #include <chrono>
 #include <cmath>
 
+#include "clock.h"
 #include "error.h"
 
 namespace lab {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 void check(VkResult result) {
     if (result < 0)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clock.h"
 #include "error.h"
 #include "rendering/outputs.h"
 #include "rendering/scene_reference.h"
@@ -12,10 +13,6 @@ namespace lab {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::array<float, 3> to_array(const vec3& v) { return {v.x, v.y, v.z}; }
 

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 
+#include "clock.h"
 #include "error.h"
 #include "rendering/interrupt.h"
 #include "rendering/outputs.h"
@@ -15,10 +16,6 @@ namespace lab {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Follows a series of numbers with a memory of about ten of them.
 double smooth(double average, double number) { return average + 0.1 * (number - average); }

@@ -1,0 +1,11 @@
+// Time by the clock.
+#pragma once
+#include <chrono>
+
+namespace lab {
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace lab
