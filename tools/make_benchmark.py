@@ -12,13 +12,12 @@ import argparse
 import os
 import platform
 import re
-import signal
 import sys
 from pathlib import Path
 from statistics import median
 
 try:
-    from command_line import Parser, add_device_options, at_least
+    from command_line import Parser, add_device_options, at_least, run_resumable
     from measurement import CHAPTERS, Measurement, devices_text, driver_of, new_case, run_case
     from reference_image import ROOT, find_references
     from report_numbers import seconds_to_target
@@ -139,13 +138,7 @@ def measure(options):
 
 def main():
     options = parse()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        measure(options)
-    except UserError as error:
-        sys.exit(f"error: {error}")
-    except KeyboardInterrupt:
-        sys.exit("interrupted: the same command goes on")
+    run_resumable(lambda: measure(options), UserError)
 
 
 if __name__ == "__main__":

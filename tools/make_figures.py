@@ -6,7 +6,6 @@ import argparse
 import hashlib
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -15,7 +14,7 @@ from pathlib import Path
 
 try:
     import figure_plots
-    from command_line import Parser
+    from command_line import Parser, run_resumable
     from make_results import kind_of, load_records
     from measurement import BINARIES, CHAPTERS, digest_of_sources, last_line
     from progress import show_progress
@@ -137,6 +136,8 @@ def parse():
 
 
 def make(names, output):
+    output = output.resolve()
+    output.mkdir(parents=True, exist_ok=True)
     folder = CACHE / digest_of_sources([])
     steps = [(name, render) for name in names for render in [*FIGURES[name][0], None]]
     started = time.monotonic()
@@ -153,14 +154,7 @@ def make(names, output):
 
 def main():
     options = parse()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        options.output.mkdir(parents=True, exist_ok=True)
-        make(options.names or list(FIGURES), options.output.resolve())
-    except OSError as error:
-        sys.exit(f"error: {error}")
-    except KeyboardInterrupt:
-        sys.exit("interrupted: the same command goes on")
+    run_resumable(lambda: make(options.names or list(FIGURES), options.output), OSError)
     if not options.names:
         for tool in ("make_results.py", "make_numerics.py"):
             subprocess.run([sys.executable, ROOT / "tools" / tool], check=True)

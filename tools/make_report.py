@@ -6,12 +6,11 @@ chapters are their numbers. Without any, all shipped scenes and all chapters are
 cores. Ctrl-C keeps what was measured; the same command then goes on.
 """
 import argparse
-import signal
 import sys
 from pathlib import Path
 
 try:
-    from command_line import Parser, add_device_options, at_least
+    from command_line import Parser, add_device_options, at_least, run_resumable
     from measurement import CHAPTERS, Measurement, report_cases, study_cases, working_variants
     from reference_image import ROOT, find_references
     from report_page import write_report
@@ -74,13 +73,8 @@ def main():
     options = parse()
     settings = {"words": options.words, "backend": options.backend, "device": options.device, "seconds": options.seconds,
                 "repetitions": options.repetitions, "peer": options.peer}
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        make_record(options, settings) if options.record else make_report(options, settings)
-    except UserError as error:
-        sys.exit(f"error: {error}")
-    except KeyboardInterrupt:
-        sys.exit("interrupted: the same command goes on")
+    make = make_record if options.record else make_report
+    run_resumable(lambda: make(options, settings), UserError)
 
 
 if __name__ == "__main__":
