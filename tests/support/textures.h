@@ -6,8 +6,8 @@
 
 namespace lab {
 
-// The albedo at texture coordinates: that of squares in a row which have the same coordinates everywhere, one
-// in each pixel of the image.
+// The albedo at texture coordinates: that of quads in a row, each of which has the same coordinates
+// everywhere.
 std::vector<vec3> albedo_at(Backend backend, const Texture& texture, const std::vector<vec2>& coordinates,
                             const vec3& factor = vec3(1));
 
