@@ -2,6 +2,7 @@
 // What a screen shows of a film: the same as common/film/display.cpp on the CPU, to one step of 8 bits.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
+#include "blocks.glsl"
 
 layout(scalar, push_constant) uniform DisplayParametersBlock { DisplayParameters display; };
 layout(scalar, set = 0, binding = BINDING_FILM) readonly buffer Film { FilmPixel film[]; };
@@ -9,16 +10,14 @@ layout(set = 0, binding = BINDING_PICTURE, rgba8) writeonly uniform image2D pict
 // Bits of the largest value, which order as numbers that are not negative do.
 layout(scalar, set = 0, binding = BINDING_LARGEST_VALUE) buffer LargestValue { uint largest_value; };
 
-layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCK_HEIGHT) in;
+layout(local_size_x = BLOCK_SIZE) in;
 
 vec3 get_srgb(vec3 linear) {
     return mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
 }
 
 void main() {
-    uint blocks_per_row = (display.image_size.x + BLOCK_WIDTH - 1u) / BLOCK_WIDTH;
-    uvec2 corner = uvec2(gl_WorkGroupID.x % blocks_per_row, gl_WorkGroupID.x / blocks_per_row) * gl_WorkGroupSize.xy;
-    uvec2 position = corner + gl_LocalInvocationID.xy;
+    uvec2 position = get_pixel_position(gl_WorkGroupID.x, gl_LocalInvocationIndex, display.image_size);
     if (any(greaterThanEqual(position, display.image_size))) return;
     uvec2 film_position = position * display.film_size / display.image_size;
     FilmPixel pixel = film[film_position.y * display.film_size.x + film_position.x];

@@ -38,14 +38,16 @@ SHARED_CONSTANT BINDING_GEOMETRY_FIRST_TRIANGLES = 15u;
 SHARED_CONSTANT BINDING_LIGHT_TRIANGLES = 16u;
 SHARED_CONSTANT BINDING_PICTURE = 17u;
 SHARED_CONSTANT BINDING_LARGEST_VALUE = 18u;
+SHARED_CONSTANT BINDING_SAMPLES = 19u;
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
 SHARED_CONSTANT MATERIAL_CLASS_DIELECTRIC = 1u;
 
-// A workgroup renders a block of BLOCK_WIDTH x BLOCK_HEIGHT pixels.
+// A workgroup renders one sample of each pixel of a block of BLOCK_WIDTH x BLOCK_HEIGHT pixels.
 SHARED_CONSTANT BLOCK_WIDTH = 8u;
 SHARED_CONSTANT BLOCK_HEIGHT = 8u;
+SHARED_CONSTANT BLOCK_SIZE = BLOCK_WIDTH * BLOCK_HEIGHT;  // pixels
 
 // Rays are counted into this many counters, so that pixels rarely wait for each other.
 SHARED_CONSTANT RAY_COUNTER_COUNT = 64u;
@@ -103,10 +105,18 @@ struct RenderParameters {
 };
 
 // Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from
-// first_sample), so that it does not matter how a render is cut into dispatches.
+// first_sample), so that it does not matter how a render is cut into dispatches. No pixel lacks more than
+// samples_per_pixel of them.
 struct DispatchParameters {
     uint first_block;
+    uint samples_per_pixel;
     uint target_samples;
+};
+
+// What an invocation leaves behind, until it is added to the film.
+struct Sample {
+    vec3 radiance;
+    uint ray_count;  // rays that were traced for it
 };
 
 // What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation).

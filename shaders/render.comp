@@ -1,5 +1,5 @@
 #version 460
-// A path tracer in a compute shader: a workgroup renders a block of pixels.
+// A path tracer in a compute shader: a workgroup renders one sample of each pixel of a block.
 #include "interface.h"
 #include "scene.glsl"
 
@@ -11,8 +11,8 @@ layout(scalar, push_constant) uniform DispatchParametersBlock { DispatchParamete
 #else
 #include "trace_ray/compute.glsl"
 #endif
-#include "render_pixel.glsl"
+#include "render_sample.glsl"
 
-layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCK_HEIGHT) in;
+layout(local_size_x = BLOCK_SIZE) in;
 
-void main() { render_pixel(dispatch.first_block + gl_WorkGroupID.x, gl_LocalInvocationID.xy, dispatch.target_samples); }
+void main() { render_sample(gl_WorkGroupID.x * BLOCK_SIZE + gl_LocalInvocationIndex); }

@@ -102,8 +102,8 @@ void run(const Chapter& chapter, const Options& options) {
         return;
 
     const Device device({options.device, options.validation});
-    const MemoryNeed film = Film::memory_need(job.parameters.image_size.x, job.parameters.image_size.y);
-    require_memory(device, {&film, 1});  // before the scene takes time and memory
+    // Before the scene takes time and memory.
+    require_memory(device, Renderer::memory_needs(job.parameters.image_size));
     const bool samples_lights = chapter.light_sampling && options.light_sampling && !options.view;
     const GpuScene gpu_scene(device, scene, samples_lights ? LightSampling::on : LightSampling::off);
     const Backend backend = choose_backend(options, device, gpu_scene, estimator, job.parameters);

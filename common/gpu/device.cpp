@@ -279,18 +279,14 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
     const auto lock = lock_queue();
     command_buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     command_buffer_.resetQueryPool(*timestamps_, 0, 2);
-    // Whatever earlier submissions wrote is visible to this one, and what it writes is visible to the host.
-    const auto all = vk::PipelineStageFlagBits::eAllCommands;
-    const auto written = vk::AccessFlagBits::eMemoryWrite;
-    command_buffer_.pipelineBarrier(
-        all, all, {},
-        vk::MemoryBarrier(written, vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite), {},
-        {});
+    wait_for_writes(command_buffer_);  // of earlier submissions
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eTopOfPipe, *timestamps_, 0);
     record(command_buffer_);
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, 1);
-    command_buffer_.pipelineBarrier(all, vk::PipelineStageFlagBits::eHost, {},
-                                    vk::MemoryBarrier(written, vk::AccessFlagBits::eHostRead), {}, {});
+    // What it has written is visible to the host.
+    command_buffer_.pipelineBarrier(
+        vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
+        vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
     command_buffer_.end();
     queue_.submit(vk::SubmitInfo({}, {}, *command_buffer_), *fence_);
     if (device_.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
@@ -335,6 +331,15 @@ Device::~Device() {
     } catch (const vk::SystemError&) {
         // A lost device has no pipelines to keep.
     }
+}
+
+void wait_for_writes(const vk::raii::CommandBuffer& commands) {
+    const auto all = vk::PipelineStageFlagBits::eAllCommands;
+    commands.pipelineBarrier(
+        all, all, {},
+        vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite,
+                          vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite),
+        {}, {});
 }
 
 std::vector<DeviceDescription> list_devices() {

@@ -108,6 +108,9 @@ class Device {
     size_t pipeline_cache_size_ = 0;
 };
 
+// Whatever has been written before can be read, and written again, by the commands that follow.
+void wait_for_writes(const vk::raii::CommandBuffer& commands);
+
 // All devices of this machine in the order of their indices. Throws DeviceError if there is no Vulkan driver.
 std::vector<DeviceDescription> list_devices();
 

@@ -15,6 +15,9 @@ RenderParameters default_parameters(const Scene& scene, const CameraPose& camera
 
 class Renderer {
   public:
+    // What a renderer of images of this size allocates.
+    static std::vector<MemoryNeed> memory_needs(uvec2 image_size);
+
     // The device and the acceleration structure must outlive the renderer. An estimator may have bindings of
     // its own.
     Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
@@ -41,11 +44,15 @@ class Renderer {
 
   private:
     uint32_t block_count() const;
+    // Brings blocks from next_block_ on from finished_samples_ to pass_samples_.
+    void record(const vk::raii::CommandBuffer& commands, uint32_t blocks) const;
 
     const Device* device_;
     Buffer parameters_;
+    Buffer samples_;  // rendered and not yet added to the film
     Buffer ray_counters_;
     Film film_;
+    ComputeKernel adder_;
     std::unique_ptr<Tracer> tracer_;
 
     double dispatch_seconds_ = 0.1;

@@ -13,7 +13,7 @@ class ComputeTracer : public Tracer {
 
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
                 uint32_t block_count) const override {
-        kernel_.record(commands, &dispatch, block_count);
+        kernel_.record(commands, &dispatch, block_count * dispatch.samples_per_pixel);
     }
 
   private:
@@ -45,7 +45,7 @@ ShaderSource shader_source(const std::string& name, ShaderStage stage, const Gpu
 
 std::set<std::filesystem::path> shader_files(const Estimator& estimator) {
     std::set<std::filesystem::path> files;
-    for (const char* name : {"render.comp", "render.rgen", "trace_ray/closest_hit.rchit",
+    for (const char* name : {"render.comp", "render.rgen", "add_samples.comp", "trace_ray/closest_hit.rchit",
                              "trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"})
         for (const auto& file : shader_files({.file = project_folder() / "shaders" / name,
                                 .named_includes = {{"path_trace.glsl", estimator.file}}}))

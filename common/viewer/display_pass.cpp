@@ -11,16 +11,6 @@ std::vector<Binding> bindings(const Film& film, const StorageImage& picture, con
             storage_binding(BINDING_LARGEST_VALUE, largest_value)};
 }
 
-// Whatever was written before can be read, and written again, by what follows.
-void wait_for_writes(const vk::raii::CommandBuffer& commands) {
-    const auto all = vk::PipelineStageFlagBits::eAllCommands;
-    commands.pipelineBarrier(
-        all, all, {},
-        vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite,
-                          vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite),
-        {}, {});
-}
-
 }  // namespace
 
 DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr<StorageImage> picture)

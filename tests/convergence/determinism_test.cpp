@@ -58,6 +58,19 @@ TEST_P(Determinism, DispatchesOfAnyLengthGiveTheSameImage) {
     EXPECT_TRUE(are_identical(render(scene, cut), render(scene, whole)));
 }
 
+// More samples in a submission than are kept until they are added: of few pixels, and of more blocks of
+// pixels than that.
+TEST(Submissions, OfManySamplesGiveTheSameImage) {
+    for (const auto& [size, samples] : {std::pair{uvec2(8, 8), 90000u}, std::pair{uvec2(2048, 1544), 2u}}) {
+        RenderSettings whole{.width = size.x, .height = size.y, .samples = samples};
+        whole.estimator = {project_folder() / "tests" / "shaders" / "random_radiance.glsl"};
+        RenderSettings cut = whole;
+        whole.dispatch_seconds = 100;
+        cut.dispatch_seconds = 1e-3;
+        EXPECT_TRUE(are_identical(render(lit_box(), cut), render(lit_box(), whole)));
+    }
+}
+
 TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
     RenderSettings other_seed = settings(), later_samples = settings();
     other_seed.seed = 2;

@@ -4,6 +4,7 @@
 #include "error.h"
 #include "film/film.h"
 #include "rendering/backend_choice.h"
+#include "rendering/renderer.h"
 #include "support/gpu_test.h"
 #include "support/meshes.h"
 #include "support/render.h"
@@ -59,6 +60,16 @@ TEST(Memory, OfFilmsIsWhatTheyAllocate) {
     EXPECT_EQ(need.bytes, 48u * 40u * sizeof(FilmPixel));
     const std::string text = refusal([] { Film(test_device(), 65535, 65535); });
     EXPECT_NE(text.find(in_mebibytes(size_t{65535} * 65535 * sizeof(FilmPixel))), std::string::npos) << text;
+}
+
+TEST(Memory, OfRendersIsThatOfFilmAndSamples) {
+    const auto needs = Renderer::memory_needs({48, 40});
+    ASSERT_EQ(needs.size(), 2u);
+    EXPECT_EQ(needs[0].bytes, Film::memory_need(48, 40).bytes);
+    // Enough to keep a large device busy with a small image, and allowed by every device.
+    EXPECT_GE(needs[1].bytes, (size_t{1} << 20) * sizeof(Sample));
+    EXPECT_LT(needs[1].bytes, size_t{128} * mebibyte);
+    EXPECT_EQ(refusal([&] { require_memory(test_device(), needs); }), "");
 }
 
 // A tree over so many instances would take minutes to build, and much of the host's memory.

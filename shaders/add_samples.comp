@@ -1,0 +1,34 @@
+#version 460
+// Adds the samples of a dispatch to the film: a pixel's one after the other, in the order of their indices.
+#extension GL_EXT_scalar_block_layout : require
+#include "interface.h"
+#include "blocks.glsl"
+#include "film.glsl"
+
+layout(scalar, push_constant) uniform DispatchParametersBlock { DispatchParameters dispatch; };
+layout(scalar, set = 0, binding = BINDING_RENDER_PARAMETERS) uniform RenderParametersBlock {
+    RenderParameters parameters;
+};
+layout(scalar, set = 0, binding = BINDING_FILM) buffer Film { FilmPixel film[]; };
+layout(scalar, set = 0, binding = BINDING_SAMPLES) readonly buffer Samples { Sample samples[]; };
+layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uint ray_counters[]; };
+
+layout(local_size_x = BLOCK_SIZE) in;
+
+void main() {
+    uint block = dispatch.first_block + gl_WorkGroupID.x;
+    uvec2 position = get_pixel_position(block, gl_LocalInvocationIndex, parameters.image_size);
+    if (any(greaterThanEqual(position, parameters.image_size))) return;
+    uint pixel_index = position.y * parameters.image_size.x + position.x;
+
+    FilmPixel pixel = film[pixel_index];
+    uint ray_count = 0u;
+    // The invocation that rendered the pixel's next sample, see render_sample.glsl.
+    uint invocation = gl_WorkGroupID.x * dispatch.samples_per_pixel * BLOCK_SIZE + gl_LocalInvocationIndex;
+    for (; pixel.sample_count < dispatch.target_samples; invocation += BLOCK_SIZE) {
+        add_sample(pixel, samples[invocation].radiance);
+        ray_count += samples[invocation].ray_count;
+    }
+    film[pixel_index] = pixel;
+    atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);
+}

@@ -1,0 +1,43 @@
+// What every backend runs for a sample of a pixel: traces its path and stores the radiance.
+#include "constants.glsl"
+#include "random.glsl"
+#include "frame.glsl"
+#include "camera.glsl"
+#include "textures.glsl"
+#include "background.glsl"
+#include "shading_data.glsl"
+#include "materials.glsl"
+#include "lights.glsl"
+#include "blocks.glsl"
+
+layout(scalar, set = 0, binding = BINDING_FILM) readonly buffer Film { FilmPixel film[]; };
+layout(scalar, set = 0, binding = BINDING_SAMPLES) writeonly buffer Samples { Sample samples[]; };
+
+// Whether light that arrives after this many bounces belongs to the picture: --only-path-length shows one length.
+bool is_counted(uint path_length) {
+    return parameters.only_path_length < 0 || parameters.only_path_length == int(path_length);
+}
+
+// The estimator: a chapter's path_trace.glsl.
+//   vec3 path_trace(Ray ray, inout uvec2 seed) estimates the radiance L(x_0, ω_0) that arrives along a camera ray.
+#include "path_trace.glsl"
+
+// Invocations of a dispatch are numbered: first the pixels of a block, then its next samples, then the next block.
+void render_sample(uint invocation) {
+    uint group = invocation / BLOCK_SIZE;
+    uint block = dispatch.first_block + group / dispatch.samples_per_pixel;
+    uvec2 position = get_pixel_position(block, invocation % BLOCK_SIZE, parameters.image_size);
+    if (any(greaterThanEqual(position, parameters.image_size))) return;
+    uint pixel_index = position.y * parameters.image_size.x + position.x;
+
+    // An interrupted render may have left some pixels with more samples than others.
+    uint sample_number = film[pixel_index].sample_count + group % dispatch.samples_per_pixel;
+    if (sample_number >= dispatch.target_samples) return;
+
+    // One of the N samples in L := 1/N sum of path_trace(x_0, ω_0, 0): add_samples.comp adds them up.
+    uint sample_index = parameters.first_sample + sample_number;
+    uvec2 seed = random_start_state(pixel_index, sample_index, parameters.seed_key);
+    vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
+    vec3 radiance = path_trace(get_camera_ray(image_position), seed);
+    samples[invocation] = Sample(radiance, ray_count);
+}
