@@ -23,11 +23,11 @@ void main() {
 
     FilmPixel pixel = film[pixel_index];
     uint ray_count = 0u;
-    // The invocation that rendered the pixel's next sample, see render_sample.glsl.
-    uint invocation = gl_WorkGroupID.x * dispatch.samples_per_pixel * BLOCK_SIZE + gl_LocalInvocationIndex;
-    for (; pixel.sample_count < dispatch.target_samples; invocation += BLOCK_SIZE) {
-        add_sample(pixel, samples[invocation].radiance);
-        ray_count += samples[invocation].ray_count;
+    // Where render_samples.glsl has left the pixel's next sample.
+    uint place = gl_WorkGroupID.x * dispatch.samples_per_pixel * BLOCK_SIZE + gl_LocalInvocationIndex;
+    for (; pixel.sample_count < dispatch.target_samples; place += BLOCK_SIZE) {
+        add_sample(pixel, samples[place].radiance);
+        ray_count += samples[place].ray_count;
     }
     film[pixel_index] = pixel;
     atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);

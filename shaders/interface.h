@@ -44,7 +44,7 @@ SHARED_CONSTANT BINDING_SAMPLES = 19u;
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
 SHARED_CONSTANT MATERIAL_CLASS_DIELECTRIC = 1u;
 
-// A workgroup renders one sample of each pixel of a block of BLOCK_WIDTH x BLOCK_HEIGHT pixels.
+// A workgroup renders samples of a block of BLOCK_WIDTH x BLOCK_HEIGHT pixels.
 SHARED_CONSTANT BLOCK_WIDTH = 8u;
 SHARED_CONSTANT BLOCK_HEIGHT = 8u;
 SHARED_CONSTANT BLOCK_SIZE = BLOCK_WIDTH * BLOCK_HEIGHT;  // pixels
@@ -105,15 +105,15 @@ struct RenderParameters {
 };
 
 // Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from
-// first_sample), so that it does not matter how a render is cut into dispatches. No pixel lacks more than
-// samples_per_pixel of them.
+// first_sample), so that it does not matter how a render is cut into dispatches.
 struct DispatchParameters {
     uint first_block;
-    uint samples_per_pixel;
+    uint samples_per_pixel;  // no pixel lacks more
+    uint threads_per_pixel;  // share them
     uint target_samples;
 };
 
-// What an invocation leaves behind, until it is added to the film.
+// A sample that has not been added to the film yet.
 struct Sample {
     vec3 radiance;
     uint ray_count;  // rays that were traced for it

@@ -1,5 +1,5 @@
 #version 460
-// A path tracer in a compute shader: a workgroup renders one sample of each pixel of a block.
+// A path tracer in a compute shader: a workgroup renders samples of a block of pixels.
 #include "interface.h"
 #include "scene.glsl"
 
@@ -11,8 +11,8 @@ layout(scalar, push_constant) uniform DispatchParametersBlock { DispatchParamete
 #else
 #include "trace_ray/compute.glsl"
 #endif
-#include "render_sample.glsl"
+#include "render_samples.glsl"
 
 layout(local_size_x = BLOCK_SIZE) in;
 
-void main() { render_sample(gl_WorkGroupID.x * BLOCK_SIZE + gl_LocalInvocationIndex); }
+void main() { render_samples(gl_WorkGroupID.x * BLOCK_SIZE + gl_LocalInvocationIndex); }

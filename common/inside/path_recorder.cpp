@@ -176,7 +176,7 @@ RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixe
     const uint32_t blocks_per_row = (film_.width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH;
     const uint32_t block = pixel.y / BLOCK_HEIGHT * blocks_per_row + pixel.x / BLOCK_WIDTH;
     device_->submit([&](const vk::raii::CommandBuffer& commands) {
-        tracer_->record(commands, {block, 1, 1}, 1);
+        tracer_->record(commands, {block, 1, 1, 1}, 1);
     });
 
     std::vector<std::byte> bytes(events_.size());

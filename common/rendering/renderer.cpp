@@ -8,13 +8,15 @@
 namespace lab {
 namespace {
 
-// Samples of a block that are rendered before they are added to the film. A large device works on 4000 at a
-// time, and while the last ones end most of it idles; with a third of these it was 4 % slower. Every device
-// allows 65535 workgroups in a row.
-constexpr uint32_t max_blocks_in_flight = 49152;
+// Workgroups of a dispatch: a large device keeps 4000 alive. With fewer blocks of pixels than that, several
+// share a block.
+constexpr uint32_t max_groups = 8192;
+// Samples that each pixel of so many blocks gets before they are added to the film. A thread that renders
+// several need not wait for the others after each, and all end at about the same time.
+constexpr uint32_t max_samples = 12;
 
 MemoryNeed memory_need_of_samples() {
-    return {"samples in flight", max_blocks_in_flight * BLOCK_SIZE * sizeof(Sample),
+    return {"samples in flight", max_groups * max_samples * BLOCK_SIZE * sizeof(Sample),
             vk::BufferUsageFlagBits::eStorageBuffer};
 }
 
@@ -98,14 +100,15 @@ void Renderer::resume(const FilmImage& image) {
 
 void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks) const {
     const uint32_t end = next_block_ + blocks;
-    const uint32_t blocks_in_flight = std::min(blocks, max_blocks_in_flight);
-    const uint32_t samples_in_flight = max_blocks_in_flight / blocks_in_flight;
+    const uint32_t blocks_in_flight = std::min(blocks, max_groups);
+    const uint32_t samples_in_flight = max_groups * max_samples / blocks_in_flight;
     for (uint32_t block = next_block_; block < end; block += blocks_in_flight) {
         const uint32_t count = std::min(blocks_in_flight, end - block);
         for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
             const uint32_t added = std::min(samples_in_flight, pass_samples_ - samples);
             samples += added;
-            const DispatchParameters dispatch{block, added, samples};
+            const uint32_t threads = std::clamp(max_groups / count, 1u, added);
+            const DispatchParameters dispatch{block, added, threads, samples};
             tracer_->record(commands, dispatch, count);
             wait_for_writes(commands);
             adder_.record(commands, &dispatch, count);

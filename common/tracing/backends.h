@@ -15,7 +15,7 @@ ShaderSource shader_source(const std::string& name, ShaderStage stage, const Gpu
 // The bindings of all the lists.
 std::vector<Binding> join(std::initializer_list<std::span<const Binding>> lists);
 
-// A compute shader that renders an estimator: one workgroup for each sample of a block of pixels.
+// A compute shader that renders an estimator: workgroups of blocks of pixels.
 std::unique_ptr<Tracer> make_compute_tracer(const Device& device, const ShaderSource& source,
                                             std::span<const Binding> bindings);
 

@@ -53,7 +53,7 @@ class PipelineTracer : public Tracer {
         (*commands).pushConstants(*layout_, all_stages, 0, sizeof dispatch, &dispatch,
                                   *commands.getDispatcher());
         commands.traceRaysKHR(ray_generation_records_, miss_records_, hit_records_, {},
-                              block_count * dispatch.samples_per_pixel * BLOCK_SIZE, 1, 1);
+                              block_count * dispatch.threads_per_pixel * BLOCK_SIZE, 1, 1);
     }
 
   private:

@@ -13,7 +13,7 @@ class ComputeTracer : public Tracer {
 
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
                 uint32_t block_count) const override {
-        kernel_.record(commands, &dispatch, block_count * dispatch.samples_per_pixel);
+        kernel_.record(commands, &dispatch, block_count * dispatch.threads_per_pixel);
     }
 
   private:

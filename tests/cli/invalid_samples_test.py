@@ -19,12 +19,12 @@ class Poison(RenderTest):
         tree = self.folder / "poisoned"
         for name in ("shaders", "chapters"):
             shutil.copytree(PROJECT / name, tree / name)
-        shader = tree / "shaders" / "render_sample.glsl"
+        shader = tree / "shaders" / "render_samples.glsl"
         text = shader.read_text(encoding="utf-8")
         call = "vec3 radiance = path_trace(get_camera_ray(image_position), seed);"
         self.assertEqual(text.count(call), 1)
         poisoned = f"""{call}
-    if (pixel_index == {self.pixel}u && sample_index == {self.sample}u) radiance.g = uintBitsToFloat(0x7fc00000u);"""
+        if (pixel_index == {self.pixel}u && sample_index == {self.sample}u) radiance.g = uintBitsToFloat(0x7fc00000u);"""
         shader.write_text(text.replace(call, poisoned), encoding="utf-8")
         # Programs find the shaders above themselves.
         self.poisoned = tree / "bin" / CHAPTER.name

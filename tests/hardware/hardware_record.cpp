@@ -16,8 +16,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Index of the path in the order of the film's blocks, where each pixel has one sample, as each backend's
-// main program knows it. The n-th rays of neighbouring paths are neighbours in memory.
+// Index of the path in the order of the film's blocks, as each backend's main program knows it. The n-th rays
+// of neighbouring paths are neighbours in memory.
 std::vector<std::string> path_defines(Backend backend, size_t path_count) {
     const std::string index = backend == Backend::pipeline
                                   ? "gl_LaunchIDEXT.x"

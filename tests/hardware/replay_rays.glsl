@@ -4,9 +4,13 @@
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) readonly buffer RecordedRays { RecordedRay recorded_rays[]; };
 
+// Paths that this thread has replayed. Each sample is the path of another block of pixels: with the same path in each
+// sample, a thread whose path is long would be late in all of them. Where threads do not wait for each other after a
+// sample, as in the ray tracing pipeline, that made the rate look half as high.
+uint replayed_paths = 0u;
+
 vec3 path_trace(Ray ray, inout uvec2 seed) {
-    // The samples of a pixel are paths of different blocks, so that all of them are replayed equally often.
-    uint path = PATH_INDEX % PATH_COUNT;
+    uint path = (PATH_INDEX + 64u * replayed_paths++) % PATH_COUNT;
     uint hash = 0u;
     for (uint slot = 0u; slot < MAX_RECORDED_RAYS; slot += 2u) {
         RecordedRay segment = recorded_rays[PATH_COUNT * slot + path];

@@ -51,6 +51,7 @@ void main() {
         results[0].render_parameters[i].probe_rotation = next();
         results[0].dispatch_parameters[i].first_block = next();
         results[0].dispatch_parameters[i].samples_per_pixel = next();
+        results[0].dispatch_parameters[i].threads_per_pixel = next();
         results[0].dispatch_parameters[i].target_samples = next();
         results[0].samples[i].radiance = next_vec3();
         results[0].samples[i].ray_count = next();

@@ -1,0 +1,46 @@
+// What every backend runs for a pixel: traces the paths of some of its samples and stores their radiance.
+#include "constants.glsl"
+#include "random.glsl"
+#include "frame.glsl"
+#include "camera.glsl"
+#include "textures.glsl"
+#include "background.glsl"
+#include "shading_data.glsl"
+#include "materials.glsl"
+#include "lights.glsl"
+#include "blocks.glsl"
+
+layout(scalar, set = 0, binding = BINDING_FILM) readonly buffer Film { FilmPixel film[]; };
+layout(scalar, set = 0, binding = BINDING_SAMPLES) writeonly buffer Samples { Sample samples[]; };
+
+// Whether light that arrives after this many bounces belongs to the picture: --only-path-length shows one length.
+bool is_counted(uint path_length) {
+    return parameters.only_path_length < 0 || parameters.only_path_length == int(path_length);
+}
+
+// The estimator: a chapter's path_trace.glsl.
+//   vec3 path_trace(Ray ray, inout uvec2 seed) estimates the radiance L(x_0, ω_0) that arrives along a camera ray.
+#include "path_trace.glsl"
+
+// Invocations of a dispatch are numbered: first the pixels of a block, then the next threads of the same pixels, then the
+// next block. The threads of a pixel render its samples in turns.
+void render_samples(uint invocation) {
+    uint group = invocation / BLOCK_SIZE;
+    uint index = invocation % BLOCK_SIZE;
+    uint block = group / dispatch.threads_per_pixel;
+    uvec2 position = get_pixel_position(dispatch.first_block + block, index, parameters.image_size);
+    if (any(greaterThanEqual(position, parameters.image_size))) return;
+    uint pixel_index = position.y * parameters.image_size.x + position.x;
+
+    // Those that the pixel lacks: an interrupted render may have left some pixels with more samples than others.
+    uint first = film[pixel_index].sample_count;
+    for (uint i = group % dispatch.threads_per_pixel; first + i < dispatch.target_samples; i += dispatch.threads_per_pixel) {
+        // One of the N samples in L := 1/N sum of path_trace(x_0, ω_0, 0): add_samples.comp adds them up.
+        uint sample_index = parameters.first_sample + first + i;
+        uvec2 seed = random_start_state(pixel_index, sample_index, parameters.seed_key);
+        vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
+        ray_count = 0u;
+        vec3 radiance = path_trace(get_camera_ray(image_position), seed);
+        samples[(block * dispatch.samples_per_pixel + i) * BLOCK_SIZE + index] = Sample(radiance, ray_count);
+    }
+}
