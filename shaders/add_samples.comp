@@ -1,5 +1,6 @@
 #version 460
-// Adds the samples of a dispatch to the film: a pixel's one after the other, in the order of their indices.
+// Adds the samples of pixels that several threads have shared to the film: one after the other, in the order of their
+// indices.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
 #include "blocks.glsl"
@@ -10,8 +11,7 @@ layout(scalar, set = 0, binding = BINDING_RENDER_PARAMETERS) uniform RenderParam
     RenderParameters parameters;
 };
 layout(scalar, set = 0, binding = BINDING_FILM) buffer Film { FilmPixel film[]; };
-layout(scalar, set = 0, binding = BINDING_SAMPLES) readonly buffer Samples { Sample samples[]; };
-layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uint ray_counters[]; };
+layout(scalar, set = 0, binding = BINDING_SAMPLES) readonly buffer Samples { vec3 samples[]; };
 
 layout(local_size_x = BLOCK_SIZE) in;
 
@@ -22,13 +22,8 @@ void main() {
     uint pixel_index = position.y * parameters.image_size.x + position.x;
 
     FilmPixel pixel = film[pixel_index];
-    uint ray_count = 0u;
     // Where render_samples.glsl has left the pixel's next sample.
     uint place = gl_WorkGroupID.x * dispatch.samples_per_pixel * BLOCK_SIZE + gl_LocalInvocationIndex;
-    for (; pixel.sample_count < dispatch.target_samples; place += BLOCK_SIZE) {
-        add_sample(pixel, samples[place].radiance);
-        ray_count += samples[place].ray_count;
-    }
+    for (; pixel.sample_count < dispatch.target_samples; place += BLOCK_SIZE) add_sample(pixel, samples[place]);
     film[pixel_index] = pixel;
-    atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);
 }

@@ -108,15 +108,9 @@ struct RenderParameters {
 // first_sample), so that it does not matter how a render is cut into dispatches.
 struct DispatchParameters {
     uint first_block;
-    uint samples_per_pixel;  // no pixel lacks more
-    uint threads_per_pixel;  // share them
+    uint threads_per_pixel;
+    uint samples_per_pixel;  // where several threads share them: no pixel lacks more
     uint target_samples;
-};
-
-// A sample that has not been added to the film yet.
-struct Sample {
-    vec3 radiance;
-    uint ray_count;  // rays that were traced for it
 };
 
 // What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation).

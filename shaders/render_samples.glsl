@@ -1,4 +1,4 @@
-// What every backend runs for a pixel: traces the paths of some of its samples and stores their radiance.
+// What every backend runs for a pixel: brings it up to the asked number of samples, or does its share of them.
 #include "constants.glsl"
 #include "random.glsl"
 #include "frame.glsl"
@@ -9,9 +9,11 @@
 #include "materials.glsl"
 #include "lights.glsl"
 #include "blocks.glsl"
+#include "film.glsl"
 
-layout(scalar, set = 0, binding = BINDING_FILM) readonly buffer Film { FilmPixel film[]; };
-layout(scalar, set = 0, binding = BINDING_SAMPLES) writeonly buffer Samples { Sample samples[]; };
+layout(scalar, set = 0, binding = BINDING_FILM) buffer Film { FilmPixel film[]; };
+layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uint ray_counters[]; };
+layout(scalar, set = 0, binding = BINDING_SAMPLES) writeonly buffer Samples { vec3 samples[]; };
 
 // Whether light that arrives after this many bounces belongs to the picture: --only-path-length shows one length.
 bool is_counted(uint path_length) {
@@ -32,15 +34,19 @@ void render_samples(uint invocation) {
     if (any(greaterThanEqual(position, parameters.image_size))) return;
     uint pixel_index = position.y * parameters.image_size.x + position.x;
 
-    // Those that the pixel lacks: an interrupted render may have left some pixels with more samples than others.
-    uint first = film[pixel_index].sample_count;
+    // L := 1/N sum of path_trace(x_0, ω_0, 0) over N samples; the division by N happens when the film is read. A thread
+    // that has the pixel to itself adds them up. Else add_samples.comp does it, in the same order.
+    FilmPixel pixel = film[pixel_index];
+    uint first = pixel.sample_count;
+    bool is_shared = dispatch.threads_per_pixel > 1u;
     for (uint i = group % dispatch.threads_per_pixel; first + i < dispatch.target_samples; i += dispatch.threads_per_pixel) {
-        // One of the N samples in L := 1/N sum of path_trace(x_0, ω_0, 0): add_samples.comp adds them up.
         uint sample_index = parameters.first_sample + first + i;
         uvec2 seed = random_start_state(pixel_index, sample_index, parameters.seed_key);
         vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
-        ray_count = 0u;
         vec3 radiance = path_trace(get_camera_ray(image_position), seed);
-        samples[(block * dispatch.samples_per_pixel + i) * BLOCK_SIZE + index] = Sample(radiance, ray_count);
+        if (is_shared) samples[(block * dispatch.samples_per_pixel + i) * BLOCK_SIZE + index] = radiance;
+        else add_sample(pixel, radiance);
     }
+    if (!is_shared) film[pixel_index] = pixel;
+    atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);
 }

@@ -157,11 +157,13 @@ PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& ac
     : device_(&device),
       film_(device, image_size.x, image_size.y),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
-      samples_(device, BLOCK_SIZE * sizeof(Sample), vk::BufferUsageFlagBits::eStorageBuffer),
+      ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      samples_(device, BLOCK_SIZE * sizeof(vec3), vk::BufferUsageFlagBits::eStorageBuffer),
       events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent),
               vk::BufferUsageFlagBits::eStorageBuffer) {
     const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_),
-                                        film_.binding(), storage_binding(BINDING_SAMPLES, samples_),
+                                        film_.binding(), storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
+                                        storage_binding(BINDING_SAMPLES, samples_),
                                         storage_binding(BINDING_RECORDED_PATH, events_)};
     tracer_ = acceleration_structure.make_tracer(recording(estimator), bindings);
 }
@@ -170,6 +172,7 @@ RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixe
     RenderParameters of_sample = parameters;
     of_sample.first_sample = sample;
     parameters_.write(&of_sample, sizeof of_sample);
+    film_.clear();
     const Header header{pixel.y * film_.width() + pixel.x, sample, 0};
     events_.write(&header, sizeof header);
 

@@ -52,8 +52,8 @@ class PathRecorder {
 
   private:
     const Device* device_;
-    Film film_;  // stays empty: samples are not added
-    Buffer parameters_, samples_, events_;
+    Film film_;
+    Buffer parameters_, ray_counters_, samples_, events_;
     std::unique_ptr<Tracer> tracer_;
 };
 

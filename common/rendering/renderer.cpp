@@ -8,15 +8,15 @@
 namespace lab {
 namespace {
 
-// Workgroups of a dispatch: a large device keeps 4000 alive. With fewer blocks of pixels than that, several
-// share a block.
-constexpr uint32_t max_groups = 8192;
-// Samples that each pixel of so many blocks gets before they are added to the film. A thread that renders
-// several need not wait for the others after each, and all end at about the same time.
-constexpr uint32_t max_samples = 12;
+// Workgroups that keep a large device busy, which works on 4000 at a time. Of images with fewer blocks of
+// pixels several share a block.
+constexpr uint32_t enough_groups = 8192;
+// Samples of pixels that are shared wait to be added to the film: at most so many of each group's pixels. A
+// thread that renders several need not wait for the others after each.
+constexpr uint32_t samples_per_group = 12;
 
 MemoryNeed memory_need_of_samples() {
-    return {"samples in flight", max_groups * max_samples * BLOCK_SIZE * sizeof(Sample),
+    return {"samples in flight", enough_groups * samples_per_group * BLOCK_SIZE * sizeof(vec3),
             vk::BufferUsageFlagBits::eStorageBuffer};
 }
 
@@ -65,10 +65,10 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
       film_(device, parameters.image_size.x, parameters.image_size.y),
       adder_(device, {.file = project_folder() / "shaders" / "add_samples.comp"},
              std::vector{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
-                         storage_binding(BINDING_SAMPLES, samples_),
-                         storage_binding(BINDING_RAY_COUNTERS, ray_counters_)},
+                         storage_binding(BINDING_SAMPLES, samples_)},
              sizeof(DispatchParameters)) {
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
+                                  storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
                                   storage_binding(BINDING_SAMPLES, samples_)};
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
     tracer_ = acceleration_structure.make_tracer(estimator, bindings);
@@ -99,21 +99,18 @@ void Renderer::resume(const FilmImage& image) {
 }
 
 void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks) const {
-    const uint32_t end = next_block_ + blocks;
-    const uint32_t blocks_in_flight = std::min(blocks, max_groups);
-    const uint32_t samples_in_flight = max_groups * max_samples / blocks_in_flight;
-    for (uint32_t block = next_block_; block < end; block += blocks_in_flight) {
-        const uint32_t count = std::min(blocks_in_flight, end - block);
-        for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
-            const uint32_t added = std::min(samples_in_flight, pass_samples_ - samples);
-            samples += added;
-            const uint32_t threads = std::clamp(max_groups / count, 1u, added);
-            const DispatchParameters dispatch{block, added, threads, samples};
-            tracer_->record(commands, dispatch, count);
-            wait_for_writes(commands);
-            adder_.record(commands, &dispatch, count);
-            wait_for_writes(commands);
-        }
+    const uint32_t groups_per_block = std::max(enough_groups / blocks, 1u);
+    const bool is_shared = groups_per_block > 1;
+    const uint32_t in_flight = is_shared ? groups_per_block * samples_per_group : UINT32_MAX;
+    for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
+        const uint32_t added = std::min(in_flight, pass_samples_ - samples);
+        samples += added;
+        const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples};
+        tracer_->record(commands, dispatch, blocks);
+        if (!is_shared) continue;
+        wait_for_writes(commands);
+        adder_.record(commands, &dispatch, blocks);
+        wait_for_writes(commands);
     }
 }
 
@@ -128,7 +125,9 @@ bool Renderer::advance(uint32_t target_samples) {
     }
     const uint32_t step = pass_samples_ - finished_samples_;
     const double fitting = std::max(blocks_per_dispatch_ / step, 1.0);
-    const auto count = static_cast<uint32_t>(std::min(fitting, static_cast<double>(blocks - next_block_)));
+    const uint32_t group_limit = device_->limits().maxComputeWorkGroupCount[0];
+    const uint32_t count = static_cast<uint32_t>(
+        std::min({fitting, static_cast<double>(group_limit), static_cast<double>(blocks - next_block_)}));
 
     const auto counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);

@@ -49,7 +49,7 @@ class Renderer {
 
     const Device* device_;
     Buffer parameters_;
-    Buffer samples_;  // rendered and not yet added to the film
+    Buffer samples_;  // of shared pixels, rendered and not yet added to the film
     Buffer ray_counters_;
     Film film_;
     ComputeKernel adder_;

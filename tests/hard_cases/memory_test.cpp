@@ -67,7 +67,7 @@ TEST(Memory, OfRendersIsThatOfFilmAndSamples) {
     ASSERT_EQ(needs.size(), 2u);
     EXPECT_EQ(needs[0].bytes, Film::memory_need(48, 40).bytes);
     // Enough to keep a large device busy with a small image, and allowed by every device.
-    EXPECT_GE(needs[1].bytes, (size_t{1} << 20) * sizeof(Sample));
+    EXPECT_GE(needs[1].bytes, (size_t{1} << 20) * sizeof(vec3));
     EXPECT_LT(needs[1].bytes, size_t{128} * mebibyte);
     EXPECT_EQ(refusal([&] { require_memory(test_device(), needs); }), "");
 }

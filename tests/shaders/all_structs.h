@@ -8,7 +8,6 @@ struct AllStructs {
     Camera cameras[2];
     RenderParameters render_parameters[2];
     DispatchParameters dispatch_parameters[2];
-    Sample samples[2];
     FilmPixel film_pixels[2];
 };
 

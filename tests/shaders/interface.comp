@@ -50,11 +50,9 @@ void main() {
         results[0].render_parameters[i].background = next_vec3();
         results[0].render_parameters[i].probe_rotation = next();
         results[0].dispatch_parameters[i].first_block = next();
-        results[0].dispatch_parameters[i].samples_per_pixel = next();
         results[0].dispatch_parameters[i].threads_per_pixel = next();
+        results[0].dispatch_parameters[i].samples_per_pixel = next();
         results[0].dispatch_parameters[i].target_samples = next();
-        results[0].samples[i].radiance = next_vec3();
-        results[0].samples[i].ray_count = next();
         results[0].film_pixels[i].sum = next_vec3();
         results[0].film_pixels[i].compensation = next_vec3();
         results[0].film_pixels[i].sample_count = next();

@@ -56,11 +56,9 @@ TEST(Interface, HasTheSameLayoutInCppAndGlsl) {
         EXPECT_FIELD(all.render_parameters[i].background);
         EXPECT_FIELD(all.render_parameters[i].probe_rotation);
         EXPECT_FIELD(all.dispatch_parameters[i].first_block);
-        EXPECT_FIELD(all.dispatch_parameters[i].samples_per_pixel);
         EXPECT_FIELD(all.dispatch_parameters[i].threads_per_pixel);
+        EXPECT_FIELD(all.dispatch_parameters[i].samples_per_pixel);
         EXPECT_FIELD(all.dispatch_parameters[i].target_samples);
-        EXPECT_FIELD(all.samples[i].radiance);
-        EXPECT_FIELD(all.samples[i].ray_count);
         EXPECT_FIELD(all.film_pixels[i].sum);
         EXPECT_FIELD(all.film_pixels[i].compensation);
         EXPECT_FIELD(all.film_pixels[i].sample_count);
