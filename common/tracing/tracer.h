@@ -43,8 +43,8 @@ class AccelerationStructure {
     virtual ~AccelerationStructure() = default;
     // What make_tracer() compiles for an estimator, the main program first.
     virtual std::vector<ShaderSource> shaders(const Estimator& estimator) const = 0;
-    // `bindings`: render parameters, film, ray counters and samples. Throws UserError if the estimator does not
-    // compile.
+    // `bindings`: render parameters, film, ray counters and samples. Throws UserError if the estimator does
+    // not compile.
     virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                                 std::span<const Binding> bindings) const = 0;
     virtual size_t bytes() const = 0;          // of device memory
