@@ -24,8 +24,9 @@ CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters")
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "README.md", "lab"]
 # What only teachers need: it names solutions or makes what belongs to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "tools/exercises.json", "tools/make_handout.py",
-            "tools/make_benchmark.py", "tools/make_figures.py", "tools/figure_plots.py",
+TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check/confusion.json",
+            "tools/exercises.json", "tools/make_handout.py", "tools/learn_mistakes.py", "tools/planting.py",
+            "tools/confusion_table.py", "tools/make_benchmark.py", "tools/make_figures.py", "tools/figure_plots.py",
             "tools/make_numerics.py", "tools/make_results.py"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 FEW = ["--runs", "4", "--samples", "8"]  # enough to tell a TODO from its solution
@@ -81,6 +82,7 @@ def write_handout(number, folder):
         text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
         shader.write_text(text, encoding="utf-8")
         hide(solution, folder)
+    unlink_what_is_missing(folder)
 
 
 def hide(solution, folder):
@@ -89,6 +91,16 @@ def hide(solution, folder):
         text = page.read_text(encoding="utf-8")
         page.write_text(re.sub(r"\[`([^`]+)`\](?=\([^)]*\.glsl\))", lambda quote: "[TODO]" if quote[1] in solution and
                                not re.fullmatch(r"\w+(\(\))?", quote[1]) else quote[0], text), encoding="utf-8")
+
+
+def unlink_what_is_missing(folder):
+    """Links to files that stay out become plain text."""
+    for page in folder.rglob("*.md"):
+        def shown(link):
+            target = link[2].split("#")[0]
+            return link[0] if "://" in target or (page.parent / target).exists() else link[1]
+
+        page.write_text(re.sub(r"(?<!!)\[([^\[\]]+)\]\(([^()\s]+)\)", shown, page.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def run(command, expected, what, **options):

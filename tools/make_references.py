@@ -42,6 +42,9 @@ SHIPPED = [
     ("glossy", 5, 65536),
     ("instances", 4, 65536),
     ("glass", 8, 65536),
+    ("check_room", 2, 65536),
+    ("check_room", 6, 65536),
+    ("check_glass", 8, 65536),
 ]
 SHIPPED_SIZE = 128
 

@@ -5,7 +5,8 @@ whether they are up to date.
 In a page, what stands between the lines <!-- table: NAME --> and <!-- end of table --> is replaced by that table.
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
-docs/records/backends/DEVICE.json` and `build/bin/cost_record --output docs/records/cost/DEVICE.json`.
+docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json` and
+`tools/learn_mistakes.py confusion`.
 """
 
 import json
@@ -16,6 +17,8 @@ import sys
 from pathlib import Path
 from statistics import median
 
+from confusion_table import HEADER as CHECK
+from confusion_table import confusion_table
 from cost_tables import FEATURES, GROWTH, feature_table, growth_tables
 from report_numbers import estimate, last_rows, mean_of, products, ratio
 
@@ -200,7 +203,8 @@ def section(header, folder, table):
 def main():
     texts = {DOCS / "results.md": HEADER + section(CHAPTERS, "chapters", chapter_tables) +
              section(BACKENDS, "backends", backend_table) +
-             section(FEATURES, "cost", feature_table) + section(GROWTH, "cost", growth_tables)}
+             section(FEATURES, "cost", feature_table) + section(GROWTH, "cost", growth_tables) +
+             section(CHECK, "check", confusion_table)}
     for page in PAGES:
         if page not in texts:
             texts[page] = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3],

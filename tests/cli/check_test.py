@@ -47,6 +47,7 @@ class CheckTest(ProgramTest):
         box = result["scenes"][0]
         self.assertEqual((code, result["verdict"], box["verdict"]), (1, "biased", "biased"))
         self.assertTrue(all(test["is_biased"] and test["value"] > 0.5 for test in box["image"]), box["image"])
+        self.assertEqual(result["likely_mistake"]["name"], "wrong-measure")
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
 
     def test_more_noise_and_rays_than_needed_are_reported(self):

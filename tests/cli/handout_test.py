@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import unittest
 
@@ -34,6 +35,14 @@ class HandoutTest(ProgramTest):
             for path in (path for name in ("chapters", "shaders", "tools", "docs") for path in (tree / name).rglob("*")):
                 if path.suffix in (".glsl", ".md", ".py", ".json"):
                     self.assertNotIn(exercise["last"], path.read_text(encoding="utf-8"), path)
+
+    def test_no_link_leads_nowhere(self):
+        tree = self.folder / "handout"
+        self.assertEqual(self.handout(3, tree).returncode, 0)
+        links = [(page, link) for page in tree.rglob("*.md")
+                 for link in re.findall(r"\]\(([^()\s#]+)[^()\s]*\)", page.read_text(encoding="utf-8")) if "://" not in link]
+        self.assertGreater(len(links), 50)
+        self.assertEqual([(page, link) for page, link in links if not (page.parent / link).exists()], [])
 
     def test_commands_that_need_the_tests_say_so(self):
         self.assertEqual(self.handout(1, "lab").returncode, 0)
