@@ -107,7 +107,7 @@ def explain(result):
         print(f"{'where':14} {result['picture']}")
     if result["likely_mistake"]:
         print(f"{'likely cause':14} {result['likely_mistake']['name']}: {result['likely_mistake']['hint']}")
-        print(f"{'read again':14} {result['likely_mistake']['slide']}, see docs/slides.md")
+        print(f"{'read again':14} {result['likely_mistake']['slide']} (slides or blog)")
     print(f"chapter {result['chapter']:<6} {result['verdict']}: {result['file']}")
 
 

@@ -9,7 +9,6 @@
 """
 import argparse
 import json
-import sys
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -17,7 +16,7 @@ from pathlib import Path
 
 import grading
 from command_line import Parser, add_device_options, at_least, run_resumable
-from likely_mistake import SIGNATURES, Signature, rank, signature
+from likely_mistake import SIGNATURES, rank, read_signatures, signature
 from measurement import commit
 from planting import OTHER_SCENES, ROOT, Stale, catalogue, own_shader, trials
 from progress import show_progress
@@ -25,7 +24,8 @@ from scene_reader import UserError
 
 RECORD = ROOT / "docs/records/check/confusion.json"
 LEARNING = {"runs": 5, "seed": 1000, "factor": 2}  # times the samples of a check
-CHECKING = {"runs": 12, "seed": 2000, "factor": 1}
+LEVELS = {"runs": 12, "seed": 2000, "factor": 1}
+TRYING = {"runs": 12, "seed": 3000, "factor": 1}  # as a check does, with seeds that nothing was learnt from
 
 
 class Workshop:
@@ -67,7 +67,7 @@ def rounded(known):
 def learn(workshop, scenes):
     """Levels of chapters, and the signatures of their mistakes: chapter -> name -> hint, slide and signature. `scenes` are
     names of references for each chapter."""
-    levels = dict(zip(scenes, workshop.map("levels", lambda n: workshop.levels(n, CHECKING, scenes[n]), list(scenes))))
+    levels = dict(zip(scenes, workshop.map("levels", lambda n: workshop.levels(n, LEVELS, scenes[n]), list(scenes))))
     planted = [item for item in catalogue() if item[0] in scenes]
     results = workshop.map(
         "signatures", lambda item: workshop.judge(item[0], item[2], LEARNING, levels[item[0]], scenes[item[0]]), planted)
@@ -87,16 +87,11 @@ def write_lines(file, knowledge):
     file.write_text("{\n" + ",\n".join(blocks) + "\n}\n", encoding="utf-8")
 
 
-def read(entries):
-    """Name -> Signature."""
-    return {name: Signature(**entry["signature"]) for name, entry in entries.items()}
-
-
 def confusion(workshop):
     record = json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {"is_complete": True}
     open_trials = trials()
     if record["is_complete"]:
-        record = {"is_complete": False, "commit": commit(), "settings": CHECKING, "trials": {}}
+        record = {"is_complete": False, "commit": commit(), "settings": TRYING, "trials": {}}
         levels, signatures = learn(workshop, OTHER_SCENES)
         record["other_scenes"] = {"levels": levels, "signatures": signatures}
         save(record)
@@ -106,9 +101,9 @@ def confusion(workshop):
     def try_naming(item):
         key, (chapter, name, text) = item
         place = (others["levels"][str(chapter)], OTHER_SCENES[chapter]) if key.startswith("other scenes") else ()
-        signatures = others["signatures"] if place else known
-        result = workshop.judge(chapter, text, CHECKING, *place)
-        names = [] if result["verdict"] == "correct" else rank(signature(result), read(signatures[str(chapter)]))
+        candidates = read_signatures((others["signatures"] if place else known)[str(chapter)])
+        result = workshop.judge(chapter, text, TRYING, *place)
+        names = [] if result["verdict"] == "correct" else rank(signature(result), candidates)
         record["trials"][key] = {"mistake": name, "verdict": result["verdict"], "named": names[:3]}
         save(record)
 

@@ -57,10 +57,15 @@ def rank(seen, known):
     return names if is_explained else []
 
 
+def read_signatures(entries):
+    """Name -> Signature, of a chapter's entries in SIGNATURES."""
+    return {name: Signature(**entry["signature"]) for name, entry in entries.items()}
+
+
 def likely_mistake(result):
     """Name, hint and slide of the mistake that a shader with this result probably makes, or None."""
     if result["verdict"] == "correct":
         return None
     known = json.loads(SIGNATURES.read_text(encoding="utf-8"))[str(result["chapter"])]
-    names = rank(signature(result), {name: Signature(**entry["signature"]) for name, entry in known.items()})
+    names = rank(signature(result), read_signatures(known))
     return {"name": names[0], **{key: known[names[0]][key] for key in ("hint", "slide")}} if names else None

@@ -10,11 +10,11 @@ from program import PROJECT
 
 sys.path.append(str(PROJECT / "tools"))
 from confusion_table import rates  # noqa: E402  (found by the line above)
-from likely_mistake import SIGNATURES, Signature, rank  # noqa: E402
+from likely_mistake import SIGNATURES, Signature, rank, read_signatures  # noqa: E402
 from planting import catalogue, trials  # noqa: E402
 
 KNOWN = json.loads(SIGNATURES.read_text(encoding="utf-8"))
-CHAPTER_3 = {name: Signature(**entry["signature"]) for name, entry in KNOWN["3"].items()}
+CHAPTER_3 = read_signatures(KNOWN["3"])
 
 
 class LikelyMistakeTest(unittest.TestCase):

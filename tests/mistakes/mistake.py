@@ -18,6 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tools"))
 import test_report  # noqa: E402  (found by the line above)
+from planting import Stale, plant  # noqa: E402
 
 BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build" / "bin"))
 
@@ -36,10 +37,8 @@ def make(mistake, tree):
     if not mistake:
         return
     shader = tree / mistake["file"]
-    text = shader.read_text(encoding="utf-8")
-    if text.count(mistake["find"]) != 1:
-        sys.exit(f"stale: {mistake['file']} has {text.count(mistake['find'])} places with {mistake['find']!r}")
-    shader.write_text(text.replace(mistake["find"], mistake["replace"]), encoding="utf-8")
+    text = plant(shader.read_text(encoding="utf-8"), mistake["find"], mistake["replace"], mistake["file"])
+    shader.write_text(text, encoding="utf-8")
 
 
 def run(program, test, tree):
@@ -71,7 +70,10 @@ def main():
     mistake = mistakes[sys.argv[1]]
     print(f"{mistake['name']}: {mistake['explanation']}")
     with tempfile.TemporaryDirectory() as folder:
-        make(mistake, Path(folder))
+        try:
+            make(mistake, Path(folder))
+        except Stale as error:
+            sys.exit(str(error))
         results = run(*mistake["test"].split(".", 1), Path(folder))
     if not results:
         sys.exit(f"there is no test {mistake['test']}")
