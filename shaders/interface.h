@@ -108,8 +108,8 @@ struct RenderParameters {
 // first_sample), so that it does not matter how a render is cut into dispatches.
 struct DispatchParameters {
     uint first_block;
-    uint threads_per_pixel;
-    uint samples_per_pixel;  // where several threads share them: no pixel lacks more
+    uint threads_per_pixel;  // 1, unless pixels are shared
+    uint samples_per_pixel;  // where they are: no pixel lacks more
     uint target_samples;
 };
 

@@ -13,7 +13,9 @@
 
 layout(scalar, set = 0, binding = BINDING_FILM) buffer Film { FilmPixel film[]; };
 layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uint ray_counters[]; };
+#ifdef SHARED_PIXELS
 layout(scalar, set = 0, binding = BINDING_SAMPLES) writeonly buffer Samples { vec3 samples[]; };
+#endif
 
 // Whether light that arrives after this many bounces belongs to the picture: --only-path-length shows one length.
 bool is_counted(uint path_length) {
@@ -24,8 +26,16 @@ bool is_counted(uint path_length) {
 //   vec3 path_trace(Ray ray, inout uvec2 seed) estimates the radiance L(x_0, ω_0) that arrives along a camera ray.
 #include "path_trace.glsl"
 
+// Radiance of a sample of a pixel, which has so many before it.
+vec3 render_sample(uvec2 position, uint pixel_index, uint sample_count) {
+    uint sample_index = parameters.first_sample + sample_count;
+    uvec2 seed = random_start_state(pixel_index, sample_index, parameters.seed_key);
+    vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
+    return path_trace(get_camera_ray(image_position), seed);
+}
+
 // Invocations of a dispatch are numbered: first the pixels of a block, then the next threads of the same pixels, then the
-// next block. The threads of a pixel render its samples in turns.
+// next block.
 void render_samples(uint invocation) {
     uint group = invocation / BLOCK_SIZE;
     uint index = invocation % BLOCK_SIZE;
@@ -34,19 +44,17 @@ void render_samples(uint invocation) {
     if (any(greaterThanEqual(position, parameters.image_size))) return;
     uint pixel_index = position.y * parameters.image_size.x + position.x;
 
-    // L := 1/N sum of path_trace(x_0, ω_0, 0) over N samples; the division by N happens when the film is read. A thread
-    // that has the pixel to itself adds them up. Else add_samples.comp does it, in the same order.
+    // L := 1/N sum of path_trace(x_0, ω_0, 0) over N samples; the division by N happens when the film is read.
+#ifdef SHARED_PIXELS
+    // The threads of a pixel render its samples in turns; add_samples.comp adds them up in the order of their indices.
+    uint first = film[pixel_index].sample_count;
+    for (uint i = group % dispatch.threads_per_pixel; first + i < dispatch.target_samples; i += dispatch.threads_per_pixel)
+        samples[(block * dispatch.samples_per_pixel + i) * BLOCK_SIZE + index] = render_sample(position, pixel_index, first + i);
+#else
     FilmPixel pixel = film[pixel_index];
-    uint first = pixel.sample_count;
-    bool is_shared = dispatch.threads_per_pixel > 1u;
-    for (uint i = group % dispatch.threads_per_pixel; first + i < dispatch.target_samples; i += dispatch.threads_per_pixel) {
-        uint sample_index = parameters.first_sample + first + i;
-        uvec2 seed = random_start_state(pixel_index, sample_index, parameters.seed_key);
-        vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
-        vec3 radiance = path_trace(get_camera_ray(image_position), seed);
-        if (is_shared) samples[(block * dispatch.samples_per_pixel + i) * BLOCK_SIZE + index] = radiance;
-        else add_sample(pixel, radiance);
-    }
-    if (!is_shared) film[pixel_index] = pixel;
+    while (pixel.sample_count < dispatch.target_samples)
+        add_sample(pixel, render_sample(position, pixel_index, pixel.sample_count));
+    film[pixel_index] = pixel;
+#endif
     atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);
 }

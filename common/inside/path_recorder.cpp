@@ -158,12 +158,10 @@ PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& ac
       film_(device, image_size.x, image_size.y),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
-      samples_(device, BLOCK_SIZE * sizeof(vec3), vk::BufferUsageFlagBits::eStorageBuffer),
       events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent),
               vk::BufferUsageFlagBits::eStorageBuffer) {
     const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_),
                                         film_.binding(), storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
-                                        storage_binding(BINDING_SAMPLES, samples_),
                                         storage_binding(BINDING_RECORDED_PATH, events_)};
     tracer_ = acceleration_structure.make_tracer(recording(estimator), bindings);
 }

@@ -53,7 +53,7 @@ class PathRecorder {
   private:
     const Device* device_;
     Film film_;
-    Buffer parameters_, ray_counters_, samples_, events_;
+    Buffer parameters_, ray_counters_, events_;
     std::unique_ptr<Tracer> tracer_;
 };
 

@@ -9,11 +9,19 @@ namespace lab {
 namespace {
 
 // Workgroups that keep a large device busy, which works on 4000 at a time. Of images with fewer blocks of
-// pixels several share a block.
+// pixels several share a block. That is compiled in, since the mere
+// possibility makes large images slower (docs/backends.md).
 constexpr uint32_t enough_groups = 8192;
 // Samples of pixels that are shared wait to be added to the film: at most so many of each group's pixels. A
 // thread that renders several need not wait for the others after each.
 constexpr uint32_t samples_per_group = 12;
+
+uint32_t count_blocks(uvec2 image_size) {
+    return ((image_size.x + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
+           ((image_size.y + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
+}
+
+bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
 
 MemoryNeed memory_need_of_samples() {
     return {"samples in flight", enough_groups * samples_per_group * BLOCK_SIZE * sizeof(vec3),
@@ -50,7 +58,9 @@ RenderParameters default_parameters(const Scene& scene, const CameraPose& camera
 }
 
 std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
-    return {Film::memory_need(image_size.x, image_size.y), memory_need_of_samples()};
+    std::vector<MemoryNeed> needs{Film::memory_need(image_size.x, image_size.y)};
+    if (are_pixels_shared(image_size)) needs.push_back(memory_need_of_samples());
+    return needs;
 }
 
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
@@ -59,25 +69,24 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
     : device_(&device),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1),
                   vk::BufferUsageFlagBits::eUniformBuffer),
-      samples_(device, memory_need_of_samples().bytes, memory_need_of_samples().usage),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
-      film_(device, parameters.image_size.x, parameters.image_size.y),
-      adder_(device, {.file = project_folder() / "shaders" / "add_samples.comp"},
-             std::vector{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
-                         storage_binding(BINDING_SAMPLES, samples_)},
-             sizeof(DispatchParameters)) {
+      film_(device, parameters.image_size.x, parameters.image_size.y) {
+    Estimator renderer = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
-                                  storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
-                                  storage_binding(BINDING_SAMPLES, samples_)};
+                                  storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
+    if (are_pixels_shared(parameters.image_size)) {
+        samples_.emplace(device, memory_need_of_samples().bytes, memory_need_of_samples().usage);
+        renderer.defines.emplace_back("SHARED_PIXELS");
+        bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
+        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "add_samples.comp"},
+                       bindings, sizeof(DispatchParameters));
+    }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
-    tracer_ = acceleration_structure.make_tracer(estimator, bindings);
+    tracer_ = acceleration_structure.make_tracer(renderer, bindings);
 }
 
-uint32_t Renderer::block_count() const {
-    return ((film_.width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
-           ((film_.height() + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
-}
+uint32_t Renderer::block_count() const { return count_blocks({film_.width(), film_.height()}); }
 
 double Renderer::samples() const {
     return finished_samples_ +
@@ -99,17 +108,18 @@ void Renderer::resume(const FilmImage& image) {
 }
 
 void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks) const {
-    const uint32_t groups_per_block = std::max(enough_groups / blocks, 1u);
-    const bool is_shared = groups_per_block > 1;
-    const uint32_t in_flight = is_shared ? groups_per_block * samples_per_group : UINT32_MAX;
+    if (!adder_) {
+        tracer_->record(commands, {next_block_, 1, 0, pass_samples_}, blocks);
+        return;
+    }
+    const uint32_t groups_per_block = enough_groups / blocks;
     for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
-        const uint32_t added = std::min(in_flight, pass_samples_ - samples);
+        const uint32_t added = std::min(groups_per_block * samples_per_group, pass_samples_ - samples);
         samples += added;
         const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples};
         tracer_->record(commands, dispatch, blocks);
-        if (!is_shared) continue;
         wait_for_writes(commands);
-        adder_.record(commands, &dispatch, blocks);
+        adder_->record(commands, &dispatch, blocks);
         wait_for_writes(commands);
     }
 }

@@ -1,5 +1,7 @@
 // Renders an estimator progressively, cut into dispatches of bounded time.
 #pragma once
+#include <optional>
+
 #include "film/film.h"
 #include "tracing/tracer.h"
 
@@ -49,10 +51,10 @@ class Renderer {
 
     const Device* device_;
     Buffer parameters_;
-    Buffer samples_;  // of shared pixels, rendered and not yet added to the film
+    std::optional<Buffer> samples_;  // of shared pixels, rendered and not yet added to the film
     Buffer ray_counters_;
     Film film_;
-    ComputeKernel adder_;
+    std::optional<ComputeKernel> adder_;  // where pixels are shared
     std::unique_ptr<Tracer> tracer_;
 
     double dispatch_seconds_ = 0.1;

@@ -31,8 +31,8 @@ std::set<std::filesystem::path> shader_files(const Estimator& estimator);
 class Tracer {
   public:
     virtual ~Tracer() = default;
-    // Brings `block_count` blocks of pixels up to the asked number of samples. Where several threads share a
-    // pixel, its samples are left to be added to the film by shaders/add_samples.comp.
+    // Brings `block_count` blocks of pixels up to the asked number of samples. With the estimator's define
+    // SHARED_PIXELS their samples are left to be added to the film by shaders/add_samples.comp.
     virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
                         uint32_t block_count) const = 0;
 };
@@ -43,8 +43,8 @@ class AccelerationStructure {
     virtual ~AccelerationStructure() = default;
     // What make_tracer() compiles for an estimator, the main program first.
     virtual std::vector<ShaderSource> shaders(const Estimator& estimator) const = 0;
-    // `bindings`: render parameters, film, ray counters and samples. Throws UserError if the estimator does
-    // not compile.
+    // `bindings`: render parameters, film, ray counters, and the samples of pixels that are shared. Throws
+    // UserError if the estimator does not compile.
     virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                                 std::span<const Binding> bindings) const = 0;
     virtual size_t bytes() const = 0;          // of device memory

@@ -54,6 +54,7 @@ std::unique_ptr<Build> make_build(const Device& device, const Chapter& chapter, 
         build->scene = before->scene;
     check_scene(chapter, *build->scene);
     build->job = make_job(chapter, *build->scene, estimator, build->options);
+    require_memory(device, Renderer::memory_needs(build->job.parameters.image_size));
 
     if (first <= BuildStage::gpu_scene) {
         const auto light_sampling =

@@ -21,10 +21,11 @@ class Poison(RenderTest):
             shutil.copytree(PROJECT / name, tree / name)
         shader = tree / "shaders" / "render_samples.glsl"
         text = shader.read_text(encoding="utf-8")
-        call = "vec3 radiance = path_trace(get_camera_ray(image_position), seed);"
+        call = "return path_trace(get_camera_ray(image_position), seed);"
         self.assertEqual(text.count(call), 1)
-        poisoned = f"""{call}
-        if (pixel_index == {self.pixel}u && sample_index == {self.sample}u) radiance.g = uintBitsToFloat(0x7fc00000u);"""
+        poisoned = f"""if (pixel_index == {self.pixel}u && sample_index == {self.sample}u)
+            return vec3(0.5, uintBitsToFloat(0x7fc00000u), 0.5);
+        {call}"""
         shader.write_text(text.replace(call, poisoned), encoding="utf-8")
         # Programs find the shaders above themselves.
         self.poisoned = tree / "bin" / CHAPTER.name

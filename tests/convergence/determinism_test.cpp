@@ -71,6 +71,22 @@ TEST(Submissions, OfManySamplesGiveTheSameImage) {
     }
 }
 
+// A renderer that was made for a large image has one thread for each pixel, also if it goes on with a small
+// one.
+TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
+    const GpuScene gpu_scene(test_device(), scene);
+    const auto acceleration_structure =
+        build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
+    RenderSettings large = settings();
+    large.width = large.height = 640;
+    Renderer renderer(test_device(), *acceleration_structure, settings().estimator,
+                      make_parameters(scene, large));
+    renderer.restart(make_parameters(scene, settings()));
+    while (renderer.advance(settings().samples)) {
+    }
+    EXPECT_TRUE(are_identical(renderer.film().read(), render(scene, settings())));
+}
+
 TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
     RenderSettings other_seed = settings(), later_samples = settings();
     other_seed.seed = 2;

@@ -62,7 +62,9 @@ TEST(Memory, OfFilmsIsWhatTheyAllocate) {
     EXPECT_NE(text.find(in_mebibytes(size_t{65535} * 65535 * sizeof(FilmPixel))), std::string::npos) << text;
 }
 
-TEST(Memory, OfRendersIsThatOfFilmAndSamples) {
+TEST(Memory, OfLargeRendersIsThatOfTheFilm) { EXPECT_EQ(Renderer::memory_needs({1024, 1024}).size(), 1u); }
+
+TEST(Memory, OfSmallRendersIsThatOfFilmAndSamples) {
     const auto needs = Renderer::memory_needs({48, 40});
     ASSERT_EQ(needs.size(), 2u);
     EXPECT_EQ(needs[0].bytes, Film::memory_need(48, 40).bytes);

@@ -89,7 +89,7 @@ void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
     const Footprint bare = footprint(bare_scene(), backend);
     const std::set<uint32_t> arrays{BINDING_POSITIONS, BINDING_TRIANGLES, BINDING_TRIANGLE_MATERIALS,
                                     BINDING_MATERIALS};
-    std::set<uint32_t> others{BINDING_RENDER_PARAMETERS, BINDING_FILM, BINDING_RAY_COUNTERS, BINDING_SAMPLES};
+    std::set<uint32_t> others{BINDING_RENDER_PARAMETERS, BINDING_FILM, BINDING_RAY_COUNTERS};
     if (backend == Backend::compute)
         others.insert({BINDING_BVH_NODES, BINDING_BVH_TRIANGLES});
     else
