@@ -15,9 +15,10 @@ in turns, in brackets the least and the most.
 GROWTH = """
 ## Growth
 
-How the cost follows the size of the task. The time of a path is relative to the first row, the median of five runs in turns, in
-brackets the least and the most; memory is all that the scene, its acceleration structure and the film take on the device. The
-exponent is the slope in log-log axes, by least squares over all rows.
+How the cost follows the size of the task. The time of a path is relative to the first row, the median of five runs in turns,
+in brackets the least and the most; memory is all that the scene, its acceleration structure and the film take on the device,
+without the bounded buffer of a small image's samples ([Threads and pixels](backends.md#threads-and-pixels)). The exponent is
+the slope in log-log axes, by least squares over all rows.
 """
 
 UNITS = ["bytes", "KiB", "MiB", "GiB"]

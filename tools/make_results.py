@@ -5,8 +5,8 @@ whether they are up to date.
 In a page, what stands between the lines <!-- table: NAME --> and <!-- end of table --> is replaced by that table.
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
-docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json` and
-`tools/learn_mistakes.py confusion`.
+docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
+cornell_box heart_light glass 3 5 6`, whose report.json belongs into docs/records/peers, and `tools/learn_mistakes.py confusion`.
 """
 
 import json
@@ -19,7 +19,9 @@ from statistics import median
 
 from confusion_table import HEADER as CHECK
 from confusion_table import confusion_table
-from cost_tables import FEATURES, GROWTH, feature_table, growth_tables
+from cost_tables import FEATURES, GROWTH, feature_table, growth_tables, seconds_text
+from peer_table import HEADER as PEERS
+from peer_table import peer_table
 from report_numbers import estimate, last_rows, mean_of, products, ratio
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -82,7 +84,7 @@ def kind_tables(record):
             case["case"],
             f"`{options}`",
             f"{mean_of(last, 'rays') / count:.3g}",
-            f"{1e6 * mean_of(last, 'device_seconds') / count:.3g}",
+            seconds_text(mean_of(last, "device_seconds") / count),
             f"{case['samples'] * mean_of(last, 'rel_mse'):.3g}",
             quotient(by_rays, base[0]) if rows else "1",
             quotient(by_time, base[1]) if rows else "1",
@@ -96,7 +98,7 @@ def markdown(header, alignment, rows):
     return "".join("| " + " | ".join(row) + " |\n" for row in [header, alignment, *rows])
 
 
-COLUMNS = ["rays a sample", "µs a sample", "error of one sample", "error × rays", "error × time"]
+COLUMNS = ["rays a sample", "time of a sample", "error of one sample", "error × rays", "error × time"]
 ALIGNMENT = ["---:", "---:", "---:", "---", "---"]
 
 
@@ -112,8 +114,7 @@ def chapter_tables(record):
 
 
 def page_table(name, record):
-    """What a page shows of one device: a kind of cases, or of kind "chapter" one and that before it. Empty if the record
-    has none of them."""
+    """What a page shows of one device: a kind of cases, or of kind "chapter" one and that before it."""
     kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
     if kind not in KINDS:
         sys.exit(f"there is no table '{name}': {', '.join(KINDS)}")
@@ -124,7 +125,7 @@ def page_table(name, record):
             if number and chosen:  # the first row is the one to compare with
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
             rows += [[f"`{scene.rstrip('_0123456789')}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]
-    return markdown(["scene", "", *COLUMNS], ["---", "---", *ALIGNMENT], rows) if rows else ""
+    return markdown(["scene", "", *COLUMNS], ["---", "---", *ALIGNMENT], rows)
 
 
 def expected_table(width=512, height=512, samples=64):
@@ -150,16 +151,14 @@ def expected_table(width=512, height=512, samples=64):
 
 
 def page_tables(name, page):
-    """The table of all devices, with what it says."""
+    """The table of the first device, with what it says."""
     if name == "expected":
         return expected_table()
     results = os.path.relpath(DOCS / "results.md", page.parent)
-    text = ""
-    for record in load_records("chapters"):
-        if table := page_table(name, record):
-            text += f"{record['environment']['device']}; below 1 means that it pays, see [results]({results}#chapters):\n\n"
-            text += table + "\n"
-    return text or "Not measured yet: `./lab report --record FILE.json` does it.\n\n"
+    first, *others = load_records("chapters")
+    names = ", ".join(record["environment"]["device"] for record in others)
+    return (f"{first['environment']['device']}; below 1 means that it pays. The same of {names}: [results]({results}#chapters).\n\n"
+            f"{page_table(name, first)}\n")
 
 
 def over_bare(rates):
@@ -202,7 +201,7 @@ def section(header, folder, table):
 
 def main():
     texts = {DOCS / "results.md": HEADER + section(CHAPTERS, "chapters", chapter_tables) +
-             section(BACKENDS, "backends", backend_table) +
+             section(BACKENDS, "backends", backend_table) + section(PEERS, "peers", peer_table) +
              section(FEATURES, "cost", feature_table) + section(GROWTH, "cost", growth_tables) +
              section(CHECK, "check", confusion_table)}
     for page in PAGES:

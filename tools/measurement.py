@@ -253,7 +253,7 @@ class Measurement:
             if not report["rows"]:  # not a single sample was done by then
                 report = run_case(case, settings, ["--samples", 1, "--seed", 0])
         except Refused as refusal:
-            case["refused"] = str(refusal)
+            case["refused"] = str(refusal).replace(f"{ROOT}/", "")
             return
         row = report["rows"][-1]
         samples = max(1, round(row["samples"] * self.run_seconds() / row["seconds"]))

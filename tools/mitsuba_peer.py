@@ -2,7 +2,7 @@
 """Renders one of our scenes with Mitsuba 3 and reports error against samples and seconds as a chapter does.
 
 It has the command line of a chapter as far as `./lab report --peer mitsuba` needs it. The seconds of a row are those of
-Mitsuba's render calls alone; a first call with one sample, which is discarded, compiles its kernels.
+Mitsuba's render calls alone; first calls with a few samples, which are discarded, compile its kernels.
 """
 import argparse
 import itertools
@@ -26,7 +26,8 @@ class Render:
     def __init__(self, scene, pixels, seed):
         self.scene, self.pixels, self.seed = scene, pixels, seed
         self.calls = self.samples = self.seconds = self.sum = 0
-        self.call(1)
+        for samples in (1, 3):  # powers of two have a kernel of their own
+            self.call(samples)
 
     def call(self, samples):
         """One render call: its image and seconds."""
