@@ -47,12 +47,12 @@ const std::vector<ReferenceCase> reference_cases{
     {"instances_4", 3, 2, 0.003},
     {"glass_8", 6, 15, 0.005, 0.9, Run::always, Tail::heavy},
     {"textured_4", 1, 16, 0.01, 0.9, Run::with_all},
-    {"torus_5", 3, 52, 0.003, 0.5, Run::with_all},
-    {"torus_5", 4, 32, 0.003, 0.5, Run::with_all},
-    {"torus_5", 5, 47, 0.003, 0.5, Run::with_all},
-    {"torus_5", 6, 47, 0.003, 0.5, Run::with_all},
-    {"heart_light_4", 3, 22, 0.003, 0.9, Run::with_all},
-    {"heart_light_4", 4, 12, 0.003, 0.9, Run::with_all},
+    {"torus_5", 3, 26, 0.003, 0.5, Run::with_all},
+    {"torus_5", 4, 22, 0.003, 0.5, Run::with_all},
+    {"torus_5", 5, 24, 0.003, 0.5, Run::with_all},
+    {"torus_5", 6, 24, 0.003, 0.5, Run::with_all},
+    {"heart_light_4", 3, 12, 0.003, 0.9, Run::with_all},
+    {"heart_light_4", 4, 7, 0.003, 0.9, Run::with_all},
     {"textured_4", 3, 34, 0.003, 0.9, Run::with_all},
     {"textured_4", 4, 26, 0.003, 0.9, Run::with_all},
     {"textured_4", 5, 30, 0.003, 0.9, Run::with_all},
@@ -63,7 +63,7 @@ const std::vector<ReferenceCase> reference_cases{
     {"instances_4", 4, 4, 0.003, 0.9, Run::with_all},
     {"instances_4", 5, 4, 0.003, 0.9, Run::with_all},
     {"instances_4", 6, 4, 0.003, 0.9, Run::with_all},
-    {"glass_8", 6, 52, 0.003, 0.9, Run::with_all, Tail::heavy},
+    {"glass_8", 6, 26, 0.003, 0.9, Run::with_all, Tail::heavy},
 };
 
 // The part of the estimates that a batch has in a rectangle of pixels, and the same of the reference.
