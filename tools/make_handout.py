@@ -26,8 +26,8 @@ FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile"
 # What only teachers need: it names solutions or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check/confusion.json",
             "tools/exercises.json", "tools/make_handout.py", "tools/learn_mistakes.py", "tools/planting.py",
-            "tools/confusion_table.py", "tools/make_benchmark.py", "tools/make_figures.py", "tools/figure_plots.py",
-            "tools/make_numerics.py", "tools/make_results.py"]
+            "tools/confusion_table.py", "tools/cost_tables.py", "tools/peer_table.py", "tools/make_benchmark.py",
+            "tools/make_figures.py", "tools/figure_plots.py", "tools/make_numerics.py", "tools/make_results.py"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 FEW = ["--runs", "8", "--samples", "4"]  # enough to tell a TODO from its solution
 
