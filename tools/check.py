@@ -45,15 +45,22 @@ def parse():
 def check(options):
     """The result of a check; UserError where there is none."""
     if options.chapter not in SCENES or options.chapter not in programs():
-        raise UserError(f"there is no chapter {options.chapter} to be checked; ./lab run lists them")
+        raise UserError(f"there is no chapter {options.chapter} to be checked: ./lab check N FILE grades a file as chapter N's")
     file = options.file or ROOT / "chapters" / programs()[options.chapter] / "path_trace.glsl"
     if not file.is_file():
         raise UserError(f"{file}: no such file")
     result = judge(options.chapter, file, vars(options))
-    result["likely_mistake"] = likely_mistake(result)
+    result["unfinished_line"] = find_todo(file) if result["verdict"] != "correct" else None
+    result["likely_mistake"] = likely_mistake(result) if result["unfinished_line"] is None else None
     if result["verdict"] == "biased":
         result["picture"] = str(draw(result))
     return result
+
+
+def find_todo(file):
+    """Number of the first line that is still to be written, or None."""
+    lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    return next((number for number, line in enumerate(lines, 1) if "TODO" in line), None)
 
 
 def draw(result):
@@ -105,6 +112,8 @@ def explain(result):
         print(f"{scene['scene']:14} {scene['verdict']}: {', '.join(words)}")
     if result["picture"]:
         print(f"{'where':14} {result['picture']}")
+    if result["unfinished_line"]:
+        print(f"{'unfinished':14} line {result['unfinished_line']} says TODO")
     if result["likely_mistake"]:
         print(f"{'likely cause':14} {result['likely_mistake']['name']}: {result['likely_mistake']['hint']}")
         print(f"{'read again':14} {result['likely_mistake']['slide']} (slides or blog)")

@@ -22,10 +22,10 @@ ROOT = Path(__file__).resolve().parents[1]
 BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build/bin"))
 CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9]*"))}
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
-FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "README.md", "lab"]
+FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it names solutions or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check/confusion.json",
-            "tools/exercises.json", "tools/make_handout.py", "tools/learn_mistakes.py", "tools/planting.py",
+            "tools/exercises.json", "tools/make_handout.py", "tools/handout_readme.md", "tools/false_alarms.py", "tools/fresh_machine", "tools/learn_mistakes.py", "tools/planting.py",
             "tools/confusion_table.py", "tools/cost_tables.py", "tools/peer_table.py", "tools/make_benchmark.py",
             "tools/make_figures.py", "tools/figure_plots.py", "tools/make_numerics.py", "tools/make_results.py"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
@@ -77,11 +77,17 @@ def write_handout(number, folder):
     # Splitting at every hit repeats the estimator of its chapter.
     every_hit = folder / "chapters" / CHAPTERS[number] / "path_trace_every_hit.glsl"
     every_hit.unlink(missing_ok=True)
+    (folder / "docs/records/check").rmdir()
     for exercise in exercises(number):
         shader = folder / exercise["file"]
         text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
         shader.write_text(text, encoding="utf-8")
         hide(solution, folder)
+    readme = (ROOT / "tools/handout_readme.md").read_text(encoding="utf-8")
+    for name, value in (("NUMBER", str(number)), ("FOLDER", CHAPTERS[number]), ("SHADER", exercise["file"])):
+        readme = readme.replace(name, value)
+    (folder / "README.md").write_text(readme, encoding="utf-8")
+    leave_out_tests(folder)
     unlink_what_is_missing(folder)
 
 
@@ -91,6 +97,15 @@ def hide(solution, folder):
         text = page.read_text(encoding="utf-8")
         page.write_text(re.sub(r"\[`([^`]+)`\](?=\([^)]*\.glsl\))", lambda quote: "[TODO]" if quote[1] in solution and
                                not re.fullmatch(r"\w+(\(\))?", quote[1]) else quote[0], text), encoding="utf-8")
+
+
+def leave_out_tests(folder):
+    """An exercise is done when the check says so."""
+    for page in folder.glob("chapters/*/README.md"):
+        text = page.read_text(encoding="utf-8")
+        text = re.sub(r"Done\s+when all tests named [^,]* pass,\s+and\s+(?=`\./lab check)", "Done when ", text)
+        text = re.sub(r"\s+Tests are run by `\./lab test -R` and\s+their\s+name\.", "", text)
+        page.write_text(text, encoding="utf-8")
 
 
 def unlink_what_is_missing(folder):

@@ -3,7 +3,7 @@
 #ifdef LIGHT_POINTS
 #define FEATURE_LIGHT_SAMPLING
 #endif
-#include "../tests/shaders/estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 
 layout(scalar, binding = 0) writeonly buffer Results { float results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {

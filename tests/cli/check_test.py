@@ -50,6 +50,14 @@ class CheckTest(ProgramTest):
         self.assertEqual(result["likely_mistake"]["name"], "wrong-measure")
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
 
+    def test_what_is_still_to_be_written_is_no_mistake(self):
+        text = SHADER.read_text(encoding="utf-8")
+        geometry = "float geometry = "
+        line = text[:text.index(geometry)].count("\n") + 1
+        file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))
+        code, result = self.check_few(file)
+        self.assertEqual((code, result["unfinished_line"], result["likely_mistake"]), (1, line, None))
+
     def test_more_noise_and_rays_than_needed_are_reported(self):
         # A path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
         text = SHADER.read_text(encoding="utf-8").replace("vec3 path_trace(", "vec3 trace_path(") + (

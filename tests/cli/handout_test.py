@@ -44,8 +44,28 @@ class HandoutTest(ProgramTest):
         self.assertGreater(len(links), 50)
         self.assertEqual([(page, link) for page, link in links if not (page.parent / link).exists()], [])
 
+    def test_shaders_include_nothing_that_stays_out(self):
+        tree = self.folder / "handout"
+        self.assertEqual(self.handout(3, tree).returncode, 0)
+        shaders = [file for folder in ("shaders", "tools", "chapters") for file in (tree / folder).rglob("*")
+                   if file.suffix in (".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".h")]
+        includes = [(file, name) for file in shaders
+                    for name in re.findall(r'^#include "(.*)"', file.read_text(encoding="utf-8"), re.MULTILINE)]
+        self.assertGreater(len(includes), 50)
+        given = {"path_trace.glsl", "observed.glsl"}  # by the programs
+        self.assertEqual([(file, name) for file, name in includes if name not in given and
+                          not any((folder / name).exists() for folder in (file.parent, tree / "shaders", tree))], [])
+
+    def test_pages_speak_of_what_is_there(self):
+        self.assertEqual(self.handout(6, "lab").returncode, 0)
+        for page in [self.folder / "lab/README.md", *self.folder.glob("lab/chapters/*/README.md")]:
+            self.assertNotRegex(page.read_text(encoding="utf-8"), r"lab test|all\s+tests\s+named|NUMBER|FOLDER|SHADER", page)
+
     def test_commands_that_need_the_tests_say_so(self):
         self.assertEqual(self.handout(1, "lab").returncode, 0)
+        help_text = subprocess.run(["./lab"], cwd=self.folder / "lab", capture_output=True, text=True, timeout=20).stdout
+        self.assertIn("  check N", help_text)
+        self.assertNotIn("  handout", help_text)
         result = subprocess.run(["./lab", "test"], cwd=self.folder / "lab", capture_output=True, text=True, timeout=20)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"\Alab: this student's tree has no 'test'[^\n]*\n\Z")

@@ -1,6 +1,6 @@
 #version 460
 // Runs an estimator at a surface: which direction it samples, and with which weight.
-#include "estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 #include "lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 #include "path_trace.glsl"

@@ -1,7 +1,7 @@
 #version 460
 // get_pi_brdf() and is_above_surface() for each pair of directions at a surface.
 #define FEATURE_SPECULAR
-#include "estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 
 struct Input {
     vec3 normal;

@@ -1,7 +1,7 @@
 #version 460
 // Runs an estimator at a surface that sees a triangular light, with nothing between them and no other light.
 #define FEATURE_LIGHT_SAMPLING
-#include "estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 
 struct Result {
     vec3 origin;     // of the shadow ray

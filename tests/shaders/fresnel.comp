@@ -1,6 +1,6 @@
 #version 460
 // get_fresnel_reflectance() and sample_dielectric() of chapter 6 for each surface and direction.
-#include "estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 #include "lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 #include "path_trace.glsl"

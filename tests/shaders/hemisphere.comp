@@ -1,6 +1,6 @@
 #version 460
 // sample_hemisphere() of an estimator for each pair of numbers and, of chapter 2, the density of each direction.
-#include "estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 #include "lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 #include "path_trace.glsl"

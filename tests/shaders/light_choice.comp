@@ -1,7 +1,7 @@
 #version 460
 // choose_light_triangle() for given random states, and for those of different samples.
 #define FEATURE_LIGHT_SAMPLING
-#include "estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 
 layout(scalar, binding = 0) writeonly buffer Results { uint results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {

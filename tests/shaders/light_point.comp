@@ -1,7 +1,7 @@
 #version 460
 // The barycentric coordinates of the point of a light that an estimator chooses, for each state of the random numbers.
 #define FEATURE_LIGHT_SAMPLING
-#include "estimator_stub.glsl"
+#include "inside/estimator_stub.glsl"
 
 layout(scalar, binding = 0) writeonly buffer Results { vec2 results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {
