@@ -25,9 +25,10 @@ FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it names solutions or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check/confusion.json",
-            "tools/exercises.json", "tools/make_handout.py", "tools/handout_readme.md", "tools/false_alarms.py", "tools/fresh_machine", "tools/learn_mistakes.py", "tools/planting.py",
-            "tools/confusion_table.py", "tools/cost_tables.py", "tools/peer_table.py", "tools/make_benchmark.py",
-            "tools/make_figures.py", "tools/figure_plots.py", "tools/make_numerics.py", "tools/make_results.py"]
+            "tools/exercises.json", "tools/make_handout.py", "tools/handout_readme.md", "tools/false_alarms.py",
+            "tools/fresh_machine", "tools/learn_mistakes.py", "tools/planting.py", "tools/confusion_table.py",
+            "tools/cost_tables.py", "tools/peer_table.py", "tools/make_benchmark.py", "tools/make_figures.py",
+            "tools/figure_plots.py", "tools/make_numerics.py", "tools/make_results.py"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 FEW = ["--runs", "8", "--samples", "4"]  # enough to tell a TODO from its solution
 
@@ -84,7 +85,7 @@ def write_handout(number, folder):
         shader.write_text(text, encoding="utf-8")
         hide(solution, folder)
     readme = (ROOT / "tools/handout_readme.md").read_text(encoding="utf-8")
-    for name, value in (("NUMBER", str(number)), ("FOLDER", CHAPTERS[number]), ("SHADER", exercise["file"])):
+    for name, value in (("NUMBER", str(number)), ("FOLDER", CHAPTERS[number]), ("SHADER", exercises(number)[0]["file"])):
         readme = readme.replace(name, value)
     (folder / "README.md").write_text(readme, encoding="utf-8")
     leave_out_tests(folder)

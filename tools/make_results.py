@@ -22,7 +22,7 @@ from confusion_table import confusion_table
 from cost_tables import FEATURES, GROWTH, feature_table, growth_tables, seconds_text
 from peer_table import HEADER as PEERS
 from peer_table import peer_table
-from report_numbers import estimate, last_rows, mean_of, products, ratio
+from report_numbers import estimate, last_rows, mean_of, products, ratio, with_interval
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -55,8 +55,7 @@ quotient the range of the runs is in brackets. What limits each backend is in [b
 
 def quotient(now, base):
     """The quotient of two estimates as text, with its confidence interval."""
-    value, low, high = ratio(now, base)
-    return f"{value:.2g} ({low:.2g} – {high:.2g})"
+    return with_interval(ratio(now, base))
 
 
 KINDS = ("chapter", "splitting factor", "roulette start", "light sampling", "splitting at every hit")

@@ -1,5 +1,6 @@
 """What docs/results.md shows of Mitsuba and us: the report.json of ./lab report --peer mitsuba."""
-from report_numbers import TARGET_ERROR
+from cost_tables import table
+from report_numbers import TARGET_ERROR, short, with_interval
 
 HEADER = f"""
 ## Against Mitsuba
@@ -16,30 +17,21 @@ rays at a time with Embree. On a GPU our threads wait for the longest path of th
 """
 
 
-def short(value):
-    return f"{value:.2g}" if value < 99.5 else f"{value:.0f}"
-
-
-def ranged(estimate):
-    value, low, high = estimate
-    return short(value) + ("" if low is None else f" ({short(low)} – {short(high)})")
-
-
 def peer_table(report):
     """The Markdown table of one device."""
     scenes = [scene for scene in report["scenes"] if scene["gains"]]
     peers = list(dict.fromkeys(gain["peer"] for scene in scenes for gain in scene["gains"]))
     head = ["scene", "", "million paths/s", "error of one sample", *(f"times faster than {peer}" for peer in peers),
             f"seconds to {100 * TARGET_ERROR:.0f} % error", "of which start-up"]
-    lines = [head, ["---", "---", "---:", "---:", *("---:" for _ in peers), "---:", "---:"]]
+    rows = []
     for scene in scenes:
-        gains = {(gain["case"], gain["peer"]): ranged(gain["gain"]) for gain in scene["gains"]}
+        gains = {(gain["case"], gain["peer"]): with_interval(gain["gain"]) for gain in scene["gains"]}
         for number, case in enumerate(scene["cases"]):
-            lines.append([f"`{scene['scene'].rstrip('_0123456789')}`" if number == 0 else "", case["case"],
-                          f"{case['paths_per_second'] / 1e6:.3g}", f"{short(case['error'][0] * case['samples'])}",
-                          *(gains.get((case["case"], peer), "") for peer in peers),
-                          ranged(case["seconds_to_target"]), ranged(case["start_up_seconds"])])
+            rows.append([f"`{scene['scene'].rstrip('_0123456789')}`" if number == 0 else "", case["case"],
+                         f"{case['paths_per_second'] / 1e6:.3g}", short(case["error"][0] * case["samples"], 2),
+                         *(gains.get((case["case"], peer), "") for peer in peers),
+                         with_interval(case["seconds_to_target"]), with_interval(case["start_up_seconds"])])
     environment, first = report["environment"], scenes[0]["cases"][0]
     size = f"{scenes[0]['width']} x {scenes[0]['height']}"
     return (f"\n### {environment['device']}, `{first['backend']}`\n\n{environment['peer']}, {size} pixels.\n\n"
-            + "".join("| " + " | ".join(line) + " |\n" for line in lines))
+            + table(head, rows, left=2))

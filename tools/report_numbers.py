@@ -13,6 +13,23 @@ SLOPE_ROWS = 6  # the last ones, since the first are ruled by fixed costs
 ROUNDING = 1e-5  # of a mean, which other programs sum in another order
 
 
+# ---------------------------------------------------------------------------------------------- numbers as text
+def short(value, digits=3):
+    """A number with so many digits, without an exponent where that is readable."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0 or isinstance(value, int) or not 1e-4 <= abs(value) < 1e7:
+        return f"{value:,}" if isinstance(value, int) else f"{value:.{digits}g}"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:,.{decimals}f}"
+
+
+def with_interval(values):
+    """[value, low, high]; low is None where a single run tells no interval."""
+    value, low, high = values
+    return short(value, 2) + ("" if low is None else f" ({short(low, 2)} – {short(high, 2)})")
+
+
 # ---------------------------------------------------------------------------------------------- Student's t
 def incomplete_beta(a, b, x):
     """Regularised, by its continued fraction (Lentz's algorithm)."""

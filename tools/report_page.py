@@ -6,7 +6,7 @@ from html import escape
 
 from measurement import ROOT
 from reference_image import read_reference, read_rgb
-from report_numbers import CONFIDENCE, FALSE_ALARMS, TARGET_ERROR, summarize
+from report_numbers import CONFIDENCE, FALSE_ALARMS, TARGET_ERROR, short, summarize
 from report_plots import DIFFERENCE_FACTOR, difference_picture, picture, plot_errors, style
 
 STYLE = """
@@ -32,16 +32,6 @@ hold {100 * CONFIDENCE:.0f} % of the time, from the spread of the runs. The <b>b
 with the reference; a report without bias gives a false alarm in {100 * FALSE_ALARMS:.0f} % of the cases, and what it says would have been
 found would have been so with 95 % probability.</p>
 """
-
-
-def short(value, digits=3):
-    """A number with so many digits, without an exponent where that is readable."""
-    if value is None or not math.isfinite(value):
-        return "–"
-    if value == 0 or isinstance(value, int) or not 1e-4 <= abs(value) < 1e7:
-        return f"{value:,}" if isinstance(value, int) else f"{value:.{digits}g}"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:,.{decimals}f}"
 
 
 def percent_of_root(error):

@@ -4,6 +4,11 @@
 
 namespace lab {
 
+uint32_t count_blocks(uvec2 image_size) {
+    return ((image_size.x + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
+           ((image_size.y + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
+}
+
 uint32_t FilmImage::min_samples() const {
     const auto fewest = std::min_element(
         pixels.begin(), pixels.end(),

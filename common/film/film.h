@@ -25,6 +25,9 @@ struct FilmImage {
 // The samples of `whole` that came after those of `first`, an earlier state of the same film.
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole);
 
+// Blocks of pixels that cover an image, as in shaders/blocks.glsl.
+uint32_t count_blocks(uvec2 image_size);
+
 class Film {
   public:
     // What a film of this size allocates.

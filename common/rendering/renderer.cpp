@@ -9,17 +9,12 @@ namespace lab {
 namespace {
 
 // Workgroups that keep a large device busy, which works on 4000 at a time. Of images with fewer blocks of
-// pixels several share a block. That is compiled in, since the mere
-// possibility makes large images slower (docs/backends.md).
+// pixels several share a block. That is compiled in: the mere possibility makes large images slower
+// (docs/backends.md).
 constexpr uint32_t enough_groups = 8192;
 // Samples of pixels that are shared wait to be added to the film: at most so many of each group's pixels. A
 // thread that renders several need not wait for the others after each.
 constexpr uint32_t samples_per_group = 12;
-
-uint32_t count_blocks(uvec2 image_size) {
-    return ((image_size.x + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
-           ((image_size.y + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
-}
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
 
@@ -72,18 +67,18 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y) {
-    Estimator renderer = estimator;
+    Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
     if (are_pixels_shared(parameters.image_size)) {
         samples_.emplace(device, memory_need_of_samples().bytes, memory_need_of_samples().usage);
-        renderer.defines.emplace_back("SHARED_PIXELS");
+        configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
         adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "add_samples.comp"},
                        bindings, sizeof(DispatchParameters));
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
-    tracer_ = acceleration_structure.make_tracer(renderer, bindings);
+    tracer_ = acceleration_structure.make_tracer(configured, bindings);
 }
 
 uint32_t Renderer::block_count() const { return count_blocks({film_.width(), film_.height()}); }

@@ -22,8 +22,7 @@ DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr
 
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform,
                          float exposure) const {
-    const uint32_t blocks = ((picture_->width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
-                            ((picture_->height() + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
+    const uint32_t blocks = count_blocks({picture_->width(), picture_->height()});
     const bool is_radiance = transform == DisplayTransform::exposure;
     DisplayParameters parameters{.film_size = {film_->width(), film_->height()},
                                  .image_size = {picture_->width(), picture_->height()},

@@ -2,7 +2,6 @@
 tiles of 8 x 8 pixels are compared by z = difference / standard error over the seeds; |z| above 4 is rare by chance: see
 whether it is there with another --first-seed, too."""
 import json
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,10 +14,11 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(ROOT / "tools"))
 from command_line import Parser, at_least  # noqa: E402
+from grading import make_tree, programs  # noqa: E402
+from planting import own_shader  # noqa: E402
 from progress import show_progress  # noqa: E402
 from reference_image import read_rgb  # noqa: E402
 
-PROGRAMS = {int(path.name[:2]): path.name for path in (ROOT / "chapters").glob("0[1-6]_*")}
 SIZE, TILE, SAMPLES = 64, 8, {1: 256, 2: 256, 3: 96, 4: 24, 5: 32, 6: 32}  # that a chapter renders in less than a second
 LIMITS = {"z": 4, "mean": 1, "noise": 1.4, "rays": 1.4}
 # First and last chapter, scene, options. The scenes together have all that an estimator must handle.
@@ -40,32 +40,21 @@ SETTINGS = [
 ]
 
 
-class Workplace:
-    """A copy of the programs beside the shaders, where other estimators can take the place of a chapter's own."""
-
-    def __init__(self, folder, programs):
-        self.folder = folder
-        for name in ("shaders", "assets", "chapters"):
-            shutil.copytree(ROOT / name, self.folder / name)
-        (self.folder / "bin").mkdir()
-        for name in PROGRAMS.values():
-            shutil.copy2(Path(programs) / name, self.folder / "bin")
-
-    def render(self, chapter, shader, scene, options, seeds):
-        """Images [seed, row, column, channel] and rays a sample."""
-        picture, report = self.folder / "a.exr", self.folder / "a.json"
-        (self.folder / "chapters" / PROGRAMS[chapter] / "path_trace.glsl").write_text(shader, encoding="utf-8")
-        images, rays = [], 0
+def render(chapter, shader, scene, options, seeds):
+    """Images [seed, row, column, channel] and rays a sample, by a chapter's program with this file as its shader."""
+    images, rays = [], 0
+    with tempfile.TemporaryDirectory() as folder:
+        program, _ = make_tree(programs()[chapter], shader, Path(folder))
+        picture, report = Path(folder) / "a.exr", Path(folder) / "a.json"
         for seed in seeds:
-            command = [self.folder / "bin" / PROGRAMS[chapter], scene, *options.split(), "--width", SIZE, "--height", SIZE,
-                       "--samples", SAMPLES[chapter], "--seed", seed, "--output", picture, "--report", report,
-                       "--headless", "--quiet", "--backend", "compute"]
+            command = [program, scene, *options.split(), "--width", SIZE, "--height", SIZE, "--samples", SAMPLES[chapter],
+                       "--seed", seed, "--output", picture, "--report", report, "--headless", "--quiet", "--backend", "compute"]
             ended = subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True, text=True)
             if ended.returncode != 0:
-                sys.exit(f"error: {PROGRAMS[chapter]} {scene}: {ended.stderr.strip()}")
+                sys.exit(f"error: {shader} {scene}: {ended.stderr.strip()}")
             images.append(read_rgb(picture))
             rays += json.loads(report.read_text(encoding="utf-8"))["rows"][-1]["rays"]
-        return np.array(images), rays / (len(images) * SIZE**2 * SAMPLES[chapter])
+    return np.array(images), rays / (len(images) * SIZE**2 * SAMPLES[chapter])
 
 
 def tile_means(image):
@@ -90,7 +79,6 @@ def compare(images, rays, own_images, own_rays):
 def main():
     parser = Parser(description=__doc__)
     parser.add_argument("files", nargs="*", metavar="FILE", help="of variants.json; without any, all of them")
-    parser.add_argument("--programs", default=ROOT / "build/bin", help="the chapters' programs, default: build/bin")
     parser.add_argument("--first-seed", type=at_least(1, int), default=1, help="default: 1")
     parser.add_argument("--seeds", type=at_least(2, int), default=8, help="of each of both, default: 8")
     options = parser.parse_args()
@@ -98,21 +86,17 @@ def main():
     variants = [variant for variant in json.loads((HERE / "variants.json").read_text(encoding="utf-8"))
                 if not options.files or variant["file"] in options.files]
     started, own, is_near = time.monotonic(), {}, True
-    with tempfile.TemporaryDirectory() as folder:
-        work = Workplace(Path(folder), options.programs)
-        for done, variant in enumerate(variants, 1):
-            chapter, shader = variant["chapter"], (HERE / variant["file"]).read_text(encoding="utf-8")
-            results = {}
-            for _, _, *setting in (s for s in SETTINGS if s[0] <= chapter <= s[1]):
-                if (chapter, *setting) not in own:
-                    shipped = (ROOT / "chapters" / PROGRAMS[chapter] / "path_trace.glsl").read_text(encoding="utf-8")
-                    own[chapter, *setting] = work.render(chapter, shipped, *setting, range(first + count, first + 2 * count))
-                rendered = work.render(chapter, shader, *setting, range(first, first + count))
-                results[" ".join([Path(setting[0]).stem, setting[1]])] = compare(*rendered, *own[chapter, *setting])
-            worst = {kind: max(results, key=lambda setting: abs(results[setting][kind])) for kind in LIMITS}
-            is_near &= all(abs(results[setting][kind]) < LIMITS[kind] for kind, setting in worst.items())
-            print(variant["file"], *(f"{kind} {results[at][kind]:.3f} ({at})" for kind, at in worst.items()), flush=True)
-            show_progress(variant["file"], done, len(variants), started)
+    for done, variant in enumerate(variants, 1):
+        chapter, results = variant["chapter"], {}
+        for _, _, *setting in (s for s in SETTINGS if s[0] <= chapter <= s[1]):
+            if (chapter, *setting) not in own:
+                own[chapter, *setting] = render(chapter, own_shader(chapter), *setting, range(first + count, first + 2 * count))
+            rendered = render(chapter, HERE / variant["file"], *setting, range(first, first + count))
+            results[" ".join([Path(setting[0]).stem, setting[1]])] = compare(*rendered, *own[chapter, *setting])
+        worst = {kind: max(results, key=lambda setting: abs(results[setting][kind])) for kind in LIMITS}
+        is_near &= all(abs(results[setting][kind]) < LIMITS[kind] for kind, setting in worst.items())
+        print(variant["file"], *(f"{kind} {results[at][kind]:.3f} ({at})" for kind, at in worst.items()), flush=True)
+        show_progress(variant["file"], done, len(variants), started)
     sys.exit(0 if is_near else "error: not every estimator is as near to its chapter's own as it must be")
 
 
