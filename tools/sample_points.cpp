@@ -5,6 +5,7 @@
 #include <map>
 
 #include "error.h"
+#include "files/project_folder.h"
 #include "gpu/compute_kernel.h"
 #include "rendering/renderer.h"
 #include "shaders/interface.h"

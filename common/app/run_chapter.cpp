@@ -7,7 +7,7 @@
 
 #include "app/headless.h"
 #include "error.h"
-#include "image/file.h"
+#include "files/file.h"
 #include "rendering/backend_choice.h"
 #include "rendering/settings.h"
 #include "viewer/viewer.h"

@@ -1,6 +1,6 @@
 // From radiance to what a screen shows.
 #pragma once
-#include "film/film.h"
+#include "film/film_image.h"
 
 namespace lab {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "film/film.h"
+#include "film/film_image.h"
 
 namespace lab {
 

@@ -5,7 +5,8 @@
 #include <set>
 
 #include "error.h"
-#include "gpu/cache.h"
+#include "files/cache.h"
+#include "files/hash.h"
 
 namespace lab {
 namespace {

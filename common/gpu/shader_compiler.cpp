@@ -11,7 +11,9 @@
 #include <sstream>
 
 #include "error.h"
-#include "gpu/cache.h"
+#include "files/cache.h"
+#include "files/hash.h"
+#include "files/project_folder.h"
 
 namespace lab {
 namespace {
@@ -114,20 +116,6 @@ std::vector<uint32_t> compile(const ShaderSource& source, const std::string& tex
 }
 
 }  // namespace
-
-fs::path project_folder() {
-    static const fs::path found = [] {
-        std::error_code ignored;
-        const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-        for (fs::path folder = program.parent_path(); folder != folder.root_path();
-             folder = folder.parent_path())
-            if (fs::exists(folder / "shaders" / "interface.h")) return folder;
-        return fs::path();
-    }();
-    if (found.empty())
-        throw UserError("cannot find the folder shaders/ above the program: keep build/ in the project");
-    return found;
-}
 
 std::vector<fs::path> shader_files(const ShaderSource& source) {
     Includer includer(source);

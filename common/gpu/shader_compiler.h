@@ -22,10 +22,6 @@ struct ShaderSource {
     std::function<std::string(const std::string&)> edit = {};
 };
 
-// Folder of the project, which holds shaders/ and assets/: found upwards from the running program.
-// Throws UserError if there is none.
-std::filesystem::path project_folder();
-
 // The shader's file and all that it includes. Throws UserError if one is missing.
 std::vector<std::filesystem::path> shader_files(const ShaderSource& source);
 

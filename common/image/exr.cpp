@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "error.h"
-#include "image/file.h"
+#include "files/file.h"
 #include "image/image.h"
 #include "image/image_checks.h"
 

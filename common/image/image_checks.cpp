@@ -1,7 +1,7 @@
 #include "image/image_checks.h"
 
 #include "error.h"
-#include "image/file.h"
+#include "files/file.h"
 #include "image/image.h"
 
 namespace lab {

@@ -2,7 +2,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "image/file.h"
+#include "files/file.h"
 #include "image/image.h"
 #include "image/image_checks.h"
 

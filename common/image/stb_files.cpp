@@ -6,7 +6,7 @@
 #include <cstring>
 #include <memory>
 
-#include "image/file.h"
+#include "files/file.h"
 #include "image/image.h"
 #include "image/image_checks.h"
 #include "image/stb_memory.h"

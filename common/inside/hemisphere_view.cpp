@@ -1,5 +1,6 @@
 #include "inside/hemisphere_view.h"
 
+#include "files/project_folder.h"
 #include "shaders/inside/shading_point.h"
 
 namespace lab {

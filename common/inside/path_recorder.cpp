@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 
+#include "files/project_folder.h"
 #include "inside/recording_calls.h"
 #include "shaders/inside/recorded_path.h"
 

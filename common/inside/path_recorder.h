@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "film/film.h"
+#include "rendering/film.h"
 #include "tracing/tracer.h"
 
 namespace lab {

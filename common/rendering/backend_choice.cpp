@@ -6,7 +6,8 @@
 #include <optional>
 
 #include "error.h"
-#include "gpu/cache.h"
+#include "files/cache.h"
+#include "files/hash.h"
 #include "tracing/gpu_bvh.h"
 
 namespace lab {

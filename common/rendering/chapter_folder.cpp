@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "gpu/shader_compiler.h"
-#include "image/file.h"
+#include "files/file.h"
+#include "files/project_folder.h"
 
 namespace lab {
 

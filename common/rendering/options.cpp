@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "error.h"
-#include "gpu/shader_compiler.h"
+#include "files/project_folder.h"
 
 namespace lab {
 namespace {

@@ -1,7 +1,7 @@
 #include "rendering/outputs.h"
 
 #include "error.h"
-#include "image/file.h"
+#include "files/file.h"
 
 namespace lab {
 

@@ -1,8 +1,8 @@
 #include "rendering/render_job.h"
 
 #include "error.h"
-#include "gpu/cache.h"
-#include "image/file.h"
+#include "files/file.h"
+#include "files/hash.h"
 #include "rendering/settings.h"
 
 namespace lab {

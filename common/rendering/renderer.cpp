@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "clock.h"
+#include "files/project_folder.h"
 
 namespace lab {
 namespace {

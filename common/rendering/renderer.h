@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "film/film.h"
+#include "rendering/film.h"
 #include "tracing/tracer.h"
 
 namespace lab {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "image/file.h"
+#include "files/file.h"
 
 namespace lab {
 namespace {

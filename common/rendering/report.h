@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "film/error_metrics.h"
 #include "film/film_file.h"
+#include "statistics/error_metrics.h"
 
 namespace lab {
 

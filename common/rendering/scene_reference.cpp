@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "error.h"
-#include "gpu/cache.h"
-#include "gpu/shader_compiler.h"
+#include "files/hash.h"
+#include "files/project_folder.h"
 #include "scene/features.h"
 
 namespace lab {

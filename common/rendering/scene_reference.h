@@ -2,8 +2,8 @@
 #pragma once
 #include <variant>
 
-#include "film/error_metrics.h"
 #include "rendering/renderer.h"
+#include "statistics/error_metrics.h"
 
 namespace lab {
 

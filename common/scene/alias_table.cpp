@@ -6,7 +6,7 @@
 namespace lab {
 namespace {
 
-constexpr double words = 4294967296.0;  // 2^32
+constexpr double word_count = 4294967296.0;  // 2^32
 
 // How many of the 2^32 words choose entry i of n: floor(word * n / 2^32) == i.
 double words_of_entry(uint64_t i, uint64_t n) {
@@ -38,8 +38,8 @@ AliasTable build_alias_table(std::span<const double> weights) {
         small.pop_back();
         // Rounding may leave no large item for the last small ones: the heaviest takes the rest.
         const uint32_t filler = large.empty() ? fallback : large.back();
-        const double quanta = weights[item] > 0 ? std::max(std::floor(share[item] * words), 1.0) : 0.0;
-        table.entries[item] = {static_cast<uint32_t>(std::min(quanta, words - 1)), filler};
+        const double quanta = weights[item] > 0 ? std::max(std::floor(share[item] * word_count), 1.0) : 0.0;
+        table.entries[item] = {static_cast<uint32_t>(std::min(quanta, word_count - 1)), filler};
         if (large.empty()) continue;
         share[filler] -= 1 - share[item];
         if (share[filler] < 1) {
@@ -51,8 +51,8 @@ AliasTable build_alias_table(std::span<const double> weights) {
 
     table.probabilities.resize(count);
     for (uint32_t i = 0; i < count; ++i) {
-        const double entry_probability = words_of_entry(i, count) / words;
-        const double kept = table.entries[i].threshold / words;
+        const double entry_probability = words_of_entry(i, count) / word_count;
+        const double kept = table.entries[i].threshold / word_count;
         table.probabilities[i] += entry_probability * kept;
         table.probabilities[table.entries[i].alias] += entry_probability * (1 - kept);
     }

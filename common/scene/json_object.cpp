@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "error.h"
-#include "image/file.h"
+#include "files/file.h"
 #include "scene/text_lines.h"
 
 namespace lab {

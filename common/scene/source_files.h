@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "image/file.h"
+#include "files/file.h"
 
 namespace lab {
 

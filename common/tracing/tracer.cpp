@@ -1,6 +1,7 @@
 #include "tracing/tracer.h"
 
 #include "error.h"
+#include "files/project_folder.h"
 #include "tracing/backends.h"
 
 namespace lab {

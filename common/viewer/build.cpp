@@ -1,8 +1,8 @@
 #include "viewer/build.h"
 
 #include "error.h"
-#include "gpu/cache.h"
-#include "image/file.h"
+#include "files/file.h"
+#include "files/hash.h"
 #include "rendering/backend_choice.h"
 #include "rendering/settings.h"
 

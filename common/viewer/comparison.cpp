@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "error.h"
-#include "film/noise.h"
 #include "rendering/chapter_folder.h"
+#include "statistics/noise.h"
 
 namespace lab {
 namespace {

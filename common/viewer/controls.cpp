@@ -7,7 +7,8 @@
 #include <cstdio>
 
 #include "error.h"
-#include "image/file.h"
+#include "files/file.h"
+#include "files/project_folder.h"
 #include "rendering/numbers_text.h"
 #include "rendering/settings.h"
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "files/project_folder.h"
+
 namespace lab {
 namespace {
 

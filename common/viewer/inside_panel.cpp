@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film/noise.h"
+#include "statistics/noise.h"
 #include "viewer/inside_drawing.h"
 
 namespace lab {

@@ -5,6 +5,7 @@
 
 #include "clock.h"
 #include "error.h"
+#include "files/project_folder.h"
 #include "rendering/outputs.h"
 #include "rendering/scene_reference.h"
 #include "rendering/settings.h"

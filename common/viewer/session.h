@@ -3,7 +3,7 @@
 #include <chrono>
 #include <future>
 
-#include "film/live_verdict.h"
+#include "statistics/live_verdict.h"
 #include "viewer/build.h"
 
 namespace lab {

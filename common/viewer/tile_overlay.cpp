@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "film/noise.h"
+#include "statistics/noise.h"
 #include "viewer/inside_drawing.h"
 
 namespace lab {

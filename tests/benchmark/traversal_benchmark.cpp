@@ -7,6 +7,7 @@
 
 #include "benchmark/box_scene.h"
 #include "error.h"
+#include "files/project_folder.h"
 #include "rendering/renderer.h"
 #ifdef EMBREE_VERSION
 #include "embree_twin.h"

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "files/project_folder.h"
 #include "support/agreement.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"

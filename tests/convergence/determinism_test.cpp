@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "files/project_folder.h"
 #include "film/film_file.h"
 #include "support/gpu_test.h"
 #include "support/render.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "film/error_metrics.h"
+#include "statistics/error_metrics.h"
 #include "support/expect_statistics.h"
 #include "support/render.h"
 

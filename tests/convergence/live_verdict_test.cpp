@@ -1,5 +1,5 @@
 // The live verdict on the chapters: what a viewer says while they render.
-#include "film/live_verdict.h"
+#include "statistics/live_verdict.h"
 
 #include <cstdio>
 #include <variant>

@@ -3,8 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "film/error_metrics.h"
-#include "gpu/cache.h"
+#include "files/hash.h"
+#include "files/project_folder.h"
+#include "statistics/error_metrics.h"
 #include "support/expect_statistics.h"
 #include "support/failure_images.h"
 #include "support/gpu_test.h"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "error.h"
-#include "image/file.h"
+#include "files/file.h"
 #include "scene/features.h"
 #include "scene/light_table.h"
 #include "tests/support/temporary_folder.h"

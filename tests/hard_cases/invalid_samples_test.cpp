@@ -2,6 +2,7 @@
 // changes.
 #include <cstring>
 
+#include "files/project_folder.h"
 #include "film/display.h"
 #include "film/film_file.h"
 #include "support/gpu_test.h"

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "files/project_folder.h"
 #include "scene/light_table.h"
 
 namespace lab {

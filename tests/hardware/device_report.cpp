@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "image/file.h"
+#include "files/file.h"
 #include "support/device_arithmetic.h"
 
 namespace lab {

@@ -7,8 +7,9 @@
 
 #include "benchmark/box_scene.h"
 #include "benchmark/rates.h"
+#include "files/file.h"
+#include "files/project_folder.h"
 #include "hardware/recorded_ray.h"
-#include "image/file.h"
 #include "rendering/renderer.h"
 
 namespace lab {

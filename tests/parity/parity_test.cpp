@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "files/project_folder.h"
 #include "rendering/renderer.h"
 #include "support/gpu_test.h"
 #include "support/meshes.h"

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "files/project_folder.h"
 #include "support/gpu_test.h"
 #include "tracing/gpu_bvh.h"
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <random>
 
+#include "files/project_folder.h"
 #include "shaders/interface.h"
 #include "support/device_arithmetic.h"
 #include "support/expect_statistics.h"

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 
+#include "files/project_folder.h"
 #include "rendering/renderer.h"
 #include "scene/alias_table.h"
 #include "support/bounce.h"

@@ -15,9 +15,9 @@
 #include <nlohmann/json.hpp>
 
 #include "error.h"
-#include "gpu/cache.h"
-#include "gpu/shader_compiler.h"
-#include "image/file.h"
+#include "files/file.h"
+#include "files/hash.h"
+#include "files/project_folder.h"
 #include "rendering/renderer.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,6 @@
 #include "support/bounce.h"
 
+#include "files/project_folder.h"
 #include "rendering/renderer.h"
 
 namespace lab {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "files/project_folder.h"
 #include "support/bounce.h"
 #include "support/gpu_test.h"
 #include "support/hemisphere.h"

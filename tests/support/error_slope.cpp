@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "film/statistics.h"
+#include "statistics/statistics.h"
 
 namespace lab {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "film/statistics.h"
+#include "statistics/statistics.h"
 
 namespace lab {
 

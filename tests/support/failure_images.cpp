@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "film/statistics.h"
-#include "gpu/shader_compiler.h"
+#include "files/project_folder.h"
+#include "statistics/statistics.h"
 
 namespace lab {
 namespace {

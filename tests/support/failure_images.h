@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "film/z_map.h"
+#include "statistics/z_map.h"
 
 namespace lab {
 

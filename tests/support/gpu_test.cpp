@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "files/project_folder.h"
+
 namespace lab {
 
 const Device& test_device() {

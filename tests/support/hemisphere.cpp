@@ -1,5 +1,7 @@
 #include "support/hemisphere.h"
 
+#include "files/project_folder.h"
+
 namespace lab {
 
 std::vector<HemisphereAnswer> evaluate_hemisphere(const std::string& chapter,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "files/project_folder.h"
 #include "rendering/options.h"
 #include "support/gpu_test.h"
 

@@ -1,7 +1,7 @@
 // Dielectrics whose scene means more than is computed are warned about, and absurd ones refused.
 #include <algorithm>
 
-#include "gpu/shader_compiler.h"
+#include "files/project_folder.h"
 #include "scene/scene.h"
 #include "test_files.h"
 

@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "image/file.h"
+#include "files/file.h"
 #include "image/image.h"
 #include "scene/scene.h"
 #include "test_files.h"

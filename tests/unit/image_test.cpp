@@ -10,7 +10,7 @@
 #include <csignal>
 #include <limits>
 
-#include "image/file.h"
+#include "files/file.h"
 #include "image/image_checks.h"
 #include "test_files.h"
 

@@ -1,5 +1,5 @@
 // The live verdict on renders that are made of random numbers.
-#include "film/live_verdict.h"
+#include "statistics/live_verdict.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "film/statistics.h"
+#include "statistics/statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Looking inside the render: the live verdict, the path at a pixel and the views of tiles.
+#include "files/project_folder.h"
 #include "viewer_fixture.h"
 
 namespace lab {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 
+#include "files/project_folder.h"
 #include "support/temporary_folder.h"
 #include "viewer/viewer.h"
 

@@ -1,5 +1,6 @@
 // The window of a chapter: what it shows, saves and does on input.
 #include "error.h"
+#include "files/project_folder.h"
 #include "viewer_fixture.h"
 
 namespace lab {

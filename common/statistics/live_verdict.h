@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "film/error_metrics.h"
-#include "film/film.h"
-#include "film/statistics.h"
-#include "film/z_map.h"
+#include "film/film_image.h"
+#include "statistics/error_metrics.h"
+#include "statistics/statistics.h"
+#include "statistics/z_map.h"
 
 namespace lab {
 

@@ -1,4 +1,4 @@
-#include "film/error_metrics.h"
+#include "statistics/error_metrics.h"
 
 #include <algorithm>
 #include <cmath>

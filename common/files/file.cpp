@@ -1,4 +1,4 @@
-#include "image/file.h"
+#include "files/file.h"
 
 #include <unistd.h>
 

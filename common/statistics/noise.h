@@ -1,6 +1,6 @@
 // How noisy parts of an image are.
 #pragma once
-#include "film/film.h"
+#include "film/film_image.h"
 
 namespace lab {
 

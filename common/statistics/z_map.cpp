@@ -1,4 +1,4 @@
-#include "film/z_map.h"
+#include "statistics/z_map.h"
 
 #include <algorithm>
 #include <cmath>

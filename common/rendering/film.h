@@ -1,29 +1,10 @@
 // The film collects the samples of all pixels on the device and keeps them exactly enough for 10^7 samples a
 // pixel.
 #pragma once
-#include <vector>
-
+#include "film/film_image.h"
 #include "gpu/compute_kernel.h"
-#include "image/image.h"
-#include "shaders/interface.h"
 
 namespace lab {
-
-// The film's contents on the host: pixels row by row from the top.
-struct FilmImage {
-    uint32_t width = 0;
-    uint32_t height = 0;
-    std::vector<FilmPixel> pixels;
-
-    bool has_equal_sample_counts() const;
-    uint32_t min_samples() const;                 // samples that every pixel has
-    uint64_t invalid_samples() const;             // samples that were infinite or not a number
-    Image mean() const;                           // mean radiance of a pixel; 0 where there are no samples
-    std::array<double, 3> mean_radiance() const;  // of the whole image
-};
-
-// The samples of `whole` that came after those of `first`, an earlier state of the same film.
-FilmImage samples_after(const FilmImage& first, const FilmImage& whole);
 
 // Blocks of pixels that cover an image, as in shaders/blocks.glsl.
 uint32_t count_blocks(uvec2 image_size);

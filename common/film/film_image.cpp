@@ -1,13 +1,8 @@
-#include "film/film.h"
+#include "film/film_image.h"
 
 #include <algorithm>
 
 namespace lab {
-
-uint32_t count_blocks(uvec2 image_size) {
-    return ((image_size.x + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
-           ((image_size.y + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
-}
 
 uint32_t FilmImage::min_samples() const {
     const auto fewest = std::min_element(
@@ -50,11 +45,6 @@ std::array<double, 3> FilmImage::mean_radiance() const {
     return mean;
 }
 
-MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
-    return {"image's pixels", size_t{width} * height * sizeof(FilmPixel),
-            vk::BufferUsageFlagBits::eStorageBuffer};
-}
-
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole) {
     FilmImage rest = whole;
     for (size_t i = 0; i < rest.pixels.size(); ++i) {
@@ -67,31 +57,6 @@ FilmImage samples_after(const FilmImage& first, const FilmImage& whole) {
         pixel.sample_count -= before.sample_count;
     }
     return rest;
-}
-
-Film::Film(const Device& device, uint32_t width, uint32_t height)
-    : width_(width),
-      height_(height),
-      buffer_(device, memory_need(width, height).bytes, memory_need(width, height).usage) {
-    clear();
-}
-
-void Film::clear() { buffer_.clear(); }
-
-void Film::resize(uint32_t width, uint32_t height) {
-    width_ = width;
-    height_ = height;
-    clear();
-}
-
-FilmImage Film::read() const {
-    FilmImage image{width_, height_, std::vector<FilmPixel>(size_t{width_} * height_)};
-    buffer_.read(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
-    return image;
-}
-
-void Film::write(const FilmImage& image) {
-    buffer_.write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
 }
 
 }  // namespace lab

@@ -1,4 +1,4 @@
-#include "gpu/cache.h"
+#include "files/cache.h"
 
 #include <unistd.h>
 
@@ -7,7 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <sstream>
+
+#include "files/hash.h"
 
 namespace lab {
 namespace {
@@ -27,17 +28,6 @@ uint64_t checksum(const uint8_t* bytes, size_t size) {
 }
 
 }  // namespace
-
-uint64_t hash_text(std::string_view text, uint64_t hash) {
-    for (const char c : text) hash = (hash ^ static_cast<uint8_t>(c)) * 1099511628211ull;
-    return hash;
-}
-
-std::string hexadecimal(uint64_t number) {
-    std::ostringstream text;
-    text << std::hex << number;
-    return text.str();
-}
 
 std::optional<std::vector<uint8_t>> read_cache(const std::string& name) {
     const auto folder = cache_folder();

@@ -4,16 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace lab {
-
-// FNV-1a of a text, continued from `hash`.
-uint64_t hash_text(std::string_view text, uint64_t hash = 14695981039346656037ull);
-
-// A hash as records and reports write it: without leading zeros.
-std::string hexadecimal(uint64_t number);
 
 // Contents of the cache entry `name`, if there is an undamaged one.
 std::optional<std::vector<uint8_t>> read_cache(const std::string& name);

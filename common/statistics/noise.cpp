@@ -1,4 +1,4 @@
-#include "film/noise.h"
+#include "statistics/noise.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "film/live_verdict.h"
+#include "statistics/live_verdict.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,11 @@
+// Where the project lies.
+#pragma once
+#include <filesystem>
+
+namespace lab {
+
+// Folder of the project, which holds shaders/ and assets/: found upwards from the running program.
+// Throws UserError if there is none.
+std::filesystem::path project_folder();
+
+}  // namespace lab

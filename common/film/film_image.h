@@ -1,0 +1,26 @@
+// What the samples of an image have added up to.
+#pragma once
+#include <vector>
+
+#include "image/image.h"
+#include "shaders/interface.h"
+
+namespace lab {
+
+// The contents of a film: pixels row by row from the top.
+struct FilmImage {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<FilmPixel> pixels;
+
+    bool has_equal_sample_counts() const;
+    uint32_t min_samples() const;                 // samples that every pixel has
+    uint64_t invalid_samples() const;             // samples that were infinite or not a number
+    Image mean() const;                           // mean radiance of a pixel; 0 where there are no samples
+    std::array<double, 3> mean_radiance() const;  // of the whole image
+};
+
+// The samples of `whole` that came after those of `first`, an earlier state of the same film.
+FilmImage samples_after(const FilmImage& first, const FilmImage& whole);
+
+}  // namespace lab
