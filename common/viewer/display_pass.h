@@ -4,6 +4,7 @@
 
 #include "film/display.h"
 #include "gpu/compute_kernel.h"
+#include "rendering/film.h"
 
 namespace lab {
 
