@@ -13,7 +13,7 @@
 namespace lab {
 namespace {
 
-RenderSettings make_settings(uint32_t samples, uint32_t seed) {
+RenderSettings room_settings(uint32_t samples, uint32_t seed) {
     return {.width = 48,
             .height = 48,
             .samples = samples,
@@ -23,13 +23,13 @@ RenderSettings make_settings(uint32_t samples, uint32_t seed) {
             .estimator = chapter_estimator("06_dielectrics")};
 }
 
-constexpr uint32_t batch_count = 32;
+constexpr uint32_t scene_batches = 32;
 
 TEST(DielectricScene, BoxOfIndexOneIsInvisibleInALitRoom) {
     // With light samples: they do not reach through the box, but paths do and count what they find.
     const Batches with_box =
-        render_batches(room_with_box(dielectric_material(1)), make_settings(14, 1), batch_count);
-    const Batches without = render_batches(empty_room(), make_settings(14, 2), batch_count);
+        render_batches(room_with_box(dielectric_material(1)), room_settings(14, 1), scene_batches);
+    const Batches without = render_batches(empty_room(), room_settings(14, 2), scene_batches);
     expect_uniform("p-values of the tiles",
                    expect_agreement("box of index 1", with_box, without, {0.02, 0.3}), 0.7);
 }
@@ -42,22 +42,22 @@ TEST(DielectricScene, LightSamplingKeepsTheMean) {
     const std::pair<const char*, const Scene*> scenes[] = {
         {"glass box", &clear}, {"emissive glass box", &emissive}, {"lamp in glass", &filled}};
     for (const auto& [name, scene] : scenes) {
-        RenderSettings off = make_settings(20, 4);
+        RenderSettings off = room_settings(20, 4);
         off.light_sampling = LightSampling::off;
-        expect_agreement(name, render_batches(*scene, make_settings(14, 3), batch_count),
-                         render_batches(*scene, off, batch_count), {0.02, 0.3});
+        expect_agreement(name, render_batches(*scene, room_settings(14, 3), scene_batches),
+                         render_batches(*scene, off, scene_batches), {0.02, 0.3});
     }
 }
 
 TEST(DielectricScene, BranchesAndRouletteKeepTheMean) {
     const Scene scene = room_with_box(dielectric_material(1.5f, {0.5f, 0.2f, 0.8f}));
-    RenderSettings split = make_settings(5, 6);
+    RenderSettings split = room_settings(5, 6);
     split.splitting_factor = 3;
     split.roulette_start = 1;
-    RenderSettings plain = make_settings(9, 5);
+    RenderSettings plain = room_settings(9, 5);
     plain.roulette_start = 20;
-    expect_agreement("splitting and early roulette", render_batches(scene, split, batch_count),
-                     render_batches(scene, plain, batch_count), {0.02, 0.3});
+    expect_agreement("splitting and early roulette", render_batches(scene, split, scene_batches),
+                     render_batches(scene, plain, scene_batches), {0.02, 0.3});
 }
 
 // Without dielectrics the chapter is chapter 5, down to the random numbers. Only the rounding of sums may
@@ -68,7 +68,7 @@ TEST(DielectricScene, WithoutGlassIsChapterFive) {
     glossy.materials[0].specular_albedo = vec3(0.2f);
     glossy.materials[0].specular_exponent = 20;
     for (const Scene* room : {&scene, &glossy}) {
-        RenderSettings settings = make_settings(8, 7);
+        RenderSettings settings = room_settings(8, 7);
         settings.splitting_factor = 2;
         const FilmImage sixth = render(*room, settings);
         settings.estimator = chapter_estimator("05_russian_roulette");
@@ -91,7 +91,7 @@ TEST(DielectricScene, EmissiveGlassAddsItsEmissionOnce) {
     Scene scene = make_sphere(glass, Facing::outwards);
     scene.background = vec3(1);
     for (const LightSampling light_sampling : {LightSampling::on, LightSampling::off}) {
-        RenderSettings settings = make_settings(50, 8);
+        RenderSettings settings = room_settings(50, 8);
         settings.light_sampling = light_sampling;
         settings.roulette_start = 1000;
         const FilmImage film = render(scene, settings);
@@ -126,7 +126,7 @@ TEST(DielectricScene, TouchingSurfacesStayFinite) {
         Scene scene = make_scene({lamp, diffuse_material(vec3(0.7f)), glass}, quads);
         scene.background = vec3(0.1f);
         scene.camera = {.position = camera, .target = {0, 0.4f, -1}, .up = {0, 1, 0}, .vertical_fov = 50};
-        const FilmImage film = render(scene, make_settings(25, 9));
+        const FilmImage film = render(scene, room_settings(25, 9));
         const std::vector<double> means = pixel_means(film, 0);
         const double mean =
             std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());

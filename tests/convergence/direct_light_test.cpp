@@ -153,7 +153,7 @@ RenderSettings settings_of(const std::string& chapter, uint32_t samples, uint32_
     return settings;
 }
 
-constexpr uint32_t batch_count = 32;
+constexpr uint32_t light_batches = 32;
 
 // A receiver and a triangular light that faces it.
 struct LightCase {
@@ -246,7 +246,7 @@ TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
         const Receiver receiver(normal);
         Scene scene = receiver.scene();
         add_triangle(scene, receiver.place(light), 1);
-        const Batches batches = render_batches(scene, settings_of(GetParam(), 80, ++seed), batch_count);
+        const Batches batches = render_batches(scene, settings_of(GetParam(), 80, ++seed), light_batches);
         expect_direct_light(name, batches, receiver.irradiance(receiver.place(light)), {0.02, 0.7},
                             light_cases().size());
     }
@@ -281,7 +281,7 @@ TEST_P(DirectLight, OfManyTrianglesIsThatOfTheirUnion) {
             for (size_t k = 0; k < column.size(); ++k)
                 irradiance[k] += column[k] * std::exp2(static_cast<double>(i % 8) - 4);
         }
-        const Batches batches = render_batches(scene, settings_of(GetParam(), 64, n), batch_count);
+        const Batches batches = render_batches(scene, settings_of(GetParam(), 64, n), light_batches);
         expect_direct_light(std::to_string(2 * n * n) + " triangles", batches, irradiance, {0.02, 0.5}, 2);
     }
 }
@@ -304,7 +304,7 @@ TEST_P(DirectLight, OfVeryDifferentLightsAddsUp) {
         const auto image = receiver.irradiance(placed);
         for (size_t i = 0; i < image.size(); ++i) irradiance[i] += std::pow(10.0, 4.0 * k) * image[i];
     }
-    const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), batch_count);
+    const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), light_batches);
     expect_direct_light("seven lights", batches, irradiance, {0.02, 0.5}, 1);
 }
 
@@ -338,7 +338,7 @@ TEST_P(DirectLight, OfTransformedInstancesIsThatOfTheirImages) {
             << "light " << k << " faces away";
         for (size_t i = 0; i < irradiance.size(); ++i) irradiance[i] += of_light[i];
     }
-    const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), batch_count);
+    const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), light_batches);
     expect_direct_light("three instances", batches, irradiance, {0.02, 0.5}, 1);
 }
 
@@ -360,7 +360,7 @@ TEST_P(DirectLight, AddsToTheLightOfTheSky) {
     Scene scene = receiver.scene();
     scene.background = vec3(static_cast<float>(sky));
     add_triangle(scene, light, 1);
-    const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), batch_count);
+    const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), light_batches);
     expect_direct_light("light and sky", batches, receiver.irradiance(light), {0.02, 0.5}, 1, sky);
 }
 
@@ -377,7 +377,7 @@ TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {
         add_triangle(scene, receiver.place(light), 1);
         RenderSettings settings = settings_of(GetParam(), 320, ++seed);
         settings.light_sampling = LightSampling::off;
-        expect_direct_light(name, render_batches(scene, settings, batch_count),
+        expect_direct_light(name, render_batches(scene, settings, light_batches),
                             receiver.irradiance(receiver.place(light)), {0.05, 2}, 3);
     }
 }

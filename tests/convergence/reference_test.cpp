@@ -26,7 +26,7 @@ struct ReferenceCase {
     Tail tail = Tail::light;
 };
 
-constexpr uint32_t batch_count = 64;
+constexpr uint32_t reference_batches = 64;
 constexpr uint32_t tile = 8;
 // In tiles that light hardly reaches, batches without a hit have no spread. What is a small part of the
 // image's mean there is taken for noise.
@@ -148,7 +148,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     settings.roulette_start = 2;
     settings.splitting_factor = c.chapter >= 4 ? 2 : 1;
     settings.estimator = chapter_estimator(all_chapters.at(c.chapter - 1));
-    const Batches batches = render_batches(scene, settings, batch_count);
+    const Batches batches = render_batches(scene, settings, reference_batches);
 
     const Comparison comparison{batches, reference};
     const uvec2 size(batches.width, batches.height);

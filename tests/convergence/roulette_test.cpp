@@ -9,7 +9,7 @@
 namespace lab {
 namespace {
 
-constexpr uint32_t unlimited = 100'000;
+constexpr uint32_t endless = 100'000;
 
 // Inside a box whose walls emit 1 and reflect `albedo`; emission is found by bounces.
 Batches render_furnace(const std::string& chapter, const vec3& albedo, RenderSettings settings,
@@ -50,7 +50,7 @@ TEST_P(Roulette, HasTheKnownMeanVarianceAndCost) {
     };
     uint32_t seed = 1000 * chapter_number(GetParam());
     for (const auto& [albedo, cap, is_fourth_moment_finite] : cases) {
-        RenderSettings settings{.samples = 1, .max_path_length = unlimited, .seed = ++seed};
+        RenderSettings settings{.samples = 1, .max_path_length = endless, .seed = ++seed};
         settings.survival_cap = cap;
         const Batches batches = render_furnace(GetParam(), vec3(albedo), settings, 256);
         // The compensated throughput is a after the first bounce, and after a survival 1 or above.
@@ -69,7 +69,7 @@ TEST_P(Roulette, HasTheKnownMeanVarianceAndCost) {
 
 TEST_P(Roulette, SurvivalIsTheLargestComponentOfTheThroughput) {
     const vec3 albedo(0.2f, 0.4f, 0.6f);
-    RenderSettings settings{.samples = 16, .max_path_length = unlimited};
+    RenderSettings settings{.samples = 16, .max_path_length = endless};
     const Batches batches = render_furnace(GetParam(), albedo, settings, 64);
     std::vector<Difference> means;
     for (int channel = 0; channel < 3; ++channel)
@@ -85,7 +85,7 @@ TEST_P(Roulette, IgnoresTheSplitting) {
     const double a = 0.5, m = 2, variance = (1 + 2 * a * m) / (1 - a) - m * m;
     for (const uint32_t s : {1u, 4u, 7u}) {
         RenderSettings settings{.samples = 1,
-                                .max_path_length = unlimited,
+                                .max_path_length = endless,
                                 .seed = 1000 * chapter_number(GetParam()) + 20 + s,
                                 .splitting_factor = s};
         const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 96);
@@ -100,7 +100,7 @@ TEST_P(Roulette, IgnoresTheSplitting) {
 TEST_P(Roulette, BeginsAtItsStart) {
     // Before it nobody ends; at bounce 3 the survivors' throughput a³ is made up for at once.
     const double a = 0.5;
-    RenderSettings settings{.samples = 16, .max_path_length = unlimited, .roulette_start = 3};
+    RenderSettings settings{.samples = 16, .max_path_length = endless, .roulette_start = 3};
     const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 64);
     expect_no_difference("mean", relative_difference(batches.means(1), 2), 0.01, 2);
     expect_no_difference("rays", relative_difference(batches.rays, 3 + a * a * a / (1 - a)), 0.01, 2);
@@ -153,7 +153,7 @@ TEST_P(Roulette, ConvergesSlowlyWhereItsVarianceIsInfinite) {
         RenderSettings settings{.width = 128,
                                 .height = 128,
                                 .samples = 4,
-                                .max_path_length = unlimited,
+                                .max_path_length = endless,
                                 .seed = 1000 * chapter_number(GetParam()) + 7};
         settings.survival_cap = cap;
         return convergence_slopes(render_furnace(GetParam(), vec3(0.5f), settings, 256), 2);

@@ -89,7 +89,7 @@ class BadMeshes : public OnEachBackend {
 };
 INSTANTIATE_TEST_SUITE_P(Backends, BadMeshes, testing::ValuesIn(all_backends), backend_name);
 
-class Random {
+class RandomPoints {
   public:
     double uniform(double low, double high) {
         return std::uniform_real_distribution<>(low, high)(generator_);
@@ -106,7 +106,7 @@ class Random {
 const auto nothing = [](ObjText&) {};
 
 TEST_P(BadMeshes, SliversAreNoMoreThanTheyAre) {
-    Random random;
+    RandomPoints random;
     const Scene scene = load([&](ObjText& obj) {
         for (int i = 0; i < 500; ++i) {
             const double aspect = std::pow(10.0, random.uniform(5, 9));
@@ -122,7 +122,7 @@ TEST_P(BadMeshes, SliversAreNoMoreThanTheyAre) {
 }
 
 TEST_P(BadMeshes, TrianglesWithoutAreaAndTinyOnesDoNotShow) {
-    Random random;
+    RandomPoints random;
     const Scene scene = load([&](ObjText& obj) {
         for (int i = 0; i < 200; ++i) {
             const dvec3 a = random.point(), b = random.point(), c = random.point();

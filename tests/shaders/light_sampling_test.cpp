@@ -109,13 +109,13 @@ const std::array<vec3, 3> light_corners{vec3(-0.7f, 0.4f, 1.1f), vec3(0.3f, 0.9f
 constexpr vec3 surface_normal{0, 0, 1};
 constexpr float emission = 2.5f, inverse_density = 3.5f, albedo = 0.6f;
 
-struct LightSample {
+struct LightAnswer {
     vec3 origin, to_light;  // the shadow ray
     float radiance;
     uint32_t shadow_rays;
 };
 
-std::vector<LightSample> sample_light(const std::string& chapter, const std::array<vec3, 3>& corners,
+std::vector<LightAnswer> sample_light(const std::string& chapter, const std::array<vec3, 3>& corners,
                                       size_t count) {
     struct Inputs {
         Surface surface;
@@ -137,7 +137,7 @@ std::vector<LightSample> sample_light(const std::string& chapter, const std::arr
     TestShader shader{.name = "direct_light.comp"};
     shader.named_includes = {
         {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
-    std::vector<LightSample> samples(count);
+    std::vector<LightAnswer> samples(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(samples)),
                std::as_bytes(std::span(&inputs, 1)));
     return samples;
@@ -164,7 +164,7 @@ TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
     constexpr size_t rows = 16;
     std::vector<uint64_t> counts(rows * rows);
     std::vector<double> w_1, w_2, products, squares;
-    for (const LightSample& sample : sample_light(GetParam(), light_corners, 1'100'000)) {
+    for (const LightAnswer& sample : sample_light(GetParam(), light_corners, 1'100'000)) {
         ASSERT_EQ(sample.shadow_rays, 1u);
         const dvec2 w = barycentrics_of(dvec3(sample.origin) + dvec3(sample.to_light));
         // Rounding may bring points of an edge 10^-6 beyond it.
@@ -195,7 +195,7 @@ TEST_P(LightPoints, WeightIsThatOfTheArea) {
     const dvec3 normal = glm::normalize(glm::cross(dvec3(light_corners[1]) - dvec3(light_corners[0]),
                                                    dvec3(light_corners[2]) - dvec3(light_corners[0])));
     double worst = 0;
-    for (const LightSample& sample : sample_light(GetParam(), light_corners, 100'000)) {
+    for (const LightAnswer& sample : sample_light(GetParam(), light_corners, 100'000)) {
         const dvec3 to_light(sample.to_light), omega = glm::normalize(to_light);
         const double expected = emission * albedo / pi * glm::dot(dvec3(surface_normal), omega) *
                                 glm::dot(normal, -omega) / glm::dot(to_light, to_light) * inverse_density;
@@ -211,7 +211,7 @@ TEST_P(LightPoints, BacksAndLightsBelowTheHorizonGiveNothing) {
     for (vec3& corner : below) corner.z = -corner.z;
     const auto below_turned = std::array{below[0], below[2], below[1]};
     for (const auto& corners : {turned, below, below_turned})
-        for (const LightSample& sample : sample_light(GetParam(), corners, 10'000)) {
+        for (const LightAnswer& sample : sample_light(GetParam(), corners, 10'000)) {
             ASSERT_EQ(sample.radiance, 0);
             ASSERT_EQ(sample.shadow_rays, 0u);  // none is worth a ray
         }

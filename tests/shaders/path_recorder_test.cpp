@@ -14,7 +14,7 @@
 namespace lab {
 namespace {
 
-constexpr uint32_t extent = 24;
+constexpr uint32_t image_extent = 24;
 
 struct Recorded {
     uvec2 pixel;
@@ -40,7 +40,7 @@ std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& set
 }
 
 RenderSettings settings_for(const std::string& chapter) {
-    RenderSettings settings{.width = extent, .height = extent, .max_path_length = 6};
+    RenderSettings settings{.width = image_extent, .height = image_extent, .max_path_length = 6};
     settings.splitting_factor = 2;
     settings.roulette_start = 2;
     settings.estimator = chapter_estimator(chapter);
@@ -85,7 +85,7 @@ TEST_P(PathRecorderOf, RecordsTheSampleThatTheRenderAdds) {
     }
     uint32_t bright = 0;
     for (const auto& [pixel, sample, path] : record_paths(scene, settings, paths)) {
-        EXPECT_EQ(path.radiance, films[sample].pixels[pixel.y * extent + pixel.x].sum)
+        EXPECT_EQ(path.radiance, films[sample].pixels[pixel.y * image_extent + pixel.x].sum)
             << "pixel " << pixel.x << "," << pixel.y << " sample " << sample;
         bright += path.radiance != vec3(0);
     }

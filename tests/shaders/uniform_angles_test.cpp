@@ -54,12 +54,12 @@ TEST(UniformAngles, HaveUniformInclinationAndAzimuth) {
 }
 
 // Where rounding errors would show first.
-constexpr double below_one = 1 - 0x1p-24;
+constexpr double largest_number = 1 - 0x1p-24;
 
 TEST(UniformAngles, AreThoseOfTheRandomNumbers) {
     std::vector<std::array<double, 2>> numbers;
-    for (const double x : {0.0, 0x1p-24, 0.25, 0.5, 0.75, below_one})
-        for (const double y : {0.0, 0x1p-24, 0.5, below_one}) numbers.push_back({x, y});
+    for (const double x : {0.0, 0x1p-24, 0.25, 0.5, 0.75, largest_number})
+        for (const double y : {0.0, 0x1p-24, 0.5, largest_number}) numbers.push_back({x, y});
     for (int x = 0; x < 128; ++x)
         for (int y = 0; y < 128; ++y) numbers.push_back({(x + 0.37) / 128, (y + 0.61) / 128});
     const auto bounces = bounces_at(chapter, {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers);
@@ -67,7 +67,7 @@ TEST(UniformAngles, AreThoseOfTheRandomNumbers) {
     for (size_t i = 0; i < numbers.size(); ++i) {
         const double phi = 2 * pi * numbers[i][0] - pi, theta = 0.5 * pi * numbers[i][1];
         if (bounces[i].ray_count != 2) {
-            EXPECT_EQ(numbers[i][1], below_one) << "only a direction along the surface may be dropped";
+            EXPECT_EQ(numbers[i][1], largest_number) << "only a direction along the surface may be dropped";
             continue;
         }
         const dvec3 expected(std::cos(phi) * std::sin(theta), std::sin(phi) * std::sin(theta),

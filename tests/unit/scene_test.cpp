@@ -32,7 +32,7 @@ class SceneFile : public testing::Test {
     TestFolder folder;
 };
 
-void expect_near(const vec3& actual, const vec3& expected, float tolerance = 1e-6f) {
+void expect_close(const vec3& actual, const vec3& expected, float tolerance = 1e-6f) {
     EXPECT_LE(glm::distance(actual, expected), tolerance)
         << actual.x << " " << actual.y << " " << actual.z << " instead of " << expected.x << " " << expected.y
         << " " << expected.z;
@@ -112,11 +112,11 @@ TEST_F(SceneFile, TransformsScaleThenRotateThenTranslate) {
     const Instance all = instance(
         R"("scale": [2, 3, 4], "rotation": {"axis": [0, 0, 2], "degrees": 90}, "translation": [10, 20, 30])");
     // Object x becomes 2 long along +Y, object y 3 long along -X.
-    expect_near(all.object_to_world[0], {0, 2, 0});
-    expect_near(all.object_to_world[1], {-3, 0, 0});
-    expect_near(all.object_to_world[2], {0, 0, 4});
-    expect_near(all.object_to_world[3], {10, 20, 30});
-    expect_near(instance(R"("scale": 2)").object_to_world[2], {0, 0, 2});
+    expect_close(all.object_to_world[0], {0, 2, 0});
+    expect_close(all.object_to_world[1], {-3, 0, 0});
+    expect_close(all.object_to_world[2], {0, 0, 4});
+    expect_close(all.object_to_world[3], {10, 20, 30});
+    expect_close(instance(R"("scale": 2)").object_to_world[2], {0, 0, 2});
 }
 
 TEST_F(SceneFile, NormalsStayPerpendicularAndKeepTheFront) {
@@ -313,17 +313,17 @@ TEST_F(SceneFile, FeaturesAreWhatTheSceneNeeds) {
 
 TEST(Camera, SpansTheImagePlane) {
     const Camera camera = make_camera({{1, 2, 3}, {1, 2, -7}, {0, 5, 0}, 90}, 200, 100);
-    expect_near(camera.position, {1, 2, 3});
-    expect_near(camera.forward, {0, 0, -1});
-    expect_near(camera.right, {2, 0, 0});
-    expect_near(camera.up, {0, 1, 0});
+    expect_close(camera.position, {1, 2, 3});
+    expect_close(camera.forward, {0, 0, -1});
+    expect_close(camera.right, {2, 0, 0});
+    expect_close(camera.up, {0, 1, 0});
 }
 
 TEST(Camera, UpNeedNotBePerpendicularButIsReplacedAlongTheLineOfSight) {
-    expect_near(make_camera({{0, 0, 0}, {0, -1, -1}, {0, 1, 0}, 90}, 1, 1).up,
-                glm::normalize(vec3(0, 1, -1)));
-    expect_near(make_camera({{0, 5, 0}, {0, 0, 0}, {0, 1, 0}, 90}, 1, 1).up, {0, 0, -1});
-    expect_near(make_camera({{0, 0, 5}, {0, 0, 0}, {0, 0, 3}, 90}, 1, 1).up, {0, 1, 0});
+    expect_close(make_camera({{0, 0, 0}, {0, -1, -1}, {0, 1, 0}, 90}, 1, 1).up,
+                 glm::normalize(vec3(0, 1, -1)));
+    expect_close(make_camera({{0, 5, 0}, {0, 0, 0}, {0, 1, 0}, 90}, 1, 1).up, {0, 0, -1});
+    expect_close(make_camera({{0, 0, 5}, {0, 0, 0}, {0, 0, 3}, 90}, 1, 1).up, {0, 1, 0});
 }
 
 TEST(Camera, RefusesPosesWithoutADirection) {
