@@ -178,7 +178,8 @@ TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
 
 TEST(PathRecorder, FollowsATreeThatSplitsAtEveryHit) {
     RenderSettings settings = settings_for("04_splitting");
-    settings.estimator.file = settings.estimator.file.parent_path() / "path_trace_every_hit.glsl";
+    settings.estimator = every_hit_estimator();
+    settings.roulette_start = no_roulette;
     settings.max_path_length = 4;
     size_t largest = 0;
     for (const auto& [pixel, sample, path] :
