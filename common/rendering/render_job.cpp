@@ -1,7 +1,6 @@
 #include "rendering/render_job.h"
 
 #include "error.h"
-#include "files/file.h"
 #include "files/hash.h"
 #include "rendering/settings.h"
 
@@ -43,7 +42,7 @@ RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_p
     job.record.chapter = chapter.name;
     job.record.scene = job.scene->file.filename().string();
     job.record.scene_hash = hexadecimal(job.scene->hash);
-    job.record.estimator_hash = hexadecimal(hash_text(read_file(job.estimator.file, 1 << 24)));
+    job.record.estimator_hash = hexadecimal(estimator_hash(job.estimator));
     set_options(job, chapter, options);
     if (!options.run.resume.empty()) {
         job.resumed = load_earlier_run(job);
