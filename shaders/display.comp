@@ -16,8 +16,7 @@ vec3 get_srgb(vec3 linear) {
     return mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
 }
 
-void main() {
-    uvec2 position = get_pixel_position(gl_WorkGroupID.x, gl_LocalInvocationIndex, display.image_size);
+void show_pixel(uvec2 position) {
     if (any(greaterThanEqual(position, display.image_size))) return;
     uvec2 film_position = position * display.film_size / display.image_size;
     FilmPixel pixel = film[film_position.y * display.film_size.x + film_position.x];
@@ -36,4 +35,10 @@ void main() {
     if (display.is_srgb != 0u) colour = get_srgb(colour);
     if (pixel.invalid_count > 0u) colour = vec3(1.0, 0.0, 1.0);
     imageStore(picture, ivec2(position), vec4(colour, 1.0));
+}
+
+void main() {
+    // A device may allow fewer workgroups than a large picture has blocks.
+    for (uint block = gl_WorkGroupID.x; block < display.block_count; block += gl_NumWorkGroups.x)
+        show_pixel(get_pixel_position(block, gl_LocalInvocationIndex, display.image_size));
 }

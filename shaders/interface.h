@@ -125,6 +125,7 @@ struct FilmPixel {
 struct DisplayParameters {
     uvec2 film_size;          // pixels in use
     uvec2 image_size;         // of the picture; the film is scaled to it
+    uint block_count;         // of the picture
     float scale;              // of radiance
     uint is_srgb;             // 1: encode with the sRGB curve
     uint divides_by_largest;  // 1: divide by the largest value, 2: only look for it

@@ -75,9 +75,10 @@ def write_handout(number, folder):
     # Shared shaders that only later chapters include hold what this one asks for.
     for name in [*TEACHERS, *(f"shaders/{name}" for name in included(later) - included(kept))]:
         (folder / name).unlink()
-    # Splitting at every hit repeats the estimator of its chapter.
-    every_hit = folder / "chapters" / CHAPTERS[number] / "path_trace_every_hit.glsl"
-    every_hit.unlink(missing_ok=True)
+    # Splitting at every hit repeats the estimators of the chapters that have it.
+    if any("split_every_hit" in json.loads((ROOT / "chapters" / name / "chapter.json").read_text(encoding="utf-8"))
+           for n, name in CHAPTERS.items() if n >= number):
+        (folder / "shaders/path_trace_every_hit.glsl").unlink()
     (folder / "docs/records/check").rmdir()
     for exercise in exercises(number):
         shader = folder / exercise["file"]

@@ -17,45 +17,33 @@ namespace {
 
 class HeadlessRender {
   public:
-    HeadlessRender(const RenderJob& job, Renderer& renderer)
-        : job_(job), options_(*job.options), renderer_(renderer), last_save_(start_) {
+    explicit HeadlessRender(Build& build)
+        : job_(build.job),
+          options_(job_.options.run),
+          renderer_(*build.renderer),
+          acceleration_(build.acceleration()),
+          last_save_(start_) {
         if (!options_.reference.empty()) {
             reference_ = read_reference(options_.reference);
             const Image& image = reference_->mean;
-            if (image.width != renderer.film().width() || image.height != renderer.film().height())
+            if (image.width != renderer_.film().width() || image.height != renderer_.film().height())
                 throw UserError(options_.reference.string() + ": has " + std::to_string(image.width) + "x" +
                                 std::to_string(image.height) + " pixels, the image has " +
-                                std::to_string(renderer.film().width()) + "x" +
-                                std::to_string(renderer.film().height()) + ": they must agree");
+                                std::to_string(renderer_.film().width()) + "x" +
+                                std::to_string(renderer_.film().height()) + ": they must agree");
         }
-        if (job.resumed) renderer.resume(job.resumed->image);
-        snapshot_ = renderer.film().read();
+        take_snapshot();
         last_row_film_ = snapshot_;
     }
 
     void run() {
         install_interrupt_handler();
-        // If the device fails, what was last read from it is all there is.
-        const auto keep = [&](const std::string& why) {
-            if (snapshot_.min_samples() == 0 && snapshot_.has_equal_sample_counts())
-                throw DeviceFailure(why + ": there was nothing to write yet");
-            try {
-                write_outputs();
-            } catch (const UserError& error) {
-                throw DeviceFailure(why + "; " + error.what());
-            }
-            throw DeviceFailure(why + ": the outputs hold " + std::to_string(snapshot_.min_samples()) +
-                                " samples a pixel; --resume continues");
-        };
         try {
             sample();
-            snapshot_ = renderer_.film().read();
-        } catch (const vk::SystemError& error) {
-            keep(std::string("the device failed: ") + error.what());
-        } catch (const DeviceFailure& error) {
-            keep(error.what());
-        } catch (const std::bad_alloc&) {
-            keep("out of memory");
+            take_snapshot();
+        } catch (const std::exception& error) {
+            // What was last read from the device is all there is.
+            keep_after(error, snapshot_, [&] { write_outputs(); });
         }
         if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
@@ -106,7 +94,7 @@ class HeadlessRender {
         const double interval = options_.save_every.value_or(seconds_between_snapshots);
         if (seconds_since(last_save_) < interval) return;
         last_save_ = std::chrono::steady_clock::now();
-        snapshot_ = renderer_.film().read();
+        take_snapshot();
         if (!options_.save_every) return;
         try {
             write_outputs();
@@ -116,6 +104,14 @@ class HeadlessRender {
         }
     }
 
+    // What is left if the device is lost, with what it has cost.
+    void take_snapshot() {
+        snapshot_ = renderer_.film().read();
+        record_ = job_.record;
+        record_.seconds = seconds();
+        record_.rays += renderer_.rays();
+    }
+
     void add_row(uint32_t samples) {
         if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
         ReportRow row{.samples = samples,
@@ -123,7 +119,8 @@ class HeadlessRender {
                       .device_seconds = renderer_.device_seconds(),
                       .rays = job_.record.rays + renderer_.rays(),
                       .error = std::nullopt};
-        const FilmImage film = renderer_.film().read();
+        take_snapshot();
+        const FilmImage& film = snapshot_;
         row.mean = film.mean_radiance();
         if (reference_) {
             row.error = compare(film.mean(), *reference_);
@@ -133,21 +130,17 @@ class HeadlessRender {
         }
         rows_.push_back(row);
         last_row_film_ = film;
-        snapshot_ = film;
     }
 
     void write_outputs() {
-        FilmRecord record = job_.record;
-        record.seconds = seconds();
-        record.rays += renderer_.rays();
         auto files = options_.outputs;
         if (!options_.report.empty()) files.push_back(options_.report);
         write_each(files, [&](const std::filesystem::path& file) {
             if (file == options_.report)
-                write_report(file, snapshot_, record, job_.acceleration,
+                write_report(file, snapshot_, record_, acceleration_,
                              reference_ ? ErrorSource::reference : ErrorSource::halves, rows_);
             else
-                write_picture(file, snapshot_, record, options_);
+                write_picture(file, snapshot_, record_, job_.options);
         });
     }
 
@@ -173,8 +166,8 @@ class HeadlessRender {
             "time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
             short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
         std::printf("acceleration   structure of %s bytes, built in %s\n",
-                    short_number(static_cast<double>(job_.acceleration.bytes)).c_str(),
-                    duration_text(job_.acceleration.build_seconds).c_str());
+                    short_number(static_cast<double>(acceleration_.bytes)).c_str(),
+                    duration_text(acceleration_.build_seconds).c_str());
         if (!rows_.empty() && rows_.back().error)
             std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n",
                         100 * std::sqrt(rows_.back().error->rel_mse),
@@ -185,11 +178,13 @@ class HeadlessRender {
         if (!options_.report.empty()) std::printf("report         %s\n", options_.report.string().c_str());
     }
 
-    RenderJob job_;
-    const Options& options_;
+    const RenderJob& job_;
+    const RunOptions& options_;
     Renderer& renderer_;
+    const AccelerationRecord acceleration_;
     std::optional<Reference> reference_;
     FilmImage snapshot_;       // last read from the device
+    FilmRecord record_;        // of that film
     FilmImage last_row_film_;  // at the last row of the report
     std::vector<ReportRow> rows_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -198,10 +193,6 @@ class HeadlessRender {
 
 }  // namespace
 
-void render_headless(const Device& device, const AccelerationStructure& acceleration_structure,
-                     const Estimator& estimator, const RenderJob& job) {
-    Renderer renderer(device, acceleration_structure, estimator, job.parameters);
-    HeadlessRender(job, renderer).run();
-}
+void render_headless(Build& build) { HeadlessRender(build).run(); }
 
 }  // namespace lab

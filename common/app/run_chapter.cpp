@@ -8,7 +8,7 @@
 #include "app/headless.h"
 #include "error.h"
 #include "files/file.h"
-#include "rendering/backend_choice.h"
+#include "gpu/failure.h"
 #include "rendering/settings.h"
 #include "viewer/viewer.h"
 
@@ -32,13 +32,13 @@ void print_devices() {
 }
 
 // Fails before anything is rendered if a result could not be kept later.
-void check_outputs(const Options& options) {
+void check_outputs(const RunOptions& options) {
     for (const auto& file : options.outputs) check_writable(file);
     if (!options.report.empty()) check_writable(options.report, {".json", ".csv"});
 }
 
 // Throws UserError if the validation layers complained about the run.
-void check_validation(const Device& device, const Options& options) {
+void check_validation(const Device& device, const RunOptions& options) {
     if (!options.validation) return;
     for (const auto& message : device.driver_messages()) std::cerr << "driver: " << message << "\n";
     for (const auto& message : device.validation_messages()) std::cerr << "validation: " << message << "\n";
@@ -56,10 +56,10 @@ uvec2 window_size(uvec2 image_size) {
 // The window that is wanted, or null. One that nobody has asked for opens for people only, since scripts read
 // what is printed, and only where it can.
 std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& options, uvec2 image_size) {
-    const bool is_forced = options.window == WindowChoice::always;
-    if (options.window == WindowChoice::never) return nullptr;
+    const bool is_forced = options.run.window == WindowChoice::always;
+    if (options.run.window == WindowChoice::never) return nullptr;
     if (!is_forced &&
-        (!Window::has_display() || !isatty(STDOUT_FILENO) || needs_no_window(options) || options.quiet))
+        (!Window::has_display() || !isatty(STDOUT_FILENO) || needs_no_window(options) || options.run.quiet))
         return nullptr;
     try {
         return std::make_unique<Window>(chapter.name, window_size(image_size));
@@ -71,13 +71,14 @@ std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& optio
 }
 
 // Opens the window's chapter if the device can show pictures in it; false if it cannot.
-bool run_in_window(Window& window, const Chapter& chapter, const Options& options, Scene& scene) {
+bool run_in_window(Window& window, const Chapter& chapter, const RenderJob& job) {
+    const RunOptions& options = job.options.run;
     const Device device({.choice = options.device,
                          .validation = options.validation,
                          .instance_extensions = window.instance_extensions(),
                          .make_surface = [&](VkInstance instance) { return window.make_surface(instance); }});
     if (*device.surface()) {
-        run_viewer(window, device, chapter, options, std::move(scene));
+        run_viewer(window, device, chapter, job);
         check_validation(device, options);
         return true;
     }
@@ -88,68 +89,49 @@ bool run_in_window(Window& window, const Chapter& chapter, const Options& option
     return false;
 }
 
-void run(const Chapter& chapter, const Options& options) {
-    check_outputs(options);
-    Scene scene = load_scene(options.scene, options.specular);
-    check_scene(chapter, scene);
-    for (const auto& warning : scene.warnings)
-        if (!options.quiet) std::cerr << "note: " << warning << "\n";
-    const Estimator estimator = make_estimator(chapter, options);
-    RenderJob job = make_job(chapter, scene, estimator, options);
+void print_start(const Chapter& chapter, const Device& device, const Build& build) {
+    const RenderJob& job = build.job;
+    std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
+              << job.parameters.image_size.y << ", " << job.samples << " samples, "
+              << device.description().name << ", backend " << to_string(build.backend) << std::endl;
+    if (chapter.unlimited_path_length && !job.options.light.max_path_length &&
+        !job.options.estimator.split_every_hit)
+        std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
+}
 
+void run(const Chapter& chapter, const Options& options) {
+    check_outputs(options.run);
+    const auto scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
+    RenderJob job = make_job(chapter, options, scene);
+    for (const auto& warning : scene->warnings)
+        if (!options.run.quiet) std::cerr << "note: " << warning << "\n";
     if (const auto window = open_window(chapter, options, job.parameters.image_size);
-        window && run_in_window(*window, chapter, options, scene))
+        window && run_in_window(*window, chapter, job))
         return;
 
-    const Device device({options.device, options.validation});
-    // Before the scene takes time and memory.
-    require_memory(device, Renderer::memory_needs(job.parameters.image_size));
-    const bool samples_lights = chapter.light_sampling && options.light_sampling && !options.view;
-    const GpuScene gpu_scene(device, scene, samples_lights ? LightSampling::on : LightSampling::off);
-    const Backend backend = choose_backend(options, device, gpu_scene, estimator, job.parameters);
-    const auto acceleration_structure = build_acceleration_structure(backend, device, gpu_scene);
-    job.acceleration = {acceleration_structure->bytes(), acceleration_structure->build_seconds()};
-    record_device(job, device.description().name, to_string(backend));
-    if (!options.quiet)
-        std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
-                  << job.parameters.image_size.y << ", " << job.samples << " samples, "
-                  << device.description().name << ", backend " << to_string(backend) << std::endl;
-    if (!options.quiet && chapter.unlimited_path_length && !options.max_path_length &&
-        !options.split_every_hit)
-        std::cout << "path length    " << safety_limit_text(scene) << std::endl;
-    render_headless(device, *acceleration_structure, estimator, job);
-    check_validation(device, options);
+    const Device device({options.run.device, options.run.validation});
+    Build build = make_build(device, chapter, std::move(job));
+    if (!options.run.quiet) print_start(chapter, device, build);
+    render_headless(build);
+    check_validation(device, options.run);
 }
 
 }  // namespace
 
-int run_chapter(const Chapter& chapter, int argument_count, char** arguments) {
+int run_chapter(const std::string& name, int argument_count, char** arguments) {
     try {
+        const Chapter chapter = load_chapter(name);
         const auto options = parse_options(chapter, argument_count, arguments);
         if (!options) return 0;
-        if (options->list_devices)
+        if (options->run.list_devices)
             print_devices();
         else
             run(chapter, *options);
         return 0;
-    } catch (const UserError& error) {
-        std::cerr << "error: " << error.what() << "\n";
-        return 1;
-    } catch (const DeviceError& error) {
-        std::cerr << "error: " << error.what() << "\n";
-        return 2;
-    } catch (const DeviceFailure& error) {
-        std::cerr << "error: " << error.what() << "\n";
-        return 3;
-    } catch (const vk::SystemError& error) {
-        std::cerr << "error: the device failed: " << error.what() << "\n";
-        return 3;
-    } catch (const std::bad_alloc&) {
-        std::cerr << "error: out of memory: use a smaller scene or image\n";
-        return 3;
     } catch (const std::exception& error) {
-        std::cerr << "error: " << error.what() << "\n";
-        return 1;
+        const Failure failure = failure_of(error);
+        std::cerr << "error: " << failure.message << "\n";
+        return failure.exit_code;
     }
 }
 

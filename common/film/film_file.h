@@ -13,7 +13,7 @@ struct FilmRecord {
     std::string chapter;
     std::string scene;           // file name
     std::string scene_hash;      // of all its files
-    std::string estimator_hash;  // of the shader's text
+    std::string estimator_hash;  // of the shaders that it is compiled from
     std::string settings;        // the options that change the expected image, in a fixed order
     std::string backend;
     std::string device;

@@ -43,6 +43,7 @@ class PathBuilder {
                     [[fallthrough]];
                 case EVENT_THROUGHPUT:
                     throughput_ = event.value;
+                    path_.has_throughput = true;
                     break;
                 case EVENT_RADIANCE_STARTS:
                 case EVENT_RADIANCE:

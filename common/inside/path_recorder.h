@@ -37,6 +37,7 @@ struct RecordedPath {
     vec3 radiance{0};                  // what the sample adds to the film
     std::vector<PathVertex> vertices;  // in the order of their rays; a parent comes before its children
     bool is_complete = true;           // false: there was no room for all of it
+    bool has_throughput = false;       // the estimator has told one: it has a variable of that name
 };
 
 class PathRecorder {

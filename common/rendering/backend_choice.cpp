@@ -92,11 +92,12 @@ Backend choose_backend(const std::string& name, const Device& device, const GpuS
 
 Backend choose_backend(const Options& options, const Device& device, const GpuScene& scene,
                        const Estimator& estimator, const RenderParameters& parameters) {
-    if (!options.view) return choose_backend(options.backend, device, scene, estimator, parameters);
-    if (options.view->name == "bvh-steps" && options.backend != "auto" && options.backend != "compute")
+    if (!options.image.view) return choose_backend(options.run.backend, device, scene, estimator, parameters);
+    if (options.image.view->name == "bvh-steps" && options.run.backend != "auto" &&
+        options.run.backend != "compute")
         throw UserError("--view bvh-steps looks into our own hierarchy: leave --backend out or use compute");
-    return choose_backend(options.backend == "auto" ? "compute" : options.backend, device, scene, estimator,
-                          parameters);
+    return choose_backend(options.run.backend == "auto" ? "compute" : options.run.backend, device, scene,
+                          estimator, parameters);
 }
 
 }  // namespace lab

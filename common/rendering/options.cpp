@@ -36,87 +36,93 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
 
 void add_image_options(CLI::App& app, Options& options) {
     constexpr uint32_t max_count = 4294967295u;
-    app.add_option("--width", options.width, "Pixels in a row")->check(whole_number(1, max_image_extent));
-    app.add_option("--height", options.height, "Pixels in a column")
+    app.add_option("--width", options.image.width, "Pixels in a row")
         ->check(whole_number(1, max_image_extent));
-    app.add_option("--samples", options.samples, "Samples a pixel")->check(whole_number(1, max_count));
-    app.add_option("--seed", options.seed, "Chooses the random numbers")->check(whole_number(0, max_count));
-    app.add_option("--first-sample", options.first_sample,
+    app.add_option("--height", options.image.height, "Pixels in a column")
+        ->check(whole_number(1, max_image_extent));
+    app.add_option("--samples", options.appearance.sample_count, "Samples a pixel")
+        ->check(whole_number(1, max_count));
+    app.add_option("--seed", options.samples.seed, "Chooses the random numbers")
+        ->check(whole_number(0, max_count));
+    app.add_option("--first-sample", options.samples.first_sample,
                    "Index of the first sample: splits a render into ranges")
         ->check(whole_number(0, max_count));
-    app.add_option("--max-path-length", options.max_path_length,
+    app.add_option("--max-path-length", options.light.max_path_length,
                    "Bounces after which a path ends; 0: emission only")
         ->check(whole_number(0, path_length_limit));
-    app.add_option("--only-path-length", options.only_path_length,
+    app.add_option("--only-path-length", options.light.only_path_length,
                    "Show only light after exactly this many bounces")
         ->check(whole_number(0, path_length_limit));
-    app.add_option("--target-error", options.target_error,
+    app.add_option("--target-error", options.run.target_error,
                    "Stop when the relative error is below this: 0.01 is 1 %")
         ->check(within(1e-12, 1e12, "a positive number"));
-    app.add_option("--time-limit", options.time_limit, "Stop after this many seconds")
+    app.add_option("--time-limit", options.run.time_limit, "Stop after this many seconds")
         ->check(within(1e-3, 1e9, "a positive number of seconds"));
 }
 
 void add_scene_options(CLI::App& app, Options& options) {
     const auto finite = within(-1e30, 1e30, "a finite number");
-    const auto vector = [&](const char* name, std::optional<std::array<float, 3>>& value, const char* help) {
+    const auto vector = [&](const char* name, OptionalVector& value, const char* help) {
         app.add_option(name, value, help)->delimiter(',')->check(finite)->type_name("X,Y,Z");
     };
-    vector("--camera-position", options.camera_position, "Where the camera stands");
-    vector("--camera-target", options.camera_target, "What it looks at");
-    vector("--camera-up", options.camera_up, "What it holds upwards");
-    app.add_option("--vertical-fov", options.vertical_fov,
+    vector("--camera-position", options.camera.position, "Where the camera stands");
+    vector("--camera-target", options.camera.target, "What it looks at");
+    vector("--camera-up", options.camera.up, "What it holds upwards");
+    app.add_option("--vertical-fov", options.camera.vertical_fov,
                    "Angle between the picture's top and bottom in degrees")
         ->check(within(1e-6, 179.999, "an angle between 0 and 180 degrees"));
-    app.add_option("--background", options.background, "Radiance of the sky; with a light probe its factor")
+    app.add_option("--background", options.light.background,
+                   "Radiance of the sky; with a light probe its factor")
         ->delimiter(',')
         ->check(within(0, 1e30, "a radiance (finite and not negative)"))
         ->type_name("R,G,B");
-    app.add_flag("--specular", options.specular, "Use the Phong lobe Ks, Ns of the materials");
+    app.add_flag("--specular", options.scene.specular, "Use the Phong lobe Ks, Ns of the materials");
 }
 
 void add_output_options(CLI::App& app, Options& options, std::string& view) {
     std::vector<std::string> names;
     for (const auto& known : views()) names.push_back(known.name);
     app.add_option("--view", view, "Show something else than radiance")->check(CLI::IsMember(names));
-    app.add_option("--output", options.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
+    app.add_option("--output", options.run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
         ->allow_extra_args(false);
-    app.add_option("--exposure", options.exposure, "Brightness of PNG and JPG in stops")
+    app.add_option("--exposure", options.appearance.exposure, "Brightness of PNG and JPG in stops")
         ->check(within(-100, 100, "a number from -100 to 100"));
-    app.add_option("--reference", options.reference, "EXR to compare with");
-    app.add_option("--report", options.report, "Error against samples and seconds (.json or .csv)");
-    app.add_option("--resume", options.resume, "EXR of an earlier run to continue");
-    app.add_option("--save-every", options.save_every, "Write the outputs every so many seconds")
+    app.add_option("--reference", options.run.reference, "EXR to compare with");
+    app.add_option("--report", options.run.report, "Error against samples and seconds (.json or .csv)");
+    app.add_option("--resume", options.run.resume, "EXR of an earlier run to continue");
+    app.add_option("--save-every", options.run.save_every, "Write the outputs every so many seconds")
         ->check(within(1e-3, 1e9, "a positive number of seconds"));
 }
 
 void add_device_options(CLI::App& app, Options& options) {
-    app.add_option("--backend", options.backend, "How rays are traced")
+    app.add_option("--backend", options.run.backend, "How rays are traced")
         ->check(CLI::IsMember({"auto", "pipeline", "query", "compute"}));
-    app.add_option("--device", options.device, "Number or part of the name of the device");
-    app.add_flag("--list-devices", options.list_devices, "Show the devices and what they lack");
+    app.add_option("--device", options.run.device, "Number or part of the name of the device");
+    app.add_flag("--list-devices", options.run.list_devices, "Show the devices and what they lack");
     auto* headless = app.add_flag_callback(
-        "--headless", [&] { options.window = WindowChoice::never; }, "Render without a window");
+        "--headless", [&] { options.run.window = WindowChoice::never; }, "Render without a window");
     app.add_flag_callback(
-           "--window", [&] { options.window = WindowChoice::always; },
+           "--window", [&] { options.run.window = WindowChoice::always; },
            "Open a window, as happens by itself where there are a display and a terminal, but not with "
            "--report, --reference, --target-error, --time-limit, --save-every or --quiet")
         ->excludes(headless);
-    app.add_flag("--validation", options.validation, "Check the use of Vulkan; any complaint is an error");
-    app.add_flag("--quiet", options.quiet, "Print errors only");
+    app.add_flag("--validation", options.run.validation,
+                 "Check the use of Vulkan; any complaint is an error");
+    app.add_flag("--quiet", options.run.quiet, "Print errors only");
 }
 
 // What only some chapters have.
 void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options) {
     if (chapter.light_sampling)
         app.add_option_function<std::string>(
-               "--light-sampling", [&](const std::string& value) { options.light_sampling = value == "on"; },
+               "--light-sampling",
+               [&](const std::string& value) { options.estimator.light_sampling = value == "on"; },
                "on: sample points on lights; off: count emission where paths find it")
             ->check(CLI::IsMember({"on", "off"}));
     if (chapter.split_every_hit)
-        app.add_flag("--split-every-hit", options.split_every_hit,
+        app.add_flag("--split-every-hit", options.estimator.split_every_hit,
                      "Split at every hit, not only at the first");
-    options.chapter_values.resize(chapter.options.size());
+    options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i) {
         const ChapterOption& option = chapter.options[i];
         const bool is_whole = std::holds_alternative<uint32_t RenderParameters::*>(option.parameter);
@@ -124,7 +130,7 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
         range << "a number from " << option.low << " to " << option.high;
         std::ostringstream default_value;
         default_value << option.default_value;
-        app.add_option(option.name, options.chapter_values[i], option.help)
+        app.add_option(option.name, options.samples.chapter_values[i], option.help)
             ->default_str(default_value.str())
             ->check(is_whole
                         ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
@@ -143,8 +149,8 @@ std::filesystem::path find_scene(const std::string& name) {
 }  // namespace
 
 bool needs_no_window(const Options& options) {
-    return !options.report.empty() || !options.reference.empty() || options.target_error ||
-           options.time_limit || options.save_every;
+    return !options.run.report.empty() || !options.run.reference.empty() || options.run.target_error ||
+           options.run.time_limit || options.run.save_every;
 }
 
 const std::vector<View>& views() {
@@ -185,17 +191,17 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
         std::replace(message.begin(), message.end(), '\n', ' ');
         throw UserError(message + " (--help shows all options)");
     }
-    if (options.window == WindowChoice::always && needs_no_window(options))
+    if (options.run.window == WindowChoice::always && needs_no_window(options))
         throw UserError(
             "--window does not go with --report, --reference, --target-error, --time-limit or "
             "--save-every: leave one of them out");
-    options.scene = find_scene(scene);
+    options.scene.file = find_scene(scene);
     for (const auto& known : views())
-        if (known.name == view) options.view = &known;
-    if (options.outputs.empty()) {
-        const std::string stem = chapter.name + (options.view ? "_" + options.view->name : "");
-        options.outputs = {std::filesystem::path("output") / (stem + ".png"),
-                           std::filesystem::path("output") / (stem + ".exr")};
+        if (known.name == view) options.image.view = &known;
+    if (options.run.outputs.empty()) {
+        const std::string stem = chapter.name + (options.image.view ? "_" + options.image.view->name : "");
+        options.run.outputs = {std::filesystem::path("output") / (stem + ".png"),
+                               std::filesystem::path("output") / (stem + ".exr")};
     }
     return options;
 }

@@ -22,12 +22,58 @@ const std::vector<View>& views();
 // Whether a window opens: yes, no, or where there is a display and someone at a terminal who can see it.
 enum class WindowChoice { automatic, always, never };
 
-struct Options {
-    std::filesystem::path scene;
-    std::optional<uint32_t> width, height, samples, max_path_length;
-    std::optional<uint32_t> only_path_length;
+using OptionalVector = std::optional<std::array<float, 3>>;
+
+// What is read from files.
+struct SceneOptions {
+    std::filesystem::path file;
+    bool specular = false;
+    bool operator==(const SceneOptions&) const = default;
+};
+
+// What the chapter's estimator is compiled as.
+struct EstimatorOptions {
+    bool light_sampling = true;
+    bool split_every_hit = false;
+    bool operator==(const EstimatorOptions&) const = default;
+};
+
+struct ImageOptions {
+    std::optional<uint32_t> width, height;
+    const View* view = nullptr;  // null: radiance
+    bool operator==(const ImageOptions&) const = default;
+};
+
+struct CameraOptions {
+    OptionalVector position, target, up;
+    std::optional<float> vertical_fov;  // degrees
+    bool operator==(const CameraOptions&) const = default;
+};
+
+// Which light the picture shows.
+struct LightOptions {
+    OptionalVector background;
+    std::optional<uint32_t> max_path_length, only_path_length;
+    bool operator==(const LightOptions&) const = default;
+};
+
+// What changes the samples, but not their expectation.
+struct SampleOptions {
     uint32_t seed = 1;
     uint32_t first_sample = 0;
+    std::vector<std::optional<double>> chapter_values;  // one for each of the chapter's options, if given
+    bool operator==(const SampleOptions&) const = default;
+};
+
+// What changes no sample.
+struct AppearanceOptions {
+    std::optional<uint32_t> sample_count;  // of a pixel
+    float exposure = 0;                    // stops
+    bool operator==(const AppearanceOptions&) const = default;
+};
+
+// Where it runs, and what is made of the picture.
+struct RunOptions {
     std::string backend = "auto";
     std::string device;
     bool list_devices = false;
@@ -36,19 +82,23 @@ struct Options {
     std::filesystem::path report;
     std::optional<double> target_error;  // square root of rel_mse
     std::optional<double> time_limit;    // seconds
-    const View* view = nullptr;
-    std::optional<std::array<float, 3>> camera_position, camera_target, camera_up, background;
-    std::optional<float> vertical_fov;  // degrees
-    bool specular = false;
-    bool light_sampling = true;
-    bool split_every_hit = false;
-    std::vector<std::optional<double>> chapter_values;  // one for each of the chapter's options, if given
-    float exposure = 0;                                 // stops
     std::filesystem::path resume;
     std::optional<double> save_every;  // seconds
     WindowChoice window = WindowChoice::automatic;
     bool validation = false;
     bool quiet = false;
+};
+
+// In groups that are compared and taken over as wholes.
+struct Options {
+    SceneOptions scene;
+    EstimatorOptions estimator;
+    ImageOptions image;
+    CameraOptions camera;
+    LightOptions light;
+    SampleOptions samples;
+    AppearanceOptions appearance;
+    RunOptions run;
 };
 
 // Whether it asks for what only a run without a window does: measurements and stopping by itself.

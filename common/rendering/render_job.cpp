@@ -1,7 +1,6 @@
 #include "rendering/render_job.h"
 
 #include "error.h"
-#include "files/file.h"
 #include "files/hash.h"
 #include "rendering/settings.h"
 
@@ -9,14 +8,15 @@ namespace lab {
 namespace {
 
 // The earlier run that this one continues. Throws UserError if it rendered something else.
-FilmFile load_earlier_run(const RenderJob& job, const Options& options) {
-    FilmFile earlier = read_film(options.resume);
-    if (options.first_sample != 0 && options.first_sample != earlier.record.first_sample)
-        throw UserError("--first-sample " + std::to_string(options.first_sample) + " does not fit " +
-                        options.resume.string() + ", which starts at sample " +
+FilmFile load_earlier_run(const RenderJob& job) {
+    const Options& options = job.options;
+    FilmFile earlier = read_film(options.run.resume);
+    if (options.samples.first_sample != 0 && options.samples.first_sample != earlier.record.first_sample)
+        throw UserError("--first-sample " + std::to_string(options.samples.first_sample) + " does not fit " +
+                        options.run.resume.string() + ", which starts at sample " +
                         std::to_string(earlier.record.first_sample) + ": leave it out");
     const FilmFile wanted{{job.parameters.image_size.x, job.parameters.image_size.y, {}}, job.record};
-    require_same_render(earlier, wanted, options.resume.string(), "this command");
+    require_same_render(earlier, wanted, options.run.resume.string(), "this command");
     return earlier;
 }
 
@@ -26,24 +26,26 @@ void check_sample_count(const RenderJob& job) {
             "--first-sample + --samples is above 2^32: there are no more random numbers than that");
 }
 
-}  // namespace
-
 void check_scene(const Chapter& chapter, const Scene& scene) {
     if (features_of(scene).dielectrics && !chapter.dielectrics)
         throw UserError(scene.file.string() + ": has a dielectric (d < 1), which " + chapter.name +
                         " cannot render: use chapter 6, ./lab run 6");
 }
 
-RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& estimator,
-                   const Options& options) {
+}  // namespace
+
+RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_ptr<const Scene> scene) {
+    check_scene(chapter, *scene);
     RenderJob job;
+    job.estimator = make_estimator(chapter, options);
+    job.scene = std::move(scene);
     job.record.chapter = chapter.name;
-    job.record.scene = scene.file.filename().string();
-    job.record.scene_hash = hexadecimal(scene.hash);
-    job.record.estimator_hash = hexadecimal(hash_text(read_file(estimator.file, 1 << 24)));
-    set_options(job, chapter, scene, options);
-    if (!options.resume.empty()) {
-        job.resumed = load_earlier_run(job, options);
+    job.record.scene = job.scene->file.filename().string();
+    job.record.scene_hash = hexadecimal(job.scene->hash);
+    job.record.estimator_hash = hexadecimal(estimator_hash(job.estimator));
+    set_options(job, chapter, options);
+    if (!options.run.resume.empty()) {
+        job.resumed = load_earlier_run(job);
         job.record.first_sample = job.resumed->record.first_sample;
         job.parameters.first_sample = job.record.first_sample;
         job.record.seconds = job.resumed->record.seconds;
@@ -53,18 +55,13 @@ RenderJob make_job(const Chapter& chapter, const Scene& scene, const Estimator& 
     return job;
 }
 
-void record_device(RenderJob& job, const std::string& device, const std::string& backend) {
-    job.record.device = !job.resumed || job.resumed->record.device == device ? device : "several";
-    job.record.backend = !job.resumed || job.resumed->record.backend == backend ? backend : "several";
-}
-
-void set_options(RenderJob& job, const Chapter& chapter, const Scene& scene, const Options& options) {
-    job.options = &options;
-    job.parameters = make_parameters(chapter, scene, options);
-    job.samples = options.samples.value_or(scene.defaults.samples);
-    job.record.settings = settings_text(chapter, job.parameters, scene, options);
-    job.record.seed = options.seed;
-    job.record.first_sample = options.first_sample;
+void set_options(RenderJob& job, const Chapter& chapter, const Options& options) {
+    job.options = options;
+    job.parameters = make_parameters(chapter, *job.scene, options);
+    job.samples = options.appearance.sample_count.value_or(job.scene->defaults.samples);
+    job.record.settings = settings_text(chapter, job.parameters, *job.scene, options);
+    job.record.seed = options.samples.seed;
+    job.record.first_sample = options.samples.first_sample;
     job.record.seconds = 0;
     job.record.rays = 0;
     job.resumed.reset();

@@ -49,7 +49,7 @@ RenderParameters default_parameters(const Scene& scene, const CameraPose& camera
             .background = scene.background,
             .probe_rotation = scene.probe_rotation,
             .splitting_factor = 1,
-            .roulette_start = 1,
+            .roulette_start = no_roulette,
             .survival_cap = 0.95f};
 }
 

@@ -10,8 +10,11 @@ namespace lab {
 // Key of the random start states for a seed.
 uvec2 seed_key(uint32_t seed);
 
-// To render a scene as its file asks, with seed 1, no splitting and a survival cap of 0.95; the second from
-// another camera.
+// The bounce at which Russian roulette begins where there is none.
+inline constexpr uint32_t no_roulette = UINT32_MAX;
+
+// To render a scene as its file asks, with seed 1, without splitting and roulette; the second from another
+// camera.
 RenderParameters default_parameters(const Scene& scene, uvec2 image_size);
 RenderParameters default_parameters(const Scene& scene, const CameraPose& camera, uvec2 image_size);
 

@@ -5,7 +5,6 @@
 #include "error.h"
 #include "files/hash.h"
 #include "files/project_folder.h"
-#include "scene/features.h"
 
 namespace lab {
 namespace {
@@ -36,12 +35,11 @@ bool are_equal(const Camera& a, const Camera& b) {
 
 // What makes the image another one than that of the scene's file, if anything.
 std::string difference_from_file(const Scene& scene, const RenderParameters& parameters) {
-    const Scene file = load_scene(scene.file);
-    const RenderParameters of_file = default_parameters(file, parameters.image_size);
+    const RenderParameters of_file = default_parameters(scene, parameters.image_size);
     if (!are_equal(parameters.camera, of_file.camera)) return "the camera has moved";
     if (parameters.background != of_file.background || parameters.probe_rotation != of_file.probe_rotation)
         return "the background is another one";
-    if (features_of(scene).specular != features_of(file).specular) return "the specular lobe is another one";
+    if (scene.has_added_lobes) return "the specular lobe is another one";
     if (parameters.only_path_length >= 0) return "the picture shows a single path length";
     return "";
 }

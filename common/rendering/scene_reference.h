@@ -8,8 +8,8 @@
 namespace lab {
 
 // The reference in assets/references that shows what is rendered with these parameters, or why there is none:
-// in one line, to be shown after "no verdict: ". `scene` may differ from its file, which is read again, as
-// may the parameters: moved cameras, another sky and other path lengths have other images.
+// in one line, to be shown after "no verdict: ". Moved cameras, another sky and other path lengths have other
+// images.
 std::variant<Reference, std::string> find_reference(const Scene& scene, const RenderParameters& parameters);
 
 }  // namespace lab

@@ -31,22 +31,22 @@ std::string to_text(const vec3& v) {
 }
 
 uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Options& options) {
-    const uint32_t only = options.only_path_length.value_or(0);
-    if (options.max_path_length && only > *options.max_path_length)
+    const uint32_t only = options.light.only_path_length.value_or(0);
+    if (options.light.max_path_length && only > *options.light.max_path_length)
         throw UserError("--only-path-length " + std::to_string(only) + " is above --max-path-length " +
-                        std::to_string(*options.max_path_length) + ": the picture would be black");
+                        std::to_string(*options.light.max_path_length) + ": the picture would be black");
     uint32_t length = scene.defaults.max_path_length;
     if (chapter.unlimited_path_length) length = safety_limit;
-    if (options.split_every_hit) length = split_every_hit_length;
-    return std::max(options.max_path_length.value_or(length), only);
+    if (options.estimator.split_every_hit) length = split_every_hit_length;
+    return std::max(options.light.max_path_length.value_or(length), only);
 }
 
 // The value of the chapter's option number i: as given, or its default.
 double value_of(const Chapter& chapter, size_t i, const Options& options) {
     const ChapterOption& option = chapter.options[i];
-    const bool splits_every_hit = options.split_every_hit && option.name == splitting_factor.name;
-    return options.chapter_values[i].value_or(splits_every_hit ? split_every_hit_factor
-                                                               : option.default_value);
+    const bool splits_every_hit = options.estimator.split_every_hit && option.name == "--splitting-factor";
+    return options.samples.chapter_values[i].value_or(splits_every_hit ? split_every_hit_factor
+                                                                       : option.default_value);
 }
 
 void check_split_every_hit(const RenderParameters& parameters) {
@@ -75,26 +75,27 @@ double largest_albedo(const Scene& scene) {
 
 CameraPose camera_of(const Scene& scene, const Options& options) {
     CameraPose pose = scene.camera;
-    if (options.camera_position) pose.position = to_vector(*options.camera_position);
-    if (options.camera_target) pose.target = to_vector(*options.camera_target);
-    if (options.camera_up) pose.up = to_vector(*options.camera_up);
-    pose.vertical_fov = options.vertical_fov.value_or(pose.vertical_fov);
+    if (options.camera.position) pose.position = to_vector(*options.camera.position);
+    if (options.camera.target) pose.target = to_vector(*options.camera.target);
+    if (options.camera.up) pose.up = to_vector(*options.camera.up);
+    pose.vertical_fov = options.camera.vertical_fov.value_or(pose.vertical_fov);
     return pose;
 }
 
 vec3 background_of(const Scene& scene, const Options& options) {
-    return options.background ? to_vector(*options.background) : scene.background;
+    return options.light.background ? to_vector(*options.light.background) : scene.background;
 }
 
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
-    const uvec2 image_size(options.width.value_or(scene.defaults.width),
-                           options.height.value_or(scene.defaults.height));
+    const uvec2 image_size(options.image.width.value_or(scene.defaults.width),
+                           options.image.height.value_or(scene.defaults.height));
     RenderParameters parameters = default_parameters(scene, camera_of(scene, options), image_size);
     parameters.background = background_of(scene, options);
-    parameters.seed_key = seed_key(options.seed);
-    parameters.first_sample = options.first_sample;
+    parameters.seed_key = seed_key(options.samples.seed);
+    parameters.first_sample = options.samples.first_sample;
     parameters.max_path_length = max_path_length(chapter, scene, options);
-    if (options.only_path_length) parameters.only_path_length = static_cast<int>(*options.only_path_length);
+    if (options.light.only_path_length)
+        parameters.only_path_length = static_cast<int>(*options.light.only_path_length);
     for (size_t i = 0; i < chapter.options.size(); ++i)
         std::visit(
             [&](auto member) {
@@ -102,7 +103,7 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
                 parameters.*member = static_cast<Number>(value_of(chapter, i, options));
             },
             chapter.options[i].parameter);
-    if (options.split_every_hit) check_split_every_hit(parameters);
+    if (options.estimator.split_every_hit) check_split_every_hit(parameters);
     return parameters;
 }
 
@@ -114,10 +115,10 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     if (parameters.only_path_length >= 0) text << " --only-path-length " << parameters.only_path_length;
     for (size_t i = 0; i < chapter.options.size(); ++i)
         text << ' ' << chapter.options[i].name << ' ' << value_of(chapter, i, options);
-    if (!options.light_sampling) text << " --light-sampling off";
-    if (options.split_every_hit) text << " --split-every-hit";
-    if (options.view) text << " --view " << options.view->name;
-    if (options.specular) text << " --specular";
+    if (!options.estimator.light_sampling) text << " --light-sampling off";
+    if (options.estimator.split_every_hit) text << " --split-every-hit";
+    if (options.image.view) text << " --view " << options.image.view->name;
+    if (options.scene.specular) text << " --specular";
     const CameraPose pose = camera_of(scene, options);
     text << " --camera-position " << to_text(pose.position) << " --camera-target " << to_text(pose.target)
          << " --camera-up " << to_text(pose.up) << " --vertical-fov " << pose.vertical_fov << " --background "
@@ -126,10 +127,10 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
 }
 
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
-    const auto folder = project_folder() / "chapters" / chapter.name;
-    if (!options.view)
-        return {folder / (options.split_every_hit ? "path_trace_every_hit.glsl" : "path_trace.glsl")};
-    return {project_folder() / "shaders" / "view.glsl", {options.view->define}};
+    const auto shared = project_folder() / "shaders";
+    if (options.image.view) return {shared / "view.glsl", {options.image.view->define}};
+    if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};
+    return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
 }
 
 std::string safety_limit_text(const Scene& scene) {

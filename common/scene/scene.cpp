@@ -106,6 +106,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
         }
     };
     load([&] { load_meshes(description, specular || description.specular, sources, scene); });
+    scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
 
     scene.background = description.background.value_or(vec3(0));
     scene.probe_rotation = description.probe_rotation;

@@ -71,6 +71,7 @@ struct Scene {
     std::optional<Image> light_probe;  // equirectangular, +Y up, image centre towards -Z
     float probe_rotation = 0;          // radians
     RenderDefaults defaults;
+    bool has_added_lobes = false;  // Phong lobes that --specular has switched on, not the file
 
     std::vector<std::string> warnings;  // one line each, to be shown to the user
     uint64_t hash = 0;                  // FNV-1a of all files that the scene was read from

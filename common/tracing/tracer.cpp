@@ -1,6 +1,8 @@
 #include "tracing/tracer.h"
 
 #include "error.h"
+#include "files/file.h"
+#include "files/hash.h"
 #include "files/project_folder.h"
 #include "tracing/backends.h"
 
@@ -30,6 +32,17 @@ void require_support(Backend backend, const DeviceDescription& device) {
                       " for the backend '" + to_string(backend) + "'; these work on it: " + working);
 }
 
+// These shaders of shaders/ and all that they include.
+std::set<std::filesystem::path> files_of(std::initializer_list<const char*> names,
+                                         const Estimator& estimator) {
+    std::set<std::filesystem::path> files;
+    for (const char* name : names)
+        for (const auto& file : shader_files({.file = project_folder() / "shaders" / name,
+                                .named_includes = {{"path_trace.glsl", estimator.file}}}))
+            files.insert(file);
+    return files;
+}
+
 }  // namespace
 
 ShaderSource shader_source(const std::string& name, ShaderStage stage, const GpuScene& scene,
@@ -45,13 +58,19 @@ ShaderSource shader_source(const std::string& name, ShaderStage stage, const Gpu
 }
 
 std::set<std::filesystem::path> shader_files(const Estimator& estimator) {
-    std::set<std::filesystem::path> files;
-    for (const char* name : {"render.comp", "render.rgen", "add_samples.comp", "trace_ray/closest_hit.rchit",
-                             "trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"})
-        for (const auto& file : shader_files({.file = project_folder() / "shaders" / name,
-                                .named_includes = {{"path_trace.glsl", estimator.file}}}))
-            files.insert(file);
-    return files;
+    return files_of({"render.comp", "render.rgen", "add_samples.comp", "trace_ray/closest_hit.rchit",
+                     "trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"},
+                    estimator);
+}
+
+uint64_t estimator_hash(const Estimator& estimator) {
+    uint64_t hash = hash_text("");
+    for (const auto& define : estimator.defines) hash = hash_text(define + "\n", hash);
+    // What render.comp and render.rgen have in common.
+    for (const auto& file :
+         files_of({"interface.h", "scene.glsl", "ray.glsl", "render_samples.glsl"}, estimator))
+        hash = hash_text(read_file(file, 1 << 24), hash);
+    return hash;
 }
 
 std::vector<Binding> join(std::initializer_list<std::span<const Binding>> lists) {

@@ -27,6 +27,10 @@ struct Estimator {
 // The files that an estimator is compiled from, with whatever backend: the shared shaders and its own.
 std::set<std::filesystem::path> shader_files(const Estimator& estimator);
 
+// A hash of what an estimator is compiled from: its defines and its own shaders, and those shared ones that
+// are the same with every backend and on every device. Renders of estimators with equal hashes can be joined.
+uint64_t estimator_hash(const Estimator& estimator);
+
 // An estimator that is compiled for a scene and a backend.
 class Tracer {
   public:

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "error.h"
-#include "rendering/chapter_folder.h"
 #include "statistics/noise.h"
 
 namespace lab {
@@ -13,19 +12,10 @@ namespace {
 // `own` with everything that decides what is seen taken from `shown`.
 Options with_same_view(Options own, const Options& shown) {
     own.scene = shown.scene;
-    own.specular = shown.specular;
-    own.width = shown.width;
-    own.height = shown.height;
-    own.max_path_length = shown.max_path_length;
-    own.only_path_length = shown.only_path_length;
-    own.view = shown.view;
-    own.camera_position = shown.camera_position;
-    own.camera_target = shown.camera_target;
-    own.camera_up = shown.camera_up;
-    own.vertical_fov = shown.vertical_fov;
-    own.background = shown.background;
-    own.exposure = shown.exposure;
-    own.samples = shown.samples;
+    own.image = shown.image;
+    own.camera = shown.camera;
+    own.light = shown.light;
+    own.appearance = shown.appearance;
     return own;
 }
 
@@ -39,39 +29,42 @@ void Comparison::start(const Session& first, const std::string& chapter) {
     if (chapter == first.chapter().name) {
         chapter_ = first.chapter();
     } else {
-        chapter_ = chapter_in_folder(chapter);
-        options.chapter_values.assign(chapter_.options.size(), std::nullopt);
-        options.split_every_hit = false;
+        try {
+            chapter_ = load_chapter(chapter);
+        } catch (const UserError& error) {
+            message_ = error.what();
+            return;
+        }
+        options.samples.chapter_values.assign(chapter_.options.size(), std::nullopt);
+        options.estimator.split_every_hit = false;
     }
     // Other random numbers: equal ones would make differences look smaller than they are.
-    ++options.seed;
-    options.resume.clear();
-    work_ = std::async(std::launch::async, [this, options, scene = first.build().scene] {
-        return make_build(device_, chapter_, options, BuildStage::scene, nullptr, scene);
+    ++options.samples.seed;
+    options.run.resume.clear();
+    work_.start([&device = device_, of = chapter_, options, scene = first.build().job.scene] {
+        return make_window_build(device, of, make_job(of, options, scene));
     });
 }
 
 void Comparison::stop() {
-    if (work_.valid()) work_.wait();
-    work_ = {};
-    second_.reset();
+    work_.abandon();
+    if (second_) ending_.push_back(std::move(second_));
     message_.clear();
 }
 
 void Comparison::adopt_finished_build() {
-    if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    if (!work_.is_done()) return;
     try {
-        second_ = std::make_unique<Session>(device_, chapter_, work_.get());
-    } catch (const UserError& error) {
-        message_ = error.what();
-    } catch (const DeviceFailure& error) {
-        message_ = error.what();
+        second_ = std::make_unique<Session>(device_, chapter_, work_.take());
+    } catch (const std::exception& error) {
+        message_ = window_message(error);
     }
 }
 
 void Comparison::update(Session& first, double seconds, bool is_moving) {
     const bool had_second = is_active();
     adopt_finished_build();
+    std::erase_if(ending_, [](const auto& session) { return session->can_end(); });
     first.waits = false;
     if (!second_) return first.update(seconds, is_moving);
     if (!had_second) first.restart();  // both start together
@@ -91,13 +84,14 @@ void Comparison::update(Session& first, double seconds, bool is_moving) {
 
 std::vector<Layer> Comparison::layers(const Session& first, const Rectangle& where) const {
     const auto layer = [&](const Session& session, float from, float to) {
-        const Options& options = session.build().options;
-        return Layer{.pass = session.build().display.get(),
-                     .transform = options.view ? options.view->display : DisplayTransform::exposure,
-                     .exposure = session.options().exposure,
-                     .where = where,
-                     .from = from,
-                     .to = to};
+        const Options& options = session.build().job.options;
+        return Layer{
+            .pass = session.build().display.get(),
+            .transform = options.image.view ? options.image.view->display : DisplayTransform::exposure,
+            .exposure = session.options().appearance.exposure,
+            .where = where,
+            .from = from,
+            .to = to};
     };
     if (!second_) return {layer(first, 0, 1)};
     return {layer(first, 0, split), layer(*second_, split, 1)};

@@ -17,9 +17,9 @@ class Comparison {
     // Starts the second render of what the first one shows, with the settings that it has now, by this
     // chapter.
     void start(const Session& first, const std::string& chapter);
-    void stop();
+    void stop();  // waits for nothing
     bool is_active() const { return second_ != nullptr; }
-    bool is_building() const { return work_.valid(); }
+    bool is_building() const { return work_.is_under_way(); }
     const std::string& message() const { return message_; }  // why there is no second render; may be empty
     const Session& second() const { return *second_; }
 
@@ -47,7 +47,8 @@ class Comparison {
     std::vector<std::string> chapters_;
     Chapter chapter_;  // of the second render
     std::unique_ptr<Session> second_;
-    std::future<std::unique_ptr<Build>> work_;
+    BackgroundWork<std::unique_ptr<WindowBuild>> work_;
+    std::vector<std::unique_ptr<Session>> ending_;  // former second renders, until their builds are done
     std::string message_;
 };
 

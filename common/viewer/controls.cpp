@@ -135,7 +135,7 @@ void Controls::draw_actions(Session& session) {
 }
 
 void Controls::save(Session& session, const char* ending) {
-    const std::string scene = session.build().scene->file.stem().string();
+    const std::string scene = session.build().job.scene->file.stem().string();
     const std::string samples = std::to_string(static_cast<uint64_t>(session.samples()));
     const auto file = std::filesystem::path("output") /
                       (session.chapter().name + "_" + scene + "_" + samples + "_samples" + ending);
@@ -150,9 +150,9 @@ void Controls::save(Session& session, const char* ending) {
 
 void Controls::draw_scene(Session& session, Options& options) {
     ImGui::Separator();
-    if (ImGui::BeginCombo("scene", options.scene.stem().string().c_str())) {
+    if (ImGui::BeginCombo("scene", options.scene.file.stem().string().c_str())) {
         for (const auto& file : scenes_)
-            if (ImGui::Selectable(file.stem().string().c_str(), file.stem() == options.scene.stem())) {
+            if (ImGui::Selectable(file.stem().string().c_str(), file.stem() == options.scene.file.stem())) {
                 session.open_scene(file);
                 options = session.options();
             }
@@ -162,47 +162,48 @@ void Controls::draw_scene(Session& session, Options& options) {
     vec3 background = session.background();
     if (ImGui::ColorEdit3("background", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
         background = glm::max(background, vec3(0));
-        options.background = {background.x, background.y, background.z};
+        options.light.background = {background.x, background.y, background.z};
     }
-    ImGui::Checkbox("specular lobes (Ks)", &options.specular);
+    ImGui::Checkbox("specular lobes (Ks)", &options.scene.specular);
 }
 
 void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options) {
     ImGui::Separator();
-    optional_slider("max path length", options.max_path_length, parameters.max_path_length,
+    optional_slider("max path length", options.light.max_path_length, parameters.max_path_length,
                     longest_shown_path);
-    optional_slider("only path length", options.only_path_length, 1, longest_shown_path);
-    if (options.max_path_length && options.only_path_length)
-        options.max_path_length = std::max(*options.max_path_length, *options.only_path_length);
-    if (chapter.light_sampling) ImGui::Checkbox("light sampling", &options.light_sampling);
-    if (chapter.split_every_hit) ImGui::Checkbox("split at every hit", &options.split_every_hit);
-    options.chapter_values.resize(chapter.options.size());
+    optional_slider("only path length", options.light.only_path_length, 1, longest_shown_path);
+    if (options.light.max_path_length && options.light.only_path_length)
+        options.light.max_path_length =
+            std::max(*options.light.max_path_length, *options.light.only_path_length);
+    if (chapter.light_sampling) ImGui::Checkbox("light sampling", &options.estimator.light_sampling);
+    if (chapter.split_every_hit) ImGui::Checkbox("split at every hit", &options.estimator.split_every_hit);
+    options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i)
-        draw_chapter_option(chapter.options[i], parameters, options.chapter_values[i]);
-    number_field("seed", options.seed);
+        draw_chapter_option(chapter.options[i], parameters, options.samples.chapter_values[i]);
+    number_field("seed", options.samples.seed);
     seed_field_ = {ImGui::GetItemRectMin().x + 20, ImGui::GetItemRectMin().y + 5};
-    uint32_t samples = options.samples.value_or(0);
+    uint32_t samples = options.appearance.sample_count.value_or(0);
     if (number_field("samples (0: no end)", samples))
-        options.samples = samples > 0 ? std::optional(samples) : std::nullopt;
+        options.appearance.sample_count = samples > 0 ? std::optional(samples) : std::nullopt;
 }
 
 void Controls::draw_picture(const Session& session, Options& options) {
     ImGui::Separator();
     const uvec2 size = session.build().job.parameters.image_size;
-    if (ImGui::BeginCombo("view", options.view ? options.view->name.c_str() : "radiance")) {
-        if (ImGui::Selectable("radiance", !options.view)) options.view = nullptr;
+    if (ImGui::BeginCombo("view", options.image.view ? options.image.view->name.c_str() : "radiance")) {
+        if (ImGui::Selectable("radiance", !options.image.view)) options.image.view = nullptr;
         for (const View& view : views()) {
             // That one looks into our own hierarchy.
             const bool is_possible = view.name != "bvh-steps" || session.build().backend == Backend::compute;
-            if (is_possible && ImGui::Selectable(view.name.c_str(), options.view == &view))
-                options.view = &view;
+            if (is_possible && ImGui::Selectable(view.name.c_str(), options.image.view == &view))
+                options.image.view = &view;
         }
         ImGui::EndCombo();
     }
-    ImGui::SliderFloat("exposure", &options.exposure, -10, 10, "%.1f EV");
+    ImGui::SliderFloat("exposure", &options.appearance.exposure, -10, 10, "%.1f EV");
     uint32_t width = size.x, height = size.y;
-    if (number_field("width", width)) options.width = std::clamp(width, 1u, max_image_extent);
-    if (number_field("height", height)) options.height = std::clamp(height, 1u, max_image_extent);
+    if (number_field("width", width)) options.image.width = std::clamp(width, 1u, max_image_extent);
+    if (number_field("height", height)) options.image.height = std::clamp(height, 1u, max_image_extent);
 }
 
 void Controls::draw_camera(Session& session, CameraControl& camera_control) {

@@ -1,5 +1,6 @@
 #include "viewer/display_pass.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "files/project_folder.h"
@@ -16,7 +17,8 @@ std::vector<Binding> bindings(const Film& film, const StorageImage& picture, con
 }  // namespace
 
 DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr<StorageImage> picture)
-    : film_(&film),
+    : device_(&device),
+      film_(&film),
       picture_(std::move(picture)),
       largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
       kernel_(device, {.file = project_folder() / "shaders" / "display.comp"},
@@ -25,9 +27,11 @@ DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform,
                          float exposure) const {
     const uint32_t blocks = count_blocks({picture_->width(), picture_->height()});
+    const uint32_t groups = std::min(blocks, device_->limits().maxComputeWorkGroupCount[0]);
     const bool is_radiance = transform == DisplayTransform::exposure;
     DisplayParameters parameters{.film_size = {film_->width(), film_->height()},
                                  .image_size = {picture_->width(), picture_->height()},
+                                 .block_count = blocks,
                                  .scale = is_radiance ? std::exp2(exposure) : 1.0f,
                                  .is_srgb = is_radiance,
                                  .divides_by_largest = 0};
@@ -36,11 +40,11 @@ void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransfo
         commands.fillBuffer(largest_value_.handle(), 0, VK_WHOLE_SIZE, 0);
         wait_for_writes(commands);
         parameters.divides_by_largest = 2;
-        kernel_.record(commands, &parameters, blocks);
+        kernel_.record(commands, &parameters, groups);
         wait_for_writes(commands);
         parameters.divides_by_largest = 1;
     }
-    kernel_.record(commands, &parameters, blocks);
+    kernel_.record(commands, &parameters, groups);
     wait_for_writes(commands);
 }
 

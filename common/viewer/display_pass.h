@@ -20,6 +20,7 @@ class DisplayPass {
     const std::shared_ptr<StorageImage>& shared_picture() const { return picture_; }
 
   private:
+    const Device* device_;
     const Film* film_;
     std::shared_ptr<StorageImage> picture_;
     Buffer largest_value_;

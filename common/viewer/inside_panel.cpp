@@ -117,6 +117,8 @@ void InsidePanel::draw_path_list() {
     ImGui::SameLine();
     if (ImGui::SmallButton(">")) ++selection.sample;
     if (!path.is_complete) ImGui::TextColored(red, "too long to be shown as a whole");
+    const bool is_weighted = path.has_throughput || path.vertices.size() == 1;
+    if (!is_weighted) ImGui::TextColored(red, "the shader has no variable `throughput` to follow");
     ImGui::BeginChild("vertices", {0, 16 * ImGui::GetFontSize()}, true);
     for (size_t i = 0; i < path.vertices.size(); ++i) {
         const PathVertex& vertex = path.vertices[i];
@@ -127,7 +129,7 @@ void InsidePanel::draw_path_list() {
         if (ImGui::Selectable(title, i == selection.vertex)) selection.vertex = i;
         if (vertex.survival_probability)
             ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
-        text_vector("throughput", vertex.throughput);
+        if (is_weighted) text_vector("throughput", vertex.throughput);
         if (vertex.is_hit) {
             text_vector("position", vertex.position);
             text_vector("normal", vertex.normal);

@@ -7,12 +7,12 @@
 
 namespace lab {
 
-std::unique_ptr<Inspection::Tools> Inspection::wanted_tools(const Session& session) const {
-    const Build& build = session.build();
-    Options options = build.options;
-    options.view = nullptr;
-    auto tools = std::make_unique<Tools>();
-    tools->scene = build.scene;
+std::shared_ptr<Inspection::Tools> Inspection::wanted_tools(const Session& session) const {
+    const WindowBuild& build = session.build();
+    Options options = build.job.options;
+    options.image.view = nullptr;
+    auto tools = std::make_shared<Tools>();
+    tools->scene = build.job.scene;
     tools->gpu_scene = build.gpu_scene;
     tools->acceleration_structure = build.acceleration_structure;
     tools->estimator = make_estimator(session.chapter(), options);
@@ -21,37 +21,33 @@ std::unique_ptr<Inspection::Tools> Inspection::wanted_tools(const Session& sessi
     return tools;
 }
 
-std::unique_ptr<Inspection::Tools> Inspection::make_tools(const Device& device,
-                                                          std::unique_ptr<Tools> tools) {
-    const AccelerationStructure& structure = *tools->acceleration_structure;
-    tools->recorder = std::make_unique<PathRecorder>(device, structure, tools->estimator, tools->image_size);
-    tools->hemisphere = std::make_unique<HemisphereView>(device, structure, tools->estimator);
-    return tools;
-}
-
 // Whether there are tools for what the session renders; if not, starts making them.
 bool Inspection::have_tools(const Session& session) {
-    if (work_.valid()) {
-        if (work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    if (work_.is_under_way()) {
+        if (!work_.is_done()) return false;
         try {
-            tools_ = work_.get();
+            tools_ = work_.take();
             shown_.reset();
             message_.clear();
-        } catch (const UserError& error) {
-            message_ = error.what();
-            failed_shader_hash_ = session.build().shader_hash;
-        } catch (const DeviceFailure& error) {
-            message_ = error.what();
-            failed_shader_hash_ = session.build().shader_hash;
+        } catch (const std::exception& error) {
+            message_ = window_message(error);
+            failed_shader_hash_ = work_shader_hash_;
         }
     }
-    auto wanted = wanted_tools(session);
+    const auto wanted = wanted_tools(session);
     if (tools_ && tools_->acceleration_structure == wanted->acceleration_structure &&
         tools_->shader_hash == wanted->shader_hash && tools_->estimator.file == wanted->estimator.file &&
         tools_->image_size == wanted->image_size)
         return true;
     if (wanted->shader_hash == failed_shader_hash_) return false;
-    work_ = std::async(std::launch::async, make_tools, std::cref(device_), std::move(wanted));
+    work_shader_hash_ = wanted->shader_hash;
+    work_.start([&device = device_, wanted] {
+        const AccelerationStructure& structure = *wanted->acceleration_structure;
+        wanted->recorder =
+            std::make_unique<PathRecorder>(device, structure, wanted->estimator, wanted->image_size);
+        wanted->hemisphere = std::make_unique<HemisphereView>(device, structure, wanted->estimator);
+        return wanted;
+    });
     return false;
 }
 

@@ -1,7 +1,5 @@
 // What happens at a pixel that the user has chosen: one path after the other, and what its points see.
 #pragma once
-#include <future>
-
 #include "inside/hemisphere_view.h"
 #include "viewer/session.h"
 
@@ -27,8 +25,8 @@ class Inspection {
     // seconds.
     void update(const Session& session, double seconds);
 
-    bool is_building() const { return work_.valid(); }       // its shaders, in the background
-    const std::string& message() const { return message_; }  // why there is nothing to see; may be empty
+    bool is_building() const { return work_.is_under_way(); }  // its shaders, in the background
+    const std::string& message() const { return message_; }    // why there is nothing to see; may be empty
     // None while the shaders are compiled or the camera moves.
     const std::optional<RecordedPath>& path() const { return path_; }
     const RenderParameters& parameters() const { return parameters_; }  // of the path
@@ -47,14 +45,14 @@ class Inspection {
         std::unique_ptr<PathRecorder> recorder;
         std::unique_ptr<HemisphereView> hemisphere;
     };
-    static std::unique_ptr<Tools> make_tools(const Device& device, std::unique_ptr<Tools> tools);
-    std::unique_ptr<Tools> wanted_tools(const Session& session) const;
+    std::shared_ptr<Tools> wanted_tools(const Session& session) const;
     bool have_tools(const Session& session);
 
     const Device& device_;
     std::optional<Selection> selection_, shown_;
-    std::unique_ptr<Tools> tools_;
-    std::future<std::unique_ptr<Tools>> work_;
+    std::shared_ptr<Tools> tools_;
+    BackgroundWork<std::shared_ptr<Tools>> work_;
+    uint64_t work_shader_hash_ = 0;  // that the tools in progress are for
     uint64_t failed_shader_hash_ = 0;
     std::string message_;
     std::optional<RecordedPath> path_;

@@ -19,11 +19,7 @@ std::array<float, 3> to_array(const vec3& v) { return {v.x, v.y, v.z}; }
 
 // Whether a render goes on with these options: they differ at most in what shows it.
 bool has_same_samples(const Options& a, const Options& b) {
-    return a.seed == b.seed && a.first_sample == b.first_sample && a.max_path_length == b.max_path_length &&
-           a.only_path_length == b.only_path_length && a.camera_position == b.camera_position &&
-           a.camera_target == b.camera_target && a.camera_up == b.camera_up &&
-           a.vertical_fov == b.vertical_fov && a.background == b.background &&
-           a.chapter_values == b.chapter_values;
+    return a.samples == b.samples && a.camera == b.camera && a.light == b.light;
 }
 
 // Names of files in messages start at the project's folder.
@@ -36,19 +32,19 @@ std::string shortened(std::string message) {
 
 }  // namespace
 
-Session::Session(const Device& device, const Chapter& chapter, std::unique_ptr<Build> first_build)
-    : device_(device), chapter_(chapter), options_(first_build->options), build_(std::move(first_build)) {
+Session::Session(const Device& device, Chapter chapter, std::unique_ptr<WindowBuild> first_build)
+    : device_(device),
+      chapter_(std::move(chapter)),
+      options_(first_build->job.options),
+      build_(std::move(first_build)),
+      needs_restart_(!build_->job.resumed) {
     watched_shaders_ = build_->shader_files;
     shader_hash_ = build_->shader_hash;
-    if (build_->job.resumed) {
-        build_->renderer->resume(build_->job.resumed->image);
-        needs_restart_ = false;
-    }
 }
 
-CameraPose Session::camera() const { return camera_of(*build_->scene, options_); }
+CameraPose Session::camera() const { return camera_of(*build_->job.scene, options_); }
 
-vec3 Session::background() const { return background_of(*build_->scene, options_); }
+vec3 Session::background() const { return background_of(*build_->job.scene, options_); }
 
 void Session::change(const Options& options) {
     if (!has_same_samples(options_, options)) needs_restart_ = true;
@@ -57,18 +53,17 @@ void Session::change(const Options& options) {
 
 void Session::set_camera(const CameraPose& pose) {
     Options options = options_;
-    options.camera_position = to_array(pose.position);
-    options.camera_target = to_array(pose.target);
-    options.camera_up = to_array(pose.up);
-    options.vertical_fov = pose.vertical_fov;
+    options.camera.position = to_array(pose.position);
+    options.camera.target = to_array(pose.target);
+    options.camera.up = to_array(pose.up);
+    options.camera.vertical_fov = pose.vertical_fov;
     change(options);
 }
 
 void Session::open_scene(const std::filesystem::path& file) {
-    options_.scene = file;
-    options_.camera_position = options_.camera_target = options_.camera_up = options_.background =
-        std::nullopt;
-    options_.vertical_fov.reset();
+    options_.scene.file = file;
+    options_.camera = {};
+    options_.light.background.reset();
     reloads_scene_ = true;
 }
 
@@ -105,29 +100,29 @@ void Session::look_for_changed_shaders() {
 
 void Session::start_build_if_needed() {
     if (is_building()) return;
-    BuildStage first = reloads_scene_ ? BuildStage::scene : first_difference(build_->options, options_);
+    work_stage_ = reloads_scene_ ? BuildStage::scene : first_difference(build_->job.options, options_);
+    BuildStage first = work_stage_;
     if (shader_hash_ != build_->shader_hash && shader_hash_ != failed_shader_hash_)
         first = std::min(first, BuildStage::renderer);
     if (first == BuildStage::nothing) return;
     reloads_scene_ = false;
     work_shader_hash_ = shader_hash_;
     Options options = options_;
-    options.resume.clear();
-    work_ = std::async(std::launch::async, [this, options, first, before = build_.get()] {
-        return make_build(device_, chapter_, options, first, before);
+    options.run.resume.clear();
+    work_.start([this, options, first, before = build_.get()] {
+        auto scene = before->job.scene;
+        if (first == BuildStage::scene)
+            scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
+        return make_window_build(device_, chapter_, make_job(chapter_, options, scene), first, before);
     });
 }
 
 void Session::adopt_finished_build() {
-    if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    if (!work_.is_done()) return;
     try {
-        build_ = work_.get();
-    } catch (const UserError& error) {
-        return take_back(error.what());
-    } catch (const DeviceFailure& error) {  // such as an image or a scene for which there is no memory
-        return take_back(error.what());
-    } catch (const DeviceError& error) {
-        return take_back(error.what());
+        build_ = work_.take();
+    } catch (const std::exception& error) {
+        return take_back(window_message(error));
     }
     message_.clear();
     failed_shader_hash_ = 0;
@@ -139,20 +134,21 @@ void Session::adopt_finished_build() {
 
 void Session::take_back(const std::string& why) {
     message_ = shortened(why);
-    if (work_shader_hash_ != build_->shader_hash) failed_shader_hash_ = work_shader_hash_;
-    options_ = build_->options;
+    // The shaders have failed only if nothing else was new, and if they are still those that were compiled.
+    if (work_stage_ == BuildStage::nothing && hash_of(watched_shaders_) == work_shader_hash_)
+        failed_shader_hash_ = work_shader_hash_;
+    options_ = build_->job.options;
 }
 
 void Session::begin(uint32_t reduction) {
     needs_restart_ = false;
-    const Options before = build_->options;
+    const Options before = build_->job.options;
     try {
-        build_->options = keep_built(before, options_);
-        set_options(build_->job, chapter_, *build_->scene, build_->options);
+        set_options(build_->job, chapter_, keep_built(before, options_));
     } catch (const UserError& error) {
-        build_->options = options_ = before;
+        options_ = before;
         message_ = error.what();
-        set_options(build_->job, chapter_, *build_->scene, build_->options);
+        set_options(build_->job, chapter_, before);
     }
     RenderParameters parameters = build_->job.parameters;
     reduction_ = reduction;
@@ -167,12 +163,12 @@ void Session::begin(uint32_t reduction) {
 }
 
 void Session::find_verdict() {
-    if (build_->options.view) {
+    if (build_->job.options.image.view) {
         no_verdict_ = "the picture shows no radiance";
         return;
     }
     try {
-        auto reference = find_reference(*build_->scene, build_->job.parameters);
+        auto reference = find_reference(*build_->job.scene, build_->job.parameters);
         if (auto* found = std::get_if<Reference>(&reference))
             verdict_.emplace(std::move(*found), build_->job.parameters.image_size);
         else
@@ -237,10 +233,11 @@ void Session::take_snapshots(uint32_t samples, double seconds) {
             std::sqrt(estimate_error(snapshot_.mean(), samples_after(snapshot_, film).mean()).rel_mse);
     earlier_snapshot_ = std::move(snapshot_);
     snapshot_ = std::move(film);
+    snapshot_record_ = record(seconds);
 }
 
 uint32_t Session::target_samples() const {
-    return options_.samples.value_or(UINT32_MAX - build_->job.record.first_sample);
+    return options_.appearance.sample_count.value_or(UINT32_MAX - build_->job.record.first_sample);
 }
 
 double Session::samples() const { return reduction_ == 1 ? build_->renderer->samples() : 0; }
@@ -256,13 +253,26 @@ void Session::save(const std::vector<std::filesystem::path>& files) {
         while (build_->renderer->advance(1)) {
         }
     }
-    FilmRecord record = build_->job.record;
-    record.seconds += seconds_;
-    record.rays += rays();
-    const FilmImage film = build_->renderer->film().read();
-    Options options = build_->options;
-    options.exposure = options_.exposure;
+    write(files, build_->renderer->film().read(), record(seconds_));
+}
+
+void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film,
+                    const FilmRecord& record) const {
+    Options options = build_->job.options;
+    options.appearance = options_.appearance;
     write_each(files, [&](const std::filesystem::path& file) { write_picture(file, film, record, options); });
+}
+
+FilmRecord Session::record(double seconds) const {
+    FilmRecord record = build_->job.record;
+    record.seconds += seconds;
+    record.rays += rays();
+    return record;
+}
+
+void Session::keep_snapshot_after(const std::exception& error,
+                                  const std::vector<std::filesystem::path>& files) const {
+    keep_after(error, snapshot_, [&] { write(files, snapshot_, snapshot_record_); });
 }
 
 }  // namespace lab

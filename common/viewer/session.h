@@ -1,20 +1,20 @@
 // What a window renders, and the changes that its user makes to it.
 #pragma once
 #include <chrono>
-#include <future>
 
 #include "statistics/live_verdict.h"
-#include "viewer/build.h"
+#include "viewer/background_work.h"
+#include "viewer/window_build.h"
 
 namespace lab {
 
 class Session {
   public:
-    // Device and chapter must outlive the session.
-    Session(const Device& device, const Chapter& chapter, std::unique_ptr<Build> first_build);
+    // The device must outlive the session.
+    Session(const Device& device, Chapter chapter, std::unique_ptr<WindowBuild> first_build);
 
     const Chapter& chapter() const { return chapter_; }
-    const Build& build() const { return *build_; }
+    const WindowBuild& build() const { return *build_; }
     // What is wanted, which is what is rendered unless a build is in progress.
     const Options& options() const { return options_; }
     CameraPose camera() const;
@@ -35,9 +35,13 @@ class Session {
 
     bool is_paused = false;
     bool waits = false;  // for another session that is to keep up
-    bool is_building() const { return work_.valid(); }
+    bool is_building() const { return work_.is_under_way(); }
+    // The session can end without waiting for a build.
+    bool can_end() const { return !is_building() || work_.is_done(); }
     // Another scene is on its way: camera and background are its own already.
-    bool is_loading_scene() const { return reloads_scene_ || options_.scene != build_->options.scene; }
+    bool is_loading_scene() const {
+        return reloads_scene_ || options_.scene.file != build_->job.options.scene.file;
+    }
     const std::string& message() const { return message_; }  // the last failure; empty if there is none
 
     // --- Progress since the last restart.
@@ -56,9 +60,13 @@ class Session {
 
     // Writes what there is so far, each file in the format of its ending, as a run without a window does.
     void save(const std::vector<std::filesystem::path>& files);
-    const FilmImage& last_snapshot() const { return snapshot_; }  // what remains if the device is lost
+    const FilmImage& last_snapshot() const { return snapshot_; }
     // The snapshot before that, mostly of half as many samples; without pixels if there is only one.
     const FilmImage& earlier_snapshot() const { return earlier_snapshot_; }
+    // After an error of the device or of memory: writes what was last read from the device and throws, as
+    // keep_after() says.
+    [[noreturn]] void keep_snapshot_after(const std::exception& error,
+                                          const std::vector<std::filesystem::path>& files) const;
 
   private:
     void look_for_changed_shaders();
@@ -68,15 +76,19 @@ class Session {
     void render(double seconds);
     void take_snapshots(uint32_t samples, double seconds);
     void find_verdict();
+    void write(const std::vector<std::filesystem::path>& files, const FilmImage& film,
+               const FilmRecord& record) const;
+    FilmRecord record(double seconds) const;  // after so many of rendering
     uint32_t find_reduction(double seconds) const;
     void take_back(const std::string& why);
 
     const Device& device_;
-    const Chapter& chapter_;
+    const Chapter chapter_;
     Options options_;
-    std::unique_ptr<Build> build_;
-    std::future<std::unique_ptr<Build>> work_;
-    bool reloads_scene_ = false;  // although its name stays the same
+    std::unique_ptr<WindowBuild> build_;
+    BackgroundWork<std::unique_ptr<WindowBuild>> work_;
+    BuildStage work_stage_ = BuildStage::nothing;  // that the build in progress begins at, but for shaders
+    bool reloads_scene_ = false;                   // although its name stays the same
     std::set<std::filesystem::path> watched_shaders_;
     uint64_t shader_hash_ = 0;         // of their contents when last looked at
     uint64_t work_shader_hash_ = 0;    // the same when the build in progress was started
@@ -88,7 +100,8 @@ class Session {
     uint32_t reduction_ = 1;
     double paths_per_second_ = 0;  // camera paths, measured
     double seconds_ = 0;
-    FilmImage snapshot_;          // at the last power of two
+    FilmImage snapshot_;  // at the last power of two
+    FilmRecord snapshot_record_;
     FilmImage earlier_snapshot_;  // at the one before
     std::optional<LiveVerdict> verdict_;
     std::string no_verdict_ = "the render goes on from an earlier one";  // why there is none

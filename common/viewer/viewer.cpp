@@ -7,9 +7,7 @@
 #include <cstdio>
 
 #include "clock.h"
-#include "error.h"
 #include "rendering/interrupt.h"
-#include "rendering/outputs.h"
 #include "viewer/frame_pacing.h"
 
 namespace lab {
@@ -21,31 +19,27 @@ using Clock = std::chrono::steady_clock;
 double smooth(double average, double number) { return average + 0.1 * (number - average); }
 
 // Makes the first build in the background, so that the window answers and says what it is doing.
-std::unique_ptr<Build> build_while_waiting(Window& window, Screen& screen,
-                                           const std::function<std::unique_ptr<Build>()>& build) {
-    auto work = std::async(std::launch::async, build);
-    while (work.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+std::unique_ptr<WindowBuild> build_while_waiting(Window& window, Screen& screen, const Device& device,
+                                                 const Chapter& chapter, const RenderJob& job) {
+    BackgroundWork<std::unique_ptr<WindowBuild>> work;
+    work.start([&] { return make_window_build(device, chapter, job); });
+    while (!work.is_done()) {
+        work.wait(std::chrono::milliseconds(20));
         window.poll_events();
         screen.begin_frame();
         ImGui::GetBackgroundDrawList()->AddText({20, 20}, IM_COL32_WHITE,
                                                 "Building what traces the rays and the shaders ...");
         screen.show({});
     }
-    return work.get();
+    return work.take();
 }
 
 }  // namespace
 
-Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options,
-               Scene scene)
+Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job)
     : window_(window),
       screen_(device, window),
-      session_(device, chapter,
-               build_while_waiting(window, screen_,
-                                   [&] {
-                                       return make_build(device, chapter, options, BuildStage::scene, nullptr,
-                                                         std::make_shared<Scene>(std::move(scene)));
-                                   })),
+      session_(device, chapter, build_while_waiting(window, screen_, device, chapter, job)),
       inside_panel_(device),
       comparison_panel_(device) {}
 
@@ -99,7 +93,7 @@ Rectangle Viewer::picture_rectangle() const {
 
 void Viewer::move_camera(double seconds) {
     if (session_.is_loading_scene()) return;
-    const std::shared_ptr<const Scene>& scene = session_.build().scene;
+    const std::shared_ptr<const Scene>& scene = session_.build().job.scene;
     if (fitted_scene_ != scene) {
         fitted_scene_ = scene;
         camera_control_.fit_to(world_bounds(*scene));
@@ -143,29 +137,17 @@ void Viewer::open_dropped_files() {
     for (const auto& file : window_.dropped_files()) session_.open_scene(file);
 }
 
-void run_viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options,
-                Scene scene) {
+void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job) {
     install_interrupt_handler();
-    Viewer viewer(window, device, chapter, options, std::move(scene));
-    Session& session = viewer.session();
-    // If the device fails, what was last read from it is all there is.
-    const auto keep = [&](const std::string& why) {
-        const FilmImage& film = session.last_snapshot();
-        if (film.pixels.empty()) throw DeviceFailure(why + ": there was nothing to write yet");
-        write_each(options.outputs, [&](const std::filesystem::path& file) {
-            write_picture(file, film, session.build().job.record, session.build().options);
-        });
-        throw DeviceFailure(why + ": the outputs hold " + std::to_string(film.min_samples()) +
-                            " samples a pixel; --resume continues");
-    };
+    Viewer viewer(window, device, chapter, job);
+    const Session& session = viewer.session();
+    const RunOptions& options = job.options.run;
     try {
         while (viewer.frame()) {
         }
-        session.save(options.outputs);
-    } catch (const vk::SystemError& error) {
-        keep(std::string("the device failed: ") + error.what());
-    } catch (const DeviceFailure& error) {
-        keep(error.what());
+        viewer.session().save(options.outputs);
+    } catch (const std::exception& error) {
+        session.keep_snapshot_after(error, options.outputs);
     }
     if (options.quiet) return;
     std::printf("samples        %.6g a pixel\n", session.samples());

@@ -11,9 +11,9 @@ namespace lab {
 
 class Viewer {
   public:
-    // Window, device (made for this window) and chapter must outlive the viewer. Throws what a first render
-    // would throw.
-    Viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options, Scene scene);
+    // Window and device (made for this window) must outlive the viewer. Throws what a first render would
+    // throw.
+    Viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
 
     // Handles what the user did, renders for a part of a frame's time and shows the result. False once the
     // window is closed.
@@ -50,7 +50,6 @@ class Viewer {
 // Opens the window and renders until it is closed; then writes the outputs that the options name, as a run
 // without a window does. Throws DeviceFailure if the device is lost, after writing what was last read from
 // it.
-void run_viewer(Window& window, const Device& device, const Chapter& chapter, const Options& options,
-                Scene scene);
+void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
 
 }  // namespace lab

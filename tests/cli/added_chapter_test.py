@@ -58,6 +58,8 @@ class AddedChapterTest(ProgramTest):
         picture = Exr(self.folder / "purple.exr")
         self.assertEqual(picture.mean(), [0.5, 0.0, 1.0])
         self.assertEqual(picture.text("chapter"), COPY)
+        (self.tree / "chapters" / COPY / "chapter.json").write_text('{"title": "Light choice", "light": true}', encoding="utf-8")
+        self.assert_refused(["--output=refused.exr"], r"chapter\.json", '"light"', "light_sampling", program=program)
 
     def test_is_known_to_the_commands_and_pages(self):
         self.assertRegex(self.run_in_tree("./lab", "run"), r"\n +7  \w+")

@@ -2,12 +2,14 @@
 
 import math
 import resource
+import shutil
 import signal
 import time
 import unittest
+from pathlib import Path
 
 from image_files import Exr, relative_mse
-from program import RenderTest
+from program import BINARIES, MERGE, PROJECT, RenderTest
 
 
 class Interruption(RenderTest):
@@ -110,6 +112,46 @@ class Checkpoints(RenderTest):
         self.assertGreaterEqual(min(map(len, before)), 100)
         names = {file.name for file in files} | {"quad.json", "quad.mtl", "quad.obj"}
         self.assertEqual({path.name for path in self.folder.iterdir()}, names)
+
+
+class EditedShaders(RenderTest):
+    """A copy of the project, whose shaders are edited between two renders."""
+
+    def setUp(self):
+        super().setUp()
+        tree = self.folder / "tree"
+        for name in ("chapters", "shaders"):
+            shutil.copytree(PROJECT / name, tree / name)
+        (tree / "assets").symlink_to(PROJECT / "assets")
+        (tree / "bin").mkdir()
+        self.tree = tree
+        self.program = shutil.copy(BINARIES / "05_russian_roulette", tree / "bin")
+
+    def render_range(self, name, first, *arguments):
+        command = self.command("--samples=2", "--quiet", f"--first-sample={first}", f"--output={name}.exr", *arguments)
+        self.render(*command, program=self.program)
+
+    def edit(self, shader):
+        with open(self.tree / shader, "a", encoding="utf-8") as stream:
+            stream.write(f"const float added_to_{Path(shader).stem} = 1.0;\n")
+
+    def test_different_estimators_are_not_joined(self):
+        for shader in ("chapters/05_russian_roulette/path_trace.glsl", "shaders/direct_light.glsl",
+                       "shaders/sampling.glsl", "shaders/random.glsl", "shaders/shading_data.glsl"):
+            with self.subTest(shader=shader):
+                self.render_range("before", 0)
+                self.edit(shader)
+                self.render_range("after", 2)
+                self.assert_refused(["before.exr", "after.exr", "-o", "merged.exr"], "shader hash", program=MERGE)
+                resume = self.command("--samples=4", "--resume=before.exr", "--output=resumed.exr")
+                self.assert_refused(resume, "shader hash", program=self.program)
+
+    def test_other_ways_to_trace_rays_are(self):
+        self.render_range("before", 0)
+        self.edit("shaders/trace_ray/compute.glsl")
+        self.edit("shaders/display.comp")
+        self.render_range("after", 2)
+        self.render("before.exr", "after.exr", "-o", "merged.exr", program=MERGE)
 
 
 class StoppingEarly(RenderTest):

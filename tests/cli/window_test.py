@@ -64,7 +64,25 @@ class Windows(ProgramTest):
         code, _, err = self.run_program(*command, program=WITH_DISPLAY, environment={**NO_DISPLAY, **fault})
         self.assertEqual(code, 3, err)
         self.assertRegex(err, r"\Aerror: [^\n]*the outputs hold \d+ samples a pixel; --resume continues\n\Z")
-        self.assertIn(Exr(self.folder / "a.exr").text("samples"), err)
+        left = Exr(self.folder / "a.exr")
+        self.assertIn(left.text("samples"), err)
+        # What the samples have cost counts when the render goes on.
+        self.assertGreater(float(left.text("seconds")), 0)
+        self.assertGreaterEqual(int(left.text("rays")), 32 * 32 * int(left.text("samples")))
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
+    def test_a_lost_device_and_a_folder_that_vanished(self):
+        """The exit code says what happened first."""
+        folder = self.folder / "folder"
+        command = [CHAPTER, "cornell_box", "--width=32", "--height=32", "--backend=compute", "--window", "--output=folder/a.exr"]
+        environment = {**NO_DISPLAY, **FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "300"}
+        with self.start(*command, program=WITH_DISPLAY, environment=environment) as process:
+            self.wait_for(folder, process)
+            while folder.exists():
+                shutil.rmtree(folder, ignore_errors=True)
+            _, err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 3, err)
+        self.assertRegex(err, r"\Aerror: [^\n]*Lost[^\n]*a\.exr: cannot be written[^\n]*\n\Z")
 
     def test_a_window_does_not_go_with_everything(self):
         for option in ("--headless", "--report=r.json", "--time-limit=9", "--target-error=1", "--save-every=9"):

@@ -15,6 +15,7 @@ struct Subject {
     std::string name;
     std::string file;  // in chapters/
     uint32_t splitting_factor;
+    uint32_t roulette_start = 1;
 };
 
 // Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
@@ -23,9 +24,11 @@ using Pair = std::array<Subject, 2>;
 const Pair bounces{Subject{"1", "01_uniform_sampling/path_trace.glsl", 1},
                    Subject{"2", "02_cosine_sampling/path_trace.glsl", 1}};
 std::vector<Pair> light_sampling_pairs(uint32_t length) {
-    const auto subject = [](const std::string& name, const std::string& file, uint32_t s) {
-        return Subject{name + ", s = " + std::to_string(s), file, s};
+    const auto subject = [](const std::string& name, const std::string& file, uint32_t s,
+                            uint32_t roulette_start = 1) {
+        return Subject{name + ", s = " + std::to_string(s), file, s, roulette_start};
     };
+    const std::string every_hit = "../shaders/path_trace_every_hit.glsl";
     const uint32_t s = length == 1 ? 1 : length == 2 ? 5 : 3;
     std::vector<Pair> pairs{{Subject{"3", "03_next_event_estimation/path_trace.glsl", 1},
                              subject("4", "04_splitting/path_trace.glsl", s)},
@@ -33,10 +36,8 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
                              subject("6", "06_dielectrics/path_trace.glsl", s == 5 ? 1 : 2)}};
     // At length 1 there is but one hit to split at.
     if (length > 1)
-        pairs.push_back(
-            {subject("4 at every hit", "04_splitting/path_trace_every_hit.glsl", length == 2 ? 3 : 2),
-             subject("5 at every hit", "05_russian_roulette/path_trace_every_hit.glsl",
-                     length == 2 ? 2 : 3)});
+        pairs.push_back({subject("4 at every hit", every_hit, length == 2 ? 3 : 2, no_roulette),
+                         subject("5 at every hit", every_hit, length == 2 ? 2 : 3)});
     return pairs;
 }
 
@@ -69,7 +70,8 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
                             .samples = samples,
                             .max_path_length = length,
                             .seed = seed,
-                            .splitting_factor = subject.splitting_factor};
+                            .splitting_factor = subject.splitting_factor,
+                            .roulette_start = subject.roulette_start};
     settings.estimator = {project_folder() / "chapters" / subject.file};
     return render_batches(scene, settings, batch_count);
 }

@@ -57,6 +57,7 @@ class Subject {
         structure_ = build_acceleration_structure(backend, device, gpu_scene_);
         RenderParameters parameters = default_parameters(scene_, step.image_size);
         parameters.max_path_length = step.max_path_length;
+        parameters.roulette_start = 1;
         renderer_.emplace(device, *structure_, estimator_, parameters);
         film_bytes_ = Film::memory_need(step.image_size.x, step.image_size.y).bytes;
     }

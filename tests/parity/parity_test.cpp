@@ -127,11 +127,15 @@ std::map<std::string, RenderSettings> chapter_estimators() {
     for (const auto& chapter : sorted_entries(project_folder() / "chapters"))
         for (const auto& file : sorted_entries(chapter)) {
             if (file.extension() != ".glsl") continue;
-            RenderSettings settings{.width = 192, .height = 192, .splitting_factor = 2, .estimator = {file}};
-            // It branches at every hit.
-            if (file.stem() == "path_trace_every_hit") settings.max_path_length = 3;
-            all[chapter.filename().string().substr(0, 2) + " " + file.stem().string()] = settings;
+            all[chapter.filename().string().substr(0, 2) + " " + file.stem().string()] = {
+                .width = 192, .height = 192, .splitting_factor = 2, .estimator = {file}};
         }
+    // The paths are short, since they branch at every hit.
+    all["every hit"] = {.width = 192,
+                        .height = 192,
+                        .max_path_length = 3,
+                        .splitting_factor = 2,
+                        .estimator = every_hit_estimator()};
     return all;
 }
 

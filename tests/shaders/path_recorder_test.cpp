@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <regex>
 
 #include "support/gpu_test.h"
 #include "support/render.h"
 #include "support/scenes.h"
+#include "support/temporary_folder.h"
 #include "tracing/backends.h"
 #include "tracing/bvh.h"
 
@@ -178,7 +181,8 @@ TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
 
 TEST(PathRecorder, FollowsATreeThatSplitsAtEveryHit) {
     RenderSettings settings = settings_for("04_splitting");
-    settings.estimator.file = settings.estimator.file.parent_path() / "path_trace_every_hit.glsl";
+    settings.estimator = every_hit_estimator();
+    settings.roulette_start = no_roulette;
     settings.max_path_length = 4;
     size_t largest = 0;
     for (const auto& [pixel, sample, path] :
@@ -193,6 +197,22 @@ TEST(PathRecorder, FollowsATreeThatSplitsAtEveryHit) {
         largest = std::max(largest, path.vertices.size());
     }
     EXPECT_EQ(largest, 1u + 2 + 4 + 8 + 16);
+}
+
+TEST(PathRecorder, SaysWhetherThereIsAThroughputToFollow) {
+    RenderSettings settings = settings_for("02_cosine_sampling");
+    const Scene scene = closed_box(diffuse_material(vec3(0.5f)));
+    for (const auto& recorded : record_paths(scene, settings, 4)) EXPECT_TRUE(recorded.path.has_throughput);
+    const TemporaryFolder folder;
+    std::ifstream original(settings.estimator.file);
+    const std::string text{std::istreambuf_iterator<char>(original), {}};
+    settings.estimator.file = folder.path() / "path_trace.glsl";
+    std::ofstream(settings.estimator.file)
+        << std::regex_replace(text, std::regex("\\bthroughput\\b"), "weight");
+    for (const auto& recorded : record_paths(scene, settings, 4)) {
+        EXPECT_GT(recorded.path.vertices.size(), 1u);
+        EXPECT_FALSE(recorded.path.has_throughput);
+    }
 }
 
 TEST(PathRecorder, RecordsTheSameOnEveryBackend) {

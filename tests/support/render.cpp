@@ -44,6 +44,8 @@ Estimator chapter_estimator(const std::string& chapter) {
     return {project_folder() / "chapters" / chapter / "path_trace.glsl"};
 }
 
+Estimator every_hit_estimator() { return {project_folder() / "shaders" / "path_trace_every_hit.glsl"}; }
+
 Estimator view_estimator(const std::string& view) {
     const auto found =
         std::find_if(views().begin(), views().end(), [&](const View& v) { return v.name == view; });

@@ -16,6 +16,7 @@ inline const std::vector<std::string> all_chapters{"01_uniform_sampling",      "
                                                    "05_russian_roulette",      "06_dielectrics"};
 
 Estimator chapter_estimator(const std::string& chapter);
+Estimator every_hit_estimator();  // --split-every-hit
 Estimator view_estimator(const std::string& view);
 
 // For messages.

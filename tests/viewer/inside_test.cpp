@@ -10,8 +10,8 @@ class InsideTest : public ViewerTest {
     // Of the same size and path length as a reference.
     Options options_with_reference() const {
         Options options = make_options();
-        options.width = options.height = 128;
-        options.max_path_length = 6;
+        options.image.width = options.image.height = 128;
+        options.light.max_path_length = 6;
         return options;
     }
     const Inspection& inspection() const { return viewer_->inside_panel().inspection(); }
@@ -90,6 +90,21 @@ TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {
     EXPECT_EQ(session().verdict_text(), "no verdict: the camera has moved");
 }
 
+TEST_F(InsideTest, AVerdictNeedsNoSecondLookAtTheSceneFile) {
+    fs::copy(scenes.parent_path() / "meshes", folder_.path() / "meshes");
+    fs::create_directory(folder_.path() / "scenes");
+    fs::copy_file(scenes / "cornell_box.json", folder_.path() / "scenes" / "cornell_box.json");
+    Options options = options_with_reference();
+    options.scene.file = folder_.path() / "scenes" / "cornell_box.json";
+    open(options);
+    wait_for_verdict();
+    fs::remove_all(folder_.path() / "scenes");
+    session().restart();
+    run_frames(1);
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    EXPECT_NE(session().verdict(), nullptr) << session().verdict_text();
+}
+
 TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     open(options_with_reference());
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
@@ -104,7 +119,7 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
 
     // It is the sample that the render has added.
     Options options = session().options();
-    options.samples = 1;
+    options.appearance.sample_count = 1;
     session().change(options);
     session().restart();
     run_frames(1);
@@ -112,7 +127,7 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     wait_until("a path", [&] { return inspection().path().has_value(); });
     const uvec2 pixel = inspection().selection()->pixel;
     EXPECT_EQ(saved_film("one.exr").pixels[pixel.y * 128 + pixel.x].sum, inspection().path()->radiance);
-    options.samples.reset();
+    options.appearance.sample_count.reset();
     session().change(options);
     wait_until("many samples", [&] { return session().samples() >= 8 && inspection().has_hemisphere(); });
     wait_until("the hemisphere", [&] { return inspection().hemisphere().samples() >= 2; });
@@ -130,6 +145,74 @@ TEST_F(InsideTest, AnEstimatorWithoutRaysHasAPathWithoutVertices) {
     EXPECT_TRUE(inspection().path()->vertices.empty());
     EXPECT_EQ(inspection().path()->radiance, vec3(0.25f));
     EXPECT_FALSE(inspection().has_hemisphere());
+}
+
+TEST_F(InsideTest, AShaderThatCannotBeRecordedDoesNotSpeakForTheNext) {
+    const fs::path shader = folder_.path() / "path_trace.glsl";
+    const std::string good = "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.25); }\n";
+    // Renders, but what records a throughput expects three numbers.
+    const std::string bad = "void f() {\n    vec2 throughput;\n    throughput = vec2(1.0);\n}\n" + good;
+    write(shader, good);
+    chapter_ = {.name = folder_.path().string(), .title = "Constant"};
+    open(make_options());
+    const auto show = [&](const std::string& text) {
+        const uint64_t before = session().build().shader_hash;
+        write(shader, text);
+        while (session().build().shader_hash == before || session().reduction() > 1)
+            session().update(0.01, false);
+    };
+    show(bad);
+    Inspection inspection(*device_);
+    inspection.select({0, 0});
+    inspection.update(session(), 0.01);
+    ASSERT_TRUE(inspection.is_building());
+    show(good);
+    const auto start = Clock::now();
+    while (!inspection.path() && Clock::now() - start < std::chrono::seconds(30))
+        inspection.update(session(), 0.01);
+    EXPECT_TRUE(inspection.path()) << inspection.message();
+}
+
+TEST_F(InsideTest, ASecondRenderIsGivenUpWithoutWaiting) {
+    // A sheet of so many triangles that its tree takes a while.
+    constexpr int size = 250;
+    std::string mesh;
+    for (int y = 0; y <= size; ++y)
+        for (int x = 0; x <= size; ++x)
+            mesh +=
+                "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(x * y % 7) + "\n";
+    for (int y = 0; y < size; ++y)
+        for (int x = 1; x <= size; ++x) {
+            const int corner = y * (size + 1) + x;
+            mesh += "f " + std::to_string(corner) + " " + std::to_string(corner + 1) + " " +
+                    std::to_string(corner + size + 2) + " " + std::to_string(corner + size + 1) + "\n";
+        }
+    write(folder_.path() / "sheet.obj", mesh);
+    Options options = make_options();
+    options.scene.file = folder_.path() / "sheet.obj";
+    open(options);
+    Comparison& comparison = viewer_->comparison();
+    const auto seconds_of = [](const auto& act) {
+        const auto start = Clock::now();
+        act();
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    };
+    const auto start = [&] { comparison.start(session(), chapter_.name); };
+    start();
+    wait_until("both", [&] { return comparison.is_active(); });
+    const double build_seconds = seconds_of([&] {
+        start();
+        wait_until("both", [&] { return comparison.is_active(); });
+    });
+    start();
+    EXPECT_LT(seconds_of([&] { comparison.stop(); }), 0.2 * build_seconds) << "of the first build";
+    start();
+    wait_until("both", [&] { return comparison.is_active(); });
+    options = session().options();
+    options.scene.specular = true;
+    session().change(options);
+    run_frames(1);
+    EXPECT_LT(seconds_of([&] { comparison.stop(); }), 0.2 * build_seconds);
 }
 
 TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
@@ -168,8 +251,8 @@ TEST_F(InsideTest, TwoSettingsBesideEachOtherFollowTheView) {
     comparison.start(session(), chapter_.name);
     wait_until("both", [&] { return comparison.is_active(); });
     Options options = session().options();
-    options.only_path_length = 1;
-    options.chapter_values[0] = 16;  // which the second one does not follow
+    options.light.only_path_length = 1;
+    options.samples.chapter_values[0] = 16;  // which the second one does not follow
     session().change(options);
     run_frames(2);
     const auto parameters = [](const Session& s) { return s.build().job.parameters; };
@@ -181,10 +264,8 @@ TEST_F(InsideTest, TwoSettingsBesideEachOtherFollowTheView) {
 
 TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
     Options options = make_options();
-    options.scene = scenes / "glass.json";
-    chapter_.name = "06_dielectrics";
-    chapter_.dielectrics = true;
-    chapter_.split_every_hit = false;
+    options.scene.file = scenes / "glass.json";
+    chapter_ = load_chapter("06_dielectrics");
     open(options);
     viewer_->comparison().start(session(), "03_next_event_estimation");
     wait_until("refused", [&] { return !viewer_->comparison().message().empty(); });

@@ -45,11 +45,11 @@ class ViewerTest : public testing::Test {
     // A small picture, so that many samples take no time.
     Options make_options() const {
         Options options;
-        options.scene = scenes / "cornell_box.json";
-        options.width = 48;
-        options.height = 40;
-        options.backend = "compute";
-        options.chapter_values.resize(chapter_.options.size());
+        options.scene.file = scenes / "cornell_box.json";
+        options.image.width = 48;
+        options.image.height = 40;
+        options.run.backend = "compute";
+        options.samples.chapter_values.resize(chapter_.options.size());
         return options;
     }
 
@@ -65,8 +65,10 @@ class ViewerTest : public testing::Test {
             if (*device_->surface()) break;
         }
         ASSERT_TRUE(*device_->surface());
-        viewer_ = std::make_unique<Viewer>(*window_, *device_, chapter_, options,
-                                           load_scene(options.scene, options.specular));
+        const SceneOptions& scene = options.scene;
+        viewer_ = std::make_unique<Viewer>(
+            *window_, *device_, chapter_,
+            make_job(chapter_, options, std::make_shared<Scene>(load_scene(scene.file, scene.specular))));
         glfwFocusWindow(window_->handle());
         run_frames(2);
     }
@@ -150,12 +152,7 @@ class ViewerTest : public testing::Test {
     }
 
     TemporaryFolder folder_;
-    Chapter chapter_{.name = "05_russian_roulette",
-                     .title = "A test",
-                     .light_sampling = true,
-                     .split_every_hit = true,
-                     .unlimited_path_length = true,
-                     .options = {splitting_factor, survival_cap, roulette_start}};
+    Chapter chapter_ = load_chapter("05_russian_roulette");
     std::unique_ptr<Window> window_;
     std::unique_ptr<Device> device_;
     std::unique_ptr<Viewer> viewer_;

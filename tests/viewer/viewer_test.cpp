@@ -1,4 +1,6 @@
 // The window of a chapter: what it shows, saves and does on input.
+#include <thread>
+
 #include "error.h"
 #include "files/project_folder.h"
 #include "viewer_fixture.h"
@@ -8,8 +10,8 @@ namespace {
 
 TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
     Options options = make_options();
-    options.samples = 24;
-    options.seed = 7;
+    options.appearance.sample_count = 24;
+    options.samples.seed = 7;
     open(options);
     // Whatever happens on the way must not matter in the end.
     glfwSetWindowSize(window_->handle(), 1000, 500);
@@ -42,7 +44,7 @@ TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
 
 TEST_F(ViewerTest, KeysMoveTheCameraAndRestartWithinAFrame) {
     Options options = make_options();
-    options.width = options.height = 512;  // too large to be finished while the camera moves
+    options.image.width = options.image.height = 512;  // too large to be finished while the camera moves
     open(options);
     wait_until("samples", [&] { return session().samples() > 0.2; });
     const vec3 before = session().camera().position;
@@ -125,44 +127,47 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     };
     for (size_t i = 0; i < chapter_.options.size(); ++i) {
         const RenderParameters before = parameters();
-        change([&](Options& options) { options.chapter_values[i] = chapter_.options[i].low; });
+        change([&](Options& options) { options.samples.chapter_values[i] = chapter_.options[i].low; });
         EXPECT_NE(std::memcmp(&before, &session().build().job.parameters, sizeof before), 0)
             << chapter_.options[i].name;
         EXPECT_NE(session().build().job.record.settings.find(chapter_.options[i].name), std::string::npos);
     }
-    change([](Options& options) { options.chapter_values.assign(3, std::nullopt); });
-    change([](Options& options) { options.seed = 99; });
+    change([](Options& options) { options.samples.chapter_values.assign(3, std::nullopt); });
+    change([](Options& options) { options.samples.seed = 99; });
     EXPECT_EQ(parameters().seed_key, seed_key(99));
-    const double all = change([](Options& options) { options.max_path_length = 4; });
-    const double one = change([](Options& options) { options.only_path_length = 2; });
+    const double all = change([](Options& options) { options.light.max_path_length = 4; });
+    const double one = change([](Options& options) { options.light.only_path_length = 2; });
     EXPECT_EQ(parameters().only_path_length, 2);
     EXPECT_LT(one, all);
-    change([](Options& options) { options.only_path_length.reset(); });
-    change([](Options& options) { options.light_sampling = false; });
+    change([](Options& options) { options.light.only_path_length.reset(); });
+    change([](Options& options) { options.estimator.light_sampling = false; });
     EXPECT_NE(session().build().job.record.settings.find("--light-sampling off"), std::string::npos);
-    change([](Options& options) { options.light_sampling = true, options.split_every_hit = true; });
+    change([](Options& options) {
+        options.estimator.light_sampling = true, options.estimator.split_every_hit = true;
+    });
     EXPECT_NE(session().build().job.record.settings.find("--split-every-hit"), std::string::npos);
-    change([](Options& options) { options.split_every_hit = false, options.specular = true; });
-    change([](Options& options) { options.background = {1, 2, 3}; });
+    change(
+        [](Options& options) { options.estimator.split_every_hit = false, options.scene.specular = true; });
+    change([](Options& options) { options.light.background = {1, 2, 3}; });
     EXPECT_EQ(parameters().background, vec3(1, 2, 3));
-    change([](Options& options) { options.width = 33; });
+    change([](Options& options) { options.image.width = 33; });
     EXPECT_EQ(session().build().display->picture().width(), 33u);
     for (const View& view : views()) {
-        change([&](Options& options) { options.view = &view; });
-        EXPECT_EQ(session().build().options.view, &view);
+        change([&](Options& options) { options.image.view = &view; });
+        EXPECT_EQ(session().build().job.options.image.view, &view);
     }
-    change([](Options& options) { options.view = nullptr; });
+    change([](Options& options) { options.image.view = nullptr; });
 }
 
 TEST_F(ViewerTest, OptionsThatContradictEachOtherAreTakenBack) {
     open(make_options());
     Options options = session().options();
-    options.split_every_hit = true;
-    options.max_path_length = 12;
+    options.estimator.split_every_hit = true;
+    options.light.max_path_length = 12;
     session().change(options);
     finish_build();
     EXPECT_NE(session().message().find("--max-path-length"), std::string::npos) << session().message();
-    EXPECT_FALSE(session().options().split_every_hit);
+    EXPECT_FALSE(session().options().estimator.split_every_hit);
     wait_until("samples", [&] { return session().samples() > 1; });
 }
 
@@ -170,8 +175,8 @@ TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
     open(make_options());
     drop(scenes / "furnace.json");
     finish_build();
-    EXPECT_EQ(session().build().scene->file.stem(), "furnace");
-    EXPECT_EQ(session().camera().position, session().build().scene->camera.position);
+    EXPECT_EQ(session().build().job.scene->file.stem(), "furnace");
+    EXPECT_EQ(session().camera().position, session().build().job.scene->camera.position);
     const CameraPose camera = session().camera();
 
     write(folder_.path() / "bad.json", "{\"meshes\": [{\"file\": \"missing.obj\"}]}");
@@ -180,8 +185,8 @@ TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
         drop(folder_.path() / name);
         finish_build();
         EXPECT_NE(session().message().find(name), std::string::npos) << session().message();
-        EXPECT_EQ(session().build().scene->file.stem(), "furnace");
-        EXPECT_EQ(session().options().scene, session().build().options.scene);
+        EXPECT_EQ(session().build().job.scene->file.stem(), "furnace");
+        EXPECT_EQ(session().options().scene.file, session().build().job.options.scene.file);
         EXPECT_EQ(session().camera().position, camera.position);
     }
     take_screenshot("viewer_refused_scene");
@@ -193,7 +198,7 @@ TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
     drop(folder_.path() / "triangle.obj");
     finish_build();
     EXPECT_EQ(session().message(), "");
-    EXPECT_EQ(session().build().scene->file.stem(), "triangle");
+    EXPECT_EQ(session().build().job.scene->file.stem(), "triangle");
 }
 
 TEST_F(ViewerTest, AChangedShaderIsShownAndABrokenOneReported) {
@@ -258,9 +263,9 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken) {
     chapter_.name = fs::absolute(copy.path()).string();
     chapter_.title = "Russian roulette: dim paths end early, without bias";
     Options options = make_options();
-    options.width = options.height = 256;
-    options.samples = 16;
-    options.max_path_length = 6;  // as in the reference
+    options.image.width = options.image.height = 256;
+    options.appearance.sample_count = 16;
+    options.light.max_path_length = 6;  // as in the reference
     open(options);
     wait_until("all samples", [&] { return session().samples() >= 16; });
     take_screenshot("window");
@@ -311,6 +316,39 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken) {
     wait_until("repaired", [&] { return session().message().empty() && session().samples() > 0; });
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     RecordProperty("chapter_reload_seconds", std::to_string(seconds));
+}
+
+TEST_F(ViewerTest, AGoodShaderIsShownThoughTheSceneThatCameWithItIsRefused) {
+    const fs::path shader = folder_.path() / "path_trace.glsl";
+    chapter_ = {.name = folder_.path().string(), .title = "Reload"};
+    const std::string black = "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.0); }\n";
+    write(shader, black);
+    open(make_options());
+    write(shader, "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.5); }\n");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the next frame looks for changes
+    session().open_scene(folder_.path() / "missing.json");
+    run_frames(1);
+    ASSERT_TRUE(session().is_building());
+    wait_until("grey",
+               [&] { return session().samples() >= 1 && saved_film("shown.exr").mean_radiance()[0] == 0.5; });
+}
+
+TEST_F(ViewerTest, PicturesOfMoreBlocksThanADispatchMayHaveAreShown) {
+    write(folder_.path() / "path_trace.glsl",
+          "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(1.0, 0.0, 0.0); }\n");
+    chapter_ = {.name = folder_.path().string(), .title = "Red"};
+    Options options = make_options();
+    options.image.width = options.image.height = 2048;
+    open(options);
+    wait_until("a picture", [&] { return session().samples() >= 1; });
+    take_screenshot("viewer_large");
+    const Rectangle where = viewer_->picture_rectangle();
+    const Texture& shown = viewer_->screen().captured();
+    const glm::ivec2 last = where.corner + where.size - 1;  // lies in the last block
+    const uint8_t* pixel =
+        &shown.pixels[4 * (shown.width * static_cast<size_t>(last.y) + static_cast<size_t>(last.x))];
+    EXPECT_EQ(pixel[0], 255);
+    EXPECT_EQ(pixel[1], 0);
 }
 
 TEST_F(ViewerTest, ClosesWhileSomethingIsBuilt) {

@@ -1,5 +1,6 @@
-// Chapter 5 with splitting at every hit (--split-every-hit): Russian roulette prunes the tree of branches that chapter
-// 4 lets grow.
+// Splitting at every hit (--split-every-hit of chapters 4 and 5): each of s branches splits again into s branches, so that
+// s^k of them reach x_{k+1}. Most of the work then goes into long paths, which carry the least light. Russian roulette,
+// which begins in chapter 5, prunes this tree.
 #include "sampling.glsl"
 #include "direct_light.glsl"
 

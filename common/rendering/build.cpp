@@ -1,0 +1,56 @@
+#include "rendering/build.h"
+
+#include "rendering/backend_choice.h"
+
+namespace lab {
+namespace {
+
+// Notes what the job runs on; "several" where it continues a run on something else.
+void record_device(RenderJob& job, const std::string& device, const std::string& backend) {
+    job.record.device = !job.resumed || job.resumed->record.device == device ? device : "several";
+    job.record.backend = !job.resumed || job.resumed->record.backend == backend ? backend : "several";
+}
+
+}  // namespace
+
+BuildStage first_difference(const Options& before, const Options& options) {
+    if (before.scene != options.scene) return BuildStage::scene;
+    if (before.estimator.light_sampling != options.estimator.light_sampling) return BuildStage::gpu_scene;
+    if (before.estimator != options.estimator || before.image != options.image) return BuildStage::renderer;
+    return BuildStage::nothing;
+}
+
+Options keep_built(const Options& built, Options options) {
+    options.scene = built.scene;
+    options.estimator = built.estimator;
+    options.image = built.image;
+    return options;
+}
+
+Build make_build(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first,
+                 const Build* before) {
+    Build build;
+    build.job = std::move(job);
+    const RenderJob& wanted = build.job;
+    // Before the scene takes time and memory.
+    require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
+    if (first <= BuildStage::gpu_scene) {
+        const bool samples_lights = chapter.light_sampling && wanted.options.estimator.light_sampling;
+        build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene,
+                                                     samples_lights ? LightSampling::on : LightSampling::off);
+        build.backend =
+            choose_backend(wanted.options, device, *build.gpu_scene, wanted.estimator, wanted.parameters);
+        build.acceleration_structure = build_acceleration_structure(build.backend, device, *build.gpu_scene);
+    } else {
+        build.gpu_scene = before->gpu_scene;
+        build.backend = before->backend;
+        build.acceleration_structure = before->acceleration_structure;
+    }
+    record_device(build.job, device.description().name, to_string(build.backend));
+    build.renderer = std::make_unique<Renderer>(device, *build.acceleration_structure, wanted.estimator,
+                                                wanted.parameters);
+    if (wanted.resumed) build.renderer->resume(wanted.resumed->image);
+    return build;
+}
+
+}  // namespace lab

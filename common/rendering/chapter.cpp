@@ -1,0 +1,84 @@
+#include "rendering/chapter.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "files/file.h"
+#include "files/project_folder.h"
+#include "scene/json_object.h"
+
+namespace lab {
+namespace {
+
+// All options that chapters may have. The defaults are measured, see docs/results.md.
+const std::vector<ChapterOption>& chapter_options() {
+    static const std::vector<ChapterOption> all{
+        {.name = "--splitting-factor",
+         .help = "Branches in which a path goes on",
+         .parameter = &RenderParameters::splitting_factor,
+         .default_value = 4,
+         .low = 1,
+         .high = 1024},
+        {.name = "--survival-cap",
+         .help =
+             "Largest survival probability of Russian roulette; with 1, paths among white walls never end",
+         .parameter = &RenderParameters::survival_cap,
+         .default_value = 0.95,
+         .low = 0.001,
+         .high = 1},
+        {.name = "--roulette-start",
+         .help = "Bounce at which Russian roulette begins",
+         .parameter = &RenderParameters::roulette_start,
+         .default_value = 3,
+         .low = 1,
+         .high = 1000000}};
+    return all;
+}
+
+std::vector<ChapterOption> read_options(const JsonObject& chapter) {
+    std::vector<ChapterOption> options;
+    if (!chapter.has("options")) return options;
+    for (const nlohmann::json& name : chapter.array("options")) {
+        const auto& all = chapter_options();
+        const auto found =
+            std::find_if(all.begin(), all.end(), [&](const auto& o) { return name == o.name; });
+        if (found == all.end()) {
+            std::string known;
+            for (const ChapterOption& option : all) known += (known.empty() ? "" : ", ") + option.name;
+            chapter.fail("options", "has " + name.dump() + ": use " + known);
+        }
+        options.push_back(*found);
+    }
+    return options;
+}
+
+}  // namespace
+
+std::vector<std::string> chapter_folders() {
+    std::vector<std::string> names;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(project_folder() / "chapters", none))
+        if (std::filesystem::exists(entry.path() / "chapter.json"))
+            names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Chapter load_chapter(const std::string& name) {
+    const auto file = project_folder() / "chapters" / name / "chapter.json";
+    const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
+    const JsonObject root(content, file.string(), "the chapter",
+                          {"title", "default_scene", "light_sampling", "split_every_hit",
+                           "unlimited_path_length", "dielectrics", "options"});
+    const Chapter defaults;
+    return {.name = name,
+            .title = root.required("title", root.text("title")),
+            .default_scene = root.text("default_scene").value_or(defaults.default_scene),
+            .light_sampling = root.boolean("light_sampling").value_or(false),
+            .split_every_hit = root.boolean("split_every_hit").value_or(false),
+            .unlimited_path_length = root.boolean("unlimited_path_length").value_or(false),
+            .dielectrics = root.boolean("dielectrics").value_or(false),
+            .options = read_options(root)};
+}
+
+}  // namespace lab
