@@ -34,6 +34,21 @@ vec3 normalize_scaled(vec3 v) { return normalize(v / max_component(v)); }
 // The weights w_0, w_1, w_2 of a triangle's vertices at a hit.
 vec3 get_vertex_weights(Hit hit) { return vec3(1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics); }
 
+// The cross product of a triangle's edges, which are scaled first: about as long as the triangle's height over its length.
+vec3 get_scaled_normal(vec3 edge_1, vec3 edge_2) {
+    float size = max(max_component(edge_1), max_component(edge_2));
+    return cross(edge_1 / size, edge_2 / size);
+}
+
+// How far a ray must start off a triangle: roundings of relative size 2^-24 in the position, whose coordinates have these
+// magnitudes, and in the ray's intersection with the same triangle, also where the surface itself is at coordinate 0.
+// Measured: self-intersections end at a factor of 4. The intersection with a slender triangle is less exact; its limit
+// keeps rays from passing what is close to a very slender one.
+float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
+    float slenderness = 1.0 / max(max_component(scaled_normal), 1.0 / 256.0);  // about length over height
+    return 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
+}
+
 // Loads the vertices of the hit triangle and interpolates them. The normal is on the front.
 SurfacePoint get_surface_point(Hit hit) {
     SurfacePoint point;
@@ -43,25 +58,26 @@ SurfacePoint get_surface_point(Hit hit) {
     point.position = interpolate(x_0, x_1, x_2, w);
     vec3 magnitude = interpolate(abs(x_0), abs(x_1), abs(x_2), w);
     // Counter-clockwise seen from the front: the scene's loader takes care of it.
-    float size = max(max_component(x_1 - x_0), max_component(x_2 - x_0));
-    vec3 edge_1 = (x_1 - x_0) / size, edge_2 = (x_2 - x_0) / size;
-    point.geometric_normal = cross(edge_1, edge_2);
-    float slenderness = 1.0 / max(max_component(point.geometric_normal), 1.0 / 256.0);  // about length over height
+    vec3 edge_1 = x_1 - x_0, edge_2 = x_2 - x_0;
+    vec3 normal = get_scaled_normal(edge_1, edge_2);
+    point.offset = get_error_bound(magnitude, normal);
     // So narrow that it has no area in 32 bits: any normal of its longer edge will do.
-    if (point.geometric_normal == vec3(0.0))
-        point.geometric_normal = get_shading_space(normalize(max_component(edge_1) > 0.5 ? edge_1 : edge_2))[0];
+    if (normal == vec3(0.0))
+        normal = get_shading_space(
+            normalize_scaled(max_component(edge_1) > max_component(edge_2) ? edge_1 : edge_2))[0];
+    point.geometric_normal = normalize_scaled(normal);
 #ifdef FEATURE_TRANSFORMS
     Instance instance = instances[hit.instance];
     mat3 linear = mat3(instance.object_to_world);
     point.position = linear * point.position + instance.object_to_world[3];
     magnitude = mat3(abs(linear[0]), abs(linear[1]), abs(linear[2])) * magnitude + abs(instance.object_to_world[3]);
-    point.geometric_normal = instance.normal_to_world * point.geometric_normal;
+    // Some backends intersect in the mesh's own space, others in the world: the bound holds for both. A distance from
+    // the triangle grows on its way into the world as the normal's length shrinks.
+    normal = instance.normal_to_world * point.geometric_normal;
+    point.geometric_normal = normalize_scaled(normal);
+    point.offset = max(point.offset / dot(normal, point.geometric_normal),
+                       get_error_bound(magnitude, get_scaled_normal(linear * edge_1, linear * edge_2)));
 #endif
-    point.geometric_normal = normalize_scaled(point.geometric_normal);
-    // Roundings of relative size 2^-24 in the position and in the next ray's intersection with the same triangle, also
-    // where the surface itself is at coordinate 0. Measured: self-intersections end at a factor of 4. The intersection
-    // with a slender triangle is less exact; its limit keeps rays from passing what is close to a very slender one.
-    point.offset = 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
     return point;
 }
 

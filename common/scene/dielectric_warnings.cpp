@@ -1,16 +1,23 @@
 #include "scene/dielectric_warnings.h"
 
+#include <algorithm>
+#include <array>
 #include <map>
+#include <tuple>
 
 #include "scene/features.h"
 
 namespace lab {
 namespace {
 
-constexpr size_t max_triangles = 10'000'000, max_pairs = 10'000'000;
+using glm::dvec3;
+using Point = std::array<float, 3>;
+
+constexpr size_t max_triangles = 10'000'000, max_pairs = 10'000'000, max_glass_triangles = 1'000'000;
 
 // The triangles of one material in one instance.
 struct Part {
+    size_t instance;
     uint32_t mesh;
     uint32_t material;
     Bounds bounds;  // world space
@@ -32,7 +39,7 @@ std::vector<Part> parts_of(const Scene& scene) {
                             glm::vec4(scene.positions[scene.triangles[k][corner]], 1));
         }
         for (const auto& [material, bounds] : bounds_of_material)
-            parts.push_back({mesh_index, material, bounds});
+            parts.push_back({i, mesh_index, material, bounds});
     }
     return parts;
 }
@@ -47,6 +54,88 @@ bool is_inside(const Bounds& inner, const Bounds& outer) {
     return glm::all(glm::lessThan(outer.low, inner.low)) && glm::all(glm::lessThan(inner.high, outer.high));
 }
 
+bool overlap(const Bounds& a, const Bounds& b) {
+    return glm::all(glm::lessThan(a.low, b.high)) && glm::all(glm::lessThan(b.low, a.high));
+}
+
+struct WorldTriangle {
+    std::array<dvec3, 3> corners;
+    Bounds bounds;
+};
+
+// Those of a part that may touch what lies in the box.
+std::vector<WorldTriangle> triangles_near(const Scene& scene, const Part& part, const Bounds& box) {
+    std::vector<WorldTriangle> triangles;
+    const Mesh& mesh = scene.meshes[part.mesh];
+    const glm::dmat4x3 object_to_world(scene.instances[part.instance].object_to_world);
+    for (uint32_t k = mesh.first_triangle; k < mesh.first_triangle + mesh.triangle_count; ++k) {
+        if (scene.triangle_materials[k] != part.material) continue;
+        WorldTriangle triangle;
+        for (int i = 0; i < 3; ++i) {
+            triangle.corners[i] = object_to_world * glm::dvec4(scene.positions[scene.triangles[k][i]], 1);
+            triangle.bounds.grow(vec3(triangle.corners[i]));
+        }
+        if (overlap(triangle.bounds, box)) triangles.push_back(triangle);
+    }
+    return triangles;
+}
+
+// Whether an edge of `a` passes through `b` and reaches further than `depth` on both sides.
+bool pierces(const WorldTriangle& a, const WorldTriangle& b, double depth) {
+    const dvec3 normal = glm::normalize(glm::cross(b.corners[1] - b.corners[0], b.corners[2] - b.corners[0]));
+    for (int i = 0; i < 3; ++i) {
+        const dvec3 from = a.corners[i], to = a.corners[(i + 1) % 3];
+        const double before = glm::dot(normal, from - b.corners[0]),
+                     behind = glm::dot(normal, to - b.corners[0]);
+        if (!(std::min(before, behind) < -depth && std::max(before, behind) > depth)) continue;
+        const dvec3 point = from + before / (before - behind) * (to - from);
+        bool is_inside = true;
+        for (int k = 0; k < 3; ++k)
+            is_inside &=
+                glm::dot(normal, glm::cross(b.corners[(k + 1) % 3] - b.corners[k], point - b.corners[k])) > 0;
+        if (is_inside) return true;
+    }
+    return false;
+}
+
+// Whether the surfaces of two parts cross. What merely touches does not: 1/10,000 of the glass is not seen.
+bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, size_t& pair_count) {
+    const double depth = 1e-4 * glm::distance(dvec3(glass.bounds.low), dvec3(glass.bounds.high));
+    const auto glass_triangles = triangles_near(scene, glass, object.bounds);
+    for (const WorldTriangle& a : triangles_near(scene, object, glass.bounds)) {
+        pair_count += glass_triangles.size();
+        if (pair_count > max_pairs) return false;
+        for (const WorldTriangle& b : glass_triangles)
+            if (overlap(a.bounds, b.bounds) && (pierces(a, b, depth) || pierces(b, a, depth))) return true;
+    }
+    return false;
+}
+
+// Edges of a mesh's dielectric triangles at which the surface ends, or where a front meets a back.
+size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
+    if (mesh.dielectric_count > max_glass_triangles) return 0;
+    std::vector<std::tuple<Point, Point, int>> edges;  // and +1 or -1 for the way that a triangle goes
+    const uint32_t end = mesh.first_triangle + mesh.triangle_count;
+    for (uint32_t k = end - mesh.dielectric_count; k < end; ++k)
+        for (int i = 0; i < 3; ++i) {
+            // Vertices in the same place are one, whatever their normals.
+            const vec3 a = scene.positions[scene.triangles[k][i]] + 0.0f,
+                       b = scene.positions[scene.triangles[k][(i + 1) % 3]] + 0.0f;
+            const Point from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
+            edges.emplace_back(std::min(from, to), std::max(from, to), from < to ? 1 : -1);
+        }
+    std::sort(edges.begin(), edges.end());
+    size_t count = 0;
+    for (size_t i = 0; i < edges.size();) {
+        int sum = 0;
+        const auto ends = std::tie(std::get<0>(edges[i]), std::get<1>(edges[i]));
+        for (; i < edges.size() && std::tie(std::get<0>(edges[i]), std::get<1>(edges[i])) == ends; ++i)
+            sum += std::get<2>(edges[i]);
+        count += sum != 0;
+    }
+    return count;
+}
+
 }  // namespace
 
 std::vector<std::string> dielectric_warnings(const Scene& scene) {
@@ -57,7 +146,7 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
     };
     const auto is_dielectric = [&](const Part& part) { return material_of(part).refractive_index > 0; };
 
-    Nesting nested_dielectric, enclosed_object;  // the first of each kind
+    Nesting nested_dielectric, enclosed_object, reaching_object;  // the first of each kind
     size_t pair_count = 0;
     for (const Part& outer : parts) {
         if (!is_dielectric(outer)) continue;
@@ -65,25 +154,39 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
         if (pair_count > max_pairs) break;
         const bool is_absorbing = material_of(outer).absorption != vec3(0);
         for (const Part& inner : parts) {
-            if (!is_inside(inner.bounds, outer.bounds)) continue;
             if (!is_dielectric(inner) && !is_absorbing) continue;
+            if (!is_inside(inner.bounds, outer.bounds)) {
+                if (!is_dielectric(inner) && reaching_object.inner == nullptr &&
+                    overlap(inner.bounds, outer.bounds) && surfaces_cross(scene, outer, inner, pair_count))
+                    reaching_object = {&inner, &outer};
+                continue;
+            }
             Nesting& found = is_dielectric(inner) ? nested_dielectric : enclosed_object;
             if (found.inner == nullptr) found = {&inner, &outer};
         }
     }
 
     std::vector<std::string> warnings;
-    const auto warn = [&](const Nesting& found, const std::string& inner_kind, const std::string& outer_kind,
-                          const std::string& consequence) {
+    const auto warn = [&](const Nesting& found, const std::string& relation, const std::string& consequence) {
         if (found.inner == nullptr) return;
-        warnings.push_back(scene.meshes[found.inner->mesh].file + ": " + inner_kind + " may lie inside the " +
-                           outer_kind + " of " + scene.meshes[found.outer->mesh].file + ": " + consequence);
+        warnings.push_back(scene.meshes[found.inner->mesh].file + ": " + relation + " of " +
+                           scene.meshes[found.outer->mesh].file + ": " + consequence);
     };
-    warn(nested_dielectric, "a dielectric", "dielectric",
+    warn(nested_dielectric, "a dielectric may lie inside the dielectric",
          "each is computed as if air surrounded it, so light bends by Ni against 1 between them, too");
-    warn(enclosed_object, "an opaque object", "absorbing glass",
-         "Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its "
-         "way to the object");
+    const std::string no_fading =
+        "Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its "
+        "way to the object";
+    warn(enclosed_object, "an opaque object may lie inside the absorbing glass", no_fading);
+    warn(reaching_object, "an opaque object reaches into the absorbing glass", no_fading);
+    for (const Mesh& mesh : scene.meshes) {
+        const size_t count = open_edge_count(scene, mesh);
+        if (count == 0) continue;
+        warnings.push_back(mesh.file + ": its glass is not closed: " + std::to_string(count) +
+                           " edges have one triangle, or join a front to a back; light that enters a single "
+                           "sheet never leaves it and is divided by Ni²: give it a thickness");
+        break;
+    }
     return warnings;
 }
 

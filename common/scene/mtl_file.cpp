@@ -43,13 +43,14 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
     std::vector<Stated> materials;
     std::set<std::string> ignored;
     for (size_t line_number = 1; !text.empty(); ++line_number) {
-        const std::vector<std::string_view> words = words_of(take_line(text));
+        const std::string_view line = take_line(text);
+        const std::vector<std::string_view> words = words_of(line);
         if (words.empty()) continue;
         const auto fail = [&](const std::string& reason) { fail_at_line(file, line_number, reason); };
         const std::string keyword(words[0]);
         if (keyword == "newmtl") {
-            if (words.size() < 2) fail("newmtl needs a name");
-            materials.emplace_back().name = {words[1].data(), words.back().data() + words.back().size()};
+            if (name_in(line).empty()) fail("newmtl needs a name");
+            materials.emplace_back().name = name_in(line);
         } else if (materials.empty()) {
             fail("not a material file: it must start with newmtl");
         }

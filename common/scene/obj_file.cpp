@@ -76,40 +76,37 @@ class ObjReader : public tinyobj::MaterialReader {
         callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
             static_cast<ObjReader*>(self)->add_face({indices, static_cast<size_t>(count)});
         };
-        callbacks.usemtl_cb = [](void* self, const char* name, int) {
-            static_cast<ObjReader*>(self)->use_material(name);
+        callbacks.usemtl_cb = [](void* self, const char*, int) {
+            static_cast<ObjReader*>(self)->use_material();
         };
         std::istream stream(&buffer_);
         tinyobj::LoadObjWithCallback(stream, callbacks, this, this);
 
         if (obj_.corners.empty()) throw UserError(obj_.file + ": there are no faces in it");
         if (faces_without_material_ > 0)
-            warnings_.push_back(obj_.file + ": " + std::to_string(faces_without_material_) +
-                                " faces without a material are drawn in grey");
+            missing_ += ": " + std::to_string(faces_without_material_) +
+                        " faces without a material are drawn in grey";
+        if (!missing_.empty()) warnings_.push_back((missing_.starts_with(':') ? obj_.file : "") + missing_);
         return std::move(obj_);
     }
 
-    // Called for each word after mtllib until one is a file. Exporters do not escape spaces, so that first
-    // all words together are tried.
-    bool operator()(const std::string& word, std::vector<tinyobj::material_t>*, std::map<std::string, int>*,
+    // Called for a word after mtllib. Exporters do not escape spaces: all words together are tried first, and
+    // then each until one is a file.
+    bool operator()(const std::string&, std::vector<tinyobj::material_t>*, std::map<std::string, int>*,
                     std::string*, std::string*) override {
-        if (++library_names_ > max_library_names) fail("more than 256 names of material files");
-        std::string all(buffer_.last_line());
-        all.erase(0, all.find_first_not_of(" \t", all.find("mtllib") + 6));
-        all.erase(all.find_last_not_of(" \t") + 1);
+        std::string all(name_in(buffer_.last_line()));
         std::erase(all, '\\');  // escapes a space
         const std::filesystem::path folder = path_.parent_path();
-        std::error_code ignored;  // a name that the file system refuses is reported when it is read
-        std::filesystem::path file = folder / all;
-        if (!std::filesystem::exists(file, ignored)) file = folder / word;
-        if (!std::filesystem::exists(file, ignored) && !all.ends_with(word))
-            return false;  // there are more words to try
-        if (!libraries_.insert(file.lexically_normal()).second)
-            return true;  // known: the first of a name counts
-        for (MtlMaterial& material : read_mtl(file, folder, files_, warnings_)) {
-            material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));
-            obj_.materials.push_back(std::move(material));
+        std::vector<std::string_view> names = words_of(buffer_.last_line());
+        names[0] = all;
+        for (const std::string_view name : names) {
+            if (++library_names_ > max_library_names) fail("more than 256 names of material files");
+            std::error_code ignored;  // a name that the file system refuses is that of no file
+            if (!std::filesystem::exists(folder / name, ignored)) continue;
+            read_library(folder / name);
+            return true;
         }
+        note_missing("there is no material file " + in_quotes(all));
         return true;
     }
 
@@ -204,15 +201,26 @@ class ObjReader : public tinyobj::MaterialReader {
         obj_.triangle_materials.push_back(*material_);
     }
 
-    void use_material(std::string_view name) {
-        name = name.substr(0, name.find_last_not_of(" \t") + 1);
-        const auto found = material_indices_.find(std::string(name));
-        if (found != material_indices_.end())
-            material_ = found->second;
-        else if (material_indices_.empty())
-            material_ = grey_;
-        else
-            fail("there is no material " + in_quotes(name) + " in the material files named so far");
+    void read_library(const std::filesystem::path& file) {
+        if (!libraries_.insert(file.lexically_normal()).second) return;  // known: the first of a name counts
+        for (MtlMaterial& material : read_mtl(file, path_.parent_path(), files_, warnings_)) {
+            material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));
+            obj_.materials.push_back(std::move(material));
+        }
+    }
+
+    void use_material() {
+        const std::string name(name_in(buffer_.last_line()));
+        const auto found = material_indices_.find(name);
+        if (found == material_indices_.end()) note_missing("there is no material " + in_quotes(name));
+        material_ = found == material_indices_.end() ? grey_ : found->second;
+    }
+
+    // Models from elsewhere often lack their materials: they are drawn in grey, and the first that is missing
+    // is named.
+    void note_missing(const std::string& what) {
+        if (missing_.empty())
+            missing_ = obj_.file + ":" + std::to_string(buffer_.last_line_number()) + ": " + what;
     }
 
     static MtlMaterial grey_material() {
@@ -234,6 +242,7 @@ class ObjReader : public tinyobj::MaterialReader {
     std::optional<uint32_t> grey_;
     std::set<std::filesystem::path> libraries_;  // material files that were read
     size_t library_names_ = 0;                   // tried so far
+    std::string missing_;                        // the first material or material file, with its line
     size_t faces_without_material_ = 0;
 };
 

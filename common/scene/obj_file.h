@@ -27,7 +27,8 @@ struct ObjFile {
 };
 
 // UserError naming the line for coordinates that are not finite numbers, indices out of range and faces of
-// fewer than 3 or more than 256 corners. Faces without a material get a grey one, with a warning.
+// fewer than 3 or more than 256 corners. Faces without a material, or with one that is nowhere, get a grey
+// one (Kd 0.5), with a warning.
 ObjFile read_obj(const std::filesystem::path& file, SourceFiles& files, std::vector<std::string>& warnings);
 
 }  // namespace lab

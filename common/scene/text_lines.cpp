@@ -33,6 +33,14 @@ std::vector<std::string_view> words_of(std::string_view line) {
     }
 }
 
+std::string_view name_in(std::string_view line) {
+    constexpr const char* blank = " \t";
+    const size_t keyword = line.find_first_not_of(blank);
+    line.remove_prefix(std::min(line.find_first_of(blank, keyword), line.size()));
+    line.remove_prefix(std::min(line.find_first_not_of(blank), line.size()));
+    return line.substr(0, line.find_last_not_of(blank) + 1);
+}
+
 std::optional<float> to_number(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;

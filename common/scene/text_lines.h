@@ -16,6 +16,9 @@ std::string_view take_line(std::string_view& text);
 // The words of a line, separated by spaces and tabs, up to a comment (#).
 std::vector<std::string_view> words_of(std::string_view line);
 
+// The name that follows a line's keyword, without spaces and tabs around it. It may contain spaces and #.
+std::string_view name_in(std::string_view line);
+
 // The number that a whole word is. Nothing if it is none, infinite or NaN in 32 bits.
 std::optional<float> to_number(std::string_view word);
 

@@ -137,10 +137,21 @@ class MeshFiles(ProgramTest):
             self.refuse(r"bad\.obj:8", obj=QUAD_OBJ + vertex + "\nf 1 2 5\n")
 
     def test_materials(self):
-        self.refuse(r"bad\.obj:6", "grey", obj=QUAD_OBJ.replace("usemtl white", "usemtl grey"))
-        self.refuse(r"nowhere\.mtl", obj=QUAD_OBJ.replace("quad.mtl", "nowhere.mtl"))
         for line in ("Kd nan 0 0", "Kd 1e99 0 0", "Kd -1 0 0", "Ke inf 0 0", "Ke -1 0 0", "Kd red", "Ns -3", "d 7"):
             self.refuse(r"bad\.mtl:3", mtl=QUAD_MTL + line + "\n")
+
+    def test_materials_that_are_nowhere_are_grey(self):
+        for line, note in (
+            (("usemtl white", "usemtl red"), r'bad\.obj:6: there is no material "red"'),
+            (("quad.mtl", "nowhere.mtl"), r'bad\.obj:1: there is no material file "nowhere\.mtl"'),
+        ):
+            self.write("bad.obj", QUAD_OBJ.replace(*line))
+            render = ["bad.obj", "--background=1,1,1", "--width=8", "--height=8", "--samples=1", "--output=a.exr"]
+            code, out, err = self.run_program(*render)
+            with self.subTest(line=line):
+                self.assertEqual(code, 0, err)
+                self.assertEqual(len(re.findall("grey", out + err)), 1)
+                self.assertRegex(out + err, note + ": 1 faces without a material are drawn in grey")
 
     def test_dielectrics_belong_to_chapter_6(self):
         for line in ("d 0.5", "Tr 0.5", "d 0"):

@@ -25,11 +25,11 @@ class Intersection : public OnEachBackend {
 INSTANTIATE_TEST_SUITE_P(Backends, Intersection, testing::ValuesIn(all_backends), backend_name);
 
 // Triangles side by side in one mesh.
-Scene triangle_scene(const std::vector<vec3>& corners) {
+Scene triangle_scene(const std::vector<vec3>& corners, const mat3& object_to_world = mat3(1)) {
     TriangleMesh mesh{corners, {}};
     for (uint32_t i = 0; i < corners.size(); i += 3) mesh.triangles.emplace_back(i, i + 1, i + 2);
     Scene scene = lit_scene(mesh);
-    place(scene, mat4x3(1));
+    place(scene, mat4x3(object_to_world));
     return scene;
 }
 
@@ -50,6 +50,17 @@ class Random {
         const double x = uniform(-1, 1), y = uniform(-1, 1);
         return vec3(glm::dvec3(x, y, uniform(-1, 1)));
     }
+    // Corners of triangles of ordinary shapes and all sizes, each as far from the origin as it is large, or
+    // ten or a hundred times.
+    std::vector<vec3> triangles(size_t count) {
+        std::vector<vec3> corners;
+        for (size_t i = 0; i < count; ++i) {
+            const auto size = static_cast<float>(magnitude());
+            const vec3 centre = size * std::pow(10.0f, static_cast<float>(i % 3)) * small_point();
+            for (int corner = 0; corner < 3; ++corner) corners.push_back(centre + size * small_point());
+        }
+        return corners;
+    }
 
   private:
     std::mt19937 generator_;
@@ -60,16 +71,9 @@ TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) {
     // As pbrt's test Triangle.Reintersect: each coordinate has a magnitude of its own, so that all are
     // slivers.
     std::vector<vec3> slivers;
-    // Triangles of ordinary shapes and all sizes, each as far from the origin as it is large, or ten or a
-    // hundred times.
-    std::vector<vec3> sizes;
     Random random(1);
-    for (size_t i = 0; i < triangle_count; ++i) {
-        for (int corner = 0; corner < 3; ++corner) slivers.push_back(random.point());
-        const auto size = static_cast<float>(random.magnitude());
-        const vec3 centre = size * std::pow(10.0f, static_cast<float>(i % 3)) * random.small_point();
-        for (int corner = 0; corner < 3; ++corner) sizes.push_back(centre + size * random.small_point());
-    }
+    for (size_t i = 0; i < 3 * triangle_count; ++i) slivers.push_back(random.point());
+    const std::vector<vec3> sizes = random.triangles(triangle_count);
     const bool is_ours = GetParam() == Backend::compute;
     // A driver's tree of slivers can be slow: that of lavapipe needs a second for 10^5 rays.
     const uint32_t samples = runs_all_tests() ? (is_ours ? 16 : 4) : 1;
@@ -84,6 +88,33 @@ TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) {
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
         EXPECT_GE(total.g, 1e5);
         EXPECT_LE(total.r, largest_part * total.g) << name;
+    }
+}
+
+TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
+    const auto turn = [](float angle) {
+        return mat3(glm::rotate(glm::mat4(1), angle, glm::normalize(vec3(1, 2, -0.5f))));
+    };
+    const auto scale = [](float x, float y, float z) { return mat3(glm::scale(glm::mat4(1), {x, y, z})); };
+    const std::tuple<const char*, mat3, mat3> cases[] = {
+        // What the instance does, and what is done to the triangles before.
+        {"long", scale(100, 1, 1), mat3(1)},
+        {"thin", scale(1, 1e-3f, 1e-3f), mat3(1)},
+        {"flat", scale(1, 1e-3f, 1), mat3(1)},
+        {"mirrored_and_turned", turn(0.7f) * scale(-100, 1, 0.1f), mat3(1)},
+        {"sheared", scale(30, 1, 1) * turn(0.7f) * scale(1, 1, 0.1f), mat3(1)},
+        {"slender_only_in_the_mesh", scale(100, 1, 1), scale(0.01f, 1, 1)},
+        {"slender_only_in_the_mesh_turned", turn(0.7f) * scale(1, 1e3f, 1), scale(1, 1e-3f, 1)},
+    };
+    for (const auto& [name, object_to_world, before] : cases) {
+        std::vector<vec3> corners = Random(2).triangles(1000);
+        for (vec3& corner : corners) corner = before * corner;
+        const glm::dvec3 total = probe_total(triangle_scene(corners, object_to_world),
+                                             settings("reintersect", 320, runs_all_tests() ? 4 : 1));
+        RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
+        std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
+        EXPECT_GE(total.g, 1e5) << name;
+        EXPECT_EQ(total.r, 0) << name;
     }
 }
 

@@ -9,12 +9,18 @@ vec3 random_direction(inout uvec2 seed) {
     return vec3(radius * cos(2.0 * PI * u.y), radius * sin(2.0 * PI * u.y), z);
 }
 
+// In the world.
+vec3 get_corner(Hit hit, vec2 barycentrics) {
+    hit.barycentrics = barycentrics;
+    return get_surface_point(hit).position;
+}
+
 vec3 path_trace(Ray camera_ray, inout uvec2 seed) {
     vec2 u = get_random_numbers(seed), v = get_random_numbers(seed);
     Hit target = get_random_hit(u, v);
-    uvec3 corners = triangles[target.triangle];
-    float size = max(max_component(positions[corners.y] - positions[corners.x]),
-                     max_component(positions[corners.z] - positions[corners.x]));
+    vec3 x_0 = get_corner(target, vec2(0.0));
+    float size = max(max_component(get_corner(target, vec2(1.0, 0.0)) - x_0),
+                     max_component(get_corner(target, vec2(0.0, 1.0)) - x_0));
     vec3 direction = random_direction(seed);
     vec3 origin = get_surface_point(target).position - size * pow(10.0, -4.0 * u.y) * direction;
     Hit hit;

@@ -9,7 +9,8 @@ namespace lab {
 namespace {
 
 const std::string nested = "a dielectric may lie inside the dielectric of ",
-                  enclosed = "an opaque object may lie inside the absorbing glass of ";
+                  enclosed = "an opaque object may lie inside the absorbing glass of ",
+                  reaching = "an opaque object reaches into the absorbing glass of ";
 
 // A folder with a cube [-1,1]³ of each material, cube_<material>.obj.
 class DielectricWarnings : public testing::Test {
@@ -70,6 +71,40 @@ TEST_F(DielectricWarnings, NameAnOpaqueObjectInsideAbsorbingGlass) {
     expect_only(warnings(entry("teal", 2) + "," + entry("wall", 1)), enclosed, "wall", "teal");
 }
 
+TEST_F(DielectricWarnings, NameAnOpaqueObjectPartlyInsideAbsorbingGlass) {
+    expect_only(warnings(entry("teal", 1) + "," + entry("wall", 0.5, 1.2)), reaching, "wall", "teal");
+    // A straw through the glass, and a table into which it has sunk: no corner of either is inside.
+    expect_only(warnings(entry("teal", 1) + R"(,{"file": "cube_wall.obj", "scale": [0.1, 5, 0.1]})"),
+                reaching, "wall", "teal");
+    expect_only(warnings(entry("teal", 1) + R"(,{"file": "cube_wall.obj", "scale": [5, 1, 5],
+                         "translation": [0, -1.9, 0]})"),
+                reaching, "wall", "teal");
+}
+
+TEST_F(DielectricWarnings, NameGlassThatIsNotClosed) {
+    const auto load = [&](const std::string& text) {
+        return load_scene(folder.write("sheet.obj", "mtllib all.mtl\nusemtl clear\n" + text)).warnings;
+    };
+    const auto count = [&](const std::string& text) {
+        const auto found = load(text);
+        if (found.size() == 1) return std::string("none");  // the white sky
+        EXPECT_EQ(found.size(), 2u);
+        const std::string part = "sheet.obj: its glass is not closed: ";
+        const size_t begin = found[1].find(part);
+        EXPECT_NE(begin, std::string::npos) << found[1];
+        return found[1].substr(begin + part.size(), found[1].find(" edges") - begin - part.size());
+    };
+    EXPECT_EQ(count("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"), "4");
+    const std::string closed = cube(1);
+    EXPECT_EQ(count(closed), "none");
+    EXPECT_EQ(count(closed.substr(0, closed.rfind("f "))), "4") << "a box without its lid";
+    EXPECT_EQ(count(closed.substr(0, closed.rfind("f ")) + "f -7 -3 -1 -5\n"), "4") << "its lid inside out";
+    EXPECT_EQ(count(closed.substr(0, closed.rfind("f ")) + "usemtl wall\nf -7 -5 -1 -3\n"), "4") << "of wood";
+    // Each face with corners of its own, and -0 is 0.
+    EXPECT_EQ(count("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -0 0 0\nf 1 3 2\nf 5 2 4\nf 2 3 4\nf 1 4 3\n"),
+              "none");
+}
+
 TEST_F(DielectricWarnings, AreOneLineForEachKind) {
     std::string meshes = entry("teal", 50);
     for (int i = -8; i <= 8; ++i) meshes += "," + entry("clear", 1, 3 * i) + "," + entry("wall", 0.5, 3 * i);
@@ -91,6 +126,8 @@ TEST_F(DielectricWarnings, AreNotForWhatIsComputed) {
         entry("teal", 2) + "," + entry("clear", 1, 1.5),                       // partly inside
         entry("teal", 1) + "," + entry("clear", 1) + "," + entry("clear", 1),  // in the same place
         entry("wall", 2) + "," + entry("wall", 1),                             // no glass at all
+        entry("teal", 1) + "," + entry("wall", 1, 2),                          // touching
+        entry("clear", 1) + "," + entry("wall", 1, 1.5),                       // reaching into clear glass
     };
     for (const std::string& scene : right_scenes) EXPECT_TRUE(warnings(scene).empty()) << scene;
 }

@@ -345,10 +345,40 @@ TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
     EXPECT_USER_ERROR(load(obj), "binary");
     folder.write("a.mtl", "");
     EXPECT_USER_ERROR(load(obj), "empty");
-    folder.write("a.mtl", "newmtl other\n");
-    EXPECT_USER_ERROR(load(obj), "a.obj:2: there is no material \"m\"");
-    std::filesystem::remove(folder / "a.mtl");
-    EXPECT_USER_ERROR(load(obj), "a.mtl: no such file");
+}
+
+TEST_F(MeshFile, MaterialsThatAreNowhereAreGrey) {
+    const std::string grey = ": 2 faces without a material are drawn in grey";
+    const std::string named = "\nusemtl m\n" + corners_of_a_square + "f 1 2 3\n",
+                      unnamed = "usemtl m n\nf 1 3 4\n";
+    folder.write("a.mtl", "newmtl m\nKd 1 1 1\n");
+    for (const auto& [text, what] :
+         {std::pair{"mtllib none.mtl" + named + "f 1 3 4\n",
+                    "a.obj:1: there is no material file \"none.mtl\""},
+          {"mtllib  none.mtl no.mtl " + named + unnamed,
+           "a.obj:1: there is no material file \"none.mtl no.mtl\""},
+          {"mtllib a.mtl\n" + corners_of_a_square + "usemtl x\nf 1 2 3\nusemtl y\nf 1 3 4\n",
+           "a.obj:6: there is no material \"x\""}}) {
+        const Scene scene = load(text);
+        EXPECT_EQ(scene.materials.size(), 1u) << text;
+        EXPECT_EQ(scene.materials.at(0).diffuse_albedo, vec3(0.5f)) << text;
+        EXPECT_EQ(count_warnings(scene, what + grey), 1u) << text;
+        EXPECT_EQ(count_warnings(scene, "a.obj:"), 2u) << text << "the white sky is the other";
+    }
+    // A face that has its material keeps it.
+    const Scene partly = load("mtllib a.mtl" + named + unnamed);
+    EXPECT_EQ(partly.materials.at(partly.triangle_materials.at(0)).diffuse_albedo, vec3(1));
+    EXPECT_EQ(partly.materials.at(partly.triangle_materials.at(1)).diffuse_albedo, vec3(0.5f));
+    EXPECT_EQ(count_warnings(partly, "a.obj:8: there is no material \"m n\": 1 faces"), 1u);
+}
+
+TEST_F(MeshFile, NamesMayHaveSpacesAroundThem) {
+    folder.write("a.mtl", "newmtl \t Material #25 \t\nKd 1 1 1\nmap_Kd  \ta b.png \t\n");
+    write_png(folder / "a b.png", {1, 1, {9, 9, 9, 255}});
+    const Scene scene =
+        load("mtllib \t a.mtl \t\nusemtl  \tMaterial #25 \n" + corners_of_a_square + "f 1 2 3\n");
+    EXPECT_EQ(count_warnings(scene, "material"), 0u);
+    EXPECT_EQ(scene.textures.size(), 1u);
 }
 
 TEST_F(MeshFile, TrianglesWithoutAreaAreLeftOutAndCounted) {
