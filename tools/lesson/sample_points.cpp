@@ -1,5 +1,5 @@
-// Writes points of a sampler as 32-bit numbers to the standard output: sample_points SAMPLER. ./lab sample shows
-// them.
+// Writes points of a sampler as 32-bit numbers to the standard output: sample_points SAMPLER. ./lab sample
+// shows them.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <map>
