@@ -6,10 +6,10 @@ import matplotlib
 matplotlib.use("agg")
 import numpy as np
 from lesson import sample
-from lesson.sample_plots import scatter, style
+from lesson.sample_plots import scatter
 from matplotlib import image, pyplot
 from project import BINARIES, ROOT, UserError, run_program
-from report.plots import COLOURS, MARKERS, encode_srgb
+from report.plots import COLOURS, MARKERS, encode_srgb, style_axis
 
 DPI = 100
 GAP, LABEL = 4, 22  # pixels between tiles, height of a label
@@ -42,7 +42,7 @@ def plot(path, size, draw, **labels):
     """A plot with logarithmic axes, drawn by a function of its axis."""
     figure, axis = pyplot.subplots(figsize=size, layout="constrained")
     draw(axis)
-    style(axis, xscale="log", yscale="log", **labels)
+    style_axis(axis, xscale="log", yscale="log", **labels)
     axis.legend(frameon=False, fontsize=9)
     save(figure, path)
 
@@ -100,7 +100,7 @@ def convergence(folder, images, reports):
         for axis, key in zip(axes, ("samples", "seconds")):
             axis.plot(columns[key], np.sqrt(columns["rel_mse"]), marker + "-", color=colour, markersize=4, label=f"chapter {number}")
     for axis, label in zip(axes, ("samples a pixel", "seconds")):
-        style(axis, xscale="log", yscale="log", xlabel=label)
+        style_axis(axis, xscale="log", yscale="log", xlabel=label)
     axes[0].set_ylabel("relative error (root of rel_mse)")
     axes[0].legend(frameon=False, fontsize=9)
     save(figure, folder / "convergence.png")
@@ -146,7 +146,7 @@ def grid_and_random(folder, images, reports):
         n, corners, midpoints = zip(*sample.grid_rows(integral, k, 2**16))
         axis.plot(n, corners, "s-", color=COLOURS[4], markersize=4, label=f"grid of corners: N^(−1/{k})")
         axis.plot(n, midpoints, "D-", color=COLOURS[1], markersize=4, label=f"grid of midpoints: N^(−2/{k})")
-        style(axis, xscale="log", yscale="log", xlabel="N", title=f"k = {k}", ylim=(1e-7, 2))
+        style_axis(axis, xscale="log", yscale="log", xlabel="N", title=f"k = {k}", ylim=(1e-7, 2))
         axis.legend(frameon=False, fontsize=8, loc="lower left")
     axes[0].set_ylabel("error")
     save(figure, folder / "grid_and_random.png")

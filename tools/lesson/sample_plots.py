@@ -4,17 +4,10 @@ import matplotlib
 matplotlib.use("agg")
 import numpy as np
 from matplotlib import pyplot
-from report.plots import COLOURS
+from report.plots import COLOURS, style_axis
 
 SHOWN = 2000  # points in a scatter plot
 DPI = 100
-
-
-def style(axis, **labels):
-    axis.set(**labels)
-    axis.grid(color="#dddddd", linewidth=0.8)
-    axis.set_axisbelow(True)
-    axis.spines[["top", "right"]].set_visible(False)
 
 
 def scatter(axis, kind, points):
@@ -42,7 +35,7 @@ def density(axis, playground, points, histogram):
     axis.stairs(heights, edges, fill=True, color=COLOURS[5], label="points")
     fine = np.linspace(0, 1, 401)
     axis.plot((fine[1:] + fine[:-1]) / 2, np.diff(playground.cumulative(fine)) / np.diff(fine), color=COLOURS[4], label="density")
-    style(axis, xlabel=playground.coordinate, ylim=(0, 1.35 * heights.max()))
+    style_axis(axis, xlabel=playground.coordinate, ylim=(0, 1.35 * heights.max()))
     axis.legend(frameon=False)
 
 
@@ -61,7 +54,7 @@ def save_overview(path, playground, points, dimensions, histogram, estimates):
     density(axes[1], playground, points, histogram)
     for integral, colour in zip(playground.integrals, COLOURS):
         convergence(axes[2], estimates(integral.terms(points)), integral.value(dimensions), integral.formula, colour)
-    style(axes[2], xscale="log", xlabel="N")
+    style_axis(axes[2], xscale="log", xlabel="N")
     axes[2].legend(frameon=False, fontsize=8)
     figure.suptitle(playground.title, fontsize=11)
     figure.savefig(path, dpi=DPI)

@@ -6,7 +6,16 @@ import mitsuba as mi
 def define_bsdfs():
     """Mitsuba's base class exists once the variant is chosen."""
 
-    class InterpolatedNormals(mi.BSDF):
+    class ByEvalPdf(mi.BSDF):
+        """Asked for either of what eval_pdf() knows."""
+
+        def eval(self, ctx, si, wo, active=True):
+            return self.eval_pdf(ctx, si, wo, active)[0]
+
+        def pdf(self, ctx, si, wo, active=True):
+            return self.eval_pdf(ctx, si, wo, active)[1]
+
+    class InterpolatedNormals(ByEvalPdf):
         """Another BSDF in the frame of interpolated normals, which the mesh has as attribute vertex_shading_normal.
 
         Mitsuba's own vertex normals also turn the front of emitters and the area of light sources. Ours shade only:
@@ -43,13 +52,7 @@ def define_bsdfs():
             value, pdf = self.nested.eval_pdf(ctx, turned, turned_wo, active)
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
 
-        def eval(self, ctx, si, wo, active=True):
-            return self.eval_pdf(ctx, si, wo, active)[0]
-
-        def pdf(self, ctx, si, wo, active=True):
-            return self.eval_pdf(ctx, si, wo, active)[1]
-
-    class Phong(mi.BSDF):
+    class Phong(ByEvalPdf):
         """Kd / pi + Ks (n + 2) / (2 pi) cos^n(alpha), alpha between wo and the mirror image of wi: normalised Phong."""
 
         def __init__(self, properties):
@@ -90,12 +93,6 @@ def define_bsdfs():
             value = (diffuse / dr.pi + specular * (self.exponent + 2) * lobe) * wo.z
             pdf = (1 - probability) * wo.z / dr.pi + probability * (self.exponent + 1) * lobe
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
-
-        def eval(self, ctx, si, wo, active=True):
-            return self.eval_pdf(ctx, si, wo, active)[0]
-
-        def pdf(self, ctx, si, wo, active=True):
-            return self.eval_pdf(ctx, si, wo, active)[1]
 
     mi.register_bsdf("interpolated_normals", InterpolatedNormals)
     mi.register_bsdf("phong_lobe", Phong)

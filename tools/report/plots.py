@@ -24,6 +24,13 @@ def style(case, index, peer_index):
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": "-", "marker": MARKERS[index % len(MARKERS)]}
 
 
+def style_axis(axis, **labels):
+    axis.set(**labels)
+    axis.grid(color="#dddddd", linewidth=0.8)
+    axis.set_axisbelow(True)
+    axis.spines[["top", "right"]].set_visible(False)
+
+
 def plot_errors(scene, styles):
     """SVG: error against samples and against wall seconds, with 95 % bands."""
     pyplot.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "font.size": 13})
@@ -36,10 +43,7 @@ def plot_errors(scene, styles):
             if y and y[0][1]:
                 axis.fill_between(x, [error[1] for error in y], [error[2] for error in y], alpha=0.2, linewidth=0,
                                   color=styles[case["case"]]["color"])
-        axis.set(xscale="log", yscale="log", xlabel=label)
-        axis.grid(color="#dddddd", linewidth=0.8)
-        axis.set_axisbelow(True)
-        axis.spines[["top", "right"]].set_visible(False)
+        style_axis(axis, xscale="log", yscale="log", xlabel=label)
     axes[0].set_ylabel("error (rel_mse)")
     root = axes[1].secondary_yaxis("right", functions=(lambda e: 100 * np.sqrt(np.maximum(e, 0)), lambda e: (e / 100) ** 2))
     root.set_ylabel("its root")
