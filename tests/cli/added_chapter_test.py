@@ -65,9 +65,9 @@ class AddedChapterTest(ProgramTest):
         self.assertRegex(self.run_in_tree("./lab", "run"), r"\n +7  \w+")
         self.assertIn(f"+ chapters/{COPY}/path_trace.glsl", self.run_in_tree("./lab", "diff", 7))
         names = self.run_in_tree(sys.executable, "-B", "-c",
-                                 "import sys; sys.path.append('tools'); import make_results; print(make_results.PAGES)")
+                                 "import sys; sys.path.append('tools'); from docs import tables; print(tables.PAGES)")
         self.assertIn(COPY, names)
-        self.run_in_tree(sys.executable, "-B", "tools/make_results.py", "--check")
+        self.run_in_tree(sys.executable, "-B", "tools", "tables", "--check")
 
 
 if __name__ == "__main__":

@@ -6,15 +6,14 @@ import re
 import socket
 import unittest
 
-from program import BINARIES, PROJECT, ProgramTest, python_with_plots
+from program import BINARIES, PROJECT, ProgramTest
 
 SMALL = ["cornell_box_1", "--backend=compute", "--seconds=0.2", "--output=benchmark.json"]
 
 
 class BenchmarkTest(ProgramTest):
     def start_benchmark(self, *arguments):
-        return self.start("-B", PROJECT / "tools/make_benchmark.py", *arguments, program=python_with_plots(),
-                          environment={"LAB_BINARIES": str(BINARIES)})
+        return self.start_tool("benchmark", *arguments, environment={"LAB_BINARIES": str(BINARIES)})
 
     def test_table_and_file_say_what_was_measured(self):
         with self.start_benchmark(*SMALL) as process:

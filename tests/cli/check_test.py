@@ -2,14 +2,10 @@
 
 import json
 import re
-import subprocess
-import sys
 import unittest
 
-from program import PROJECT, ProgramTest, python_with_plots
-
-sys.path.append(str(PROJECT / "tests/mistakes"))
-import mistake  # noqa: E402  (found by the line above)
+from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
+import mistake
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
 ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
@@ -20,12 +16,17 @@ ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
 """
 
 
+# A chapter that notes its arguments.
+NOTING = """#!/bin/sh
+echo "$@" >>'{notes}'
+exec '{program}' "$@"
+"""
+
+
 class CheckTest(ProgramTest):
-    def check(self, *arguments):
+    def check(self, *arguments, **options):
         """Exit code, standard output and standard error."""
-        command = [python_with_plots(), "-B", PROJECT / "tools/check.py", *arguments]
-        result = subprocess.run(list(map(str, command)), cwd=self.folder, capture_output=True, text=True)
-        return result.returncode, result.stdout, result.stderr
+        return self.run_tool("check", *arguments, **options)
 
     def check_few(self, *arguments):
         code, out, err = self.check(3, "--runs", 5, "--samples", 4, "--json", *arguments)
@@ -49,6 +50,21 @@ class CheckTest(ProgramTest):
         self.assertTrue(all(test["is_biased"] and test["value"] > 0.5 for test in box["image"]), box["image"])
         self.assertEqual(result["likely_mistake"]["name"], "wrong-measure")
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
+
+    def test_checks_with_other_seeds_share_no_render(self):
+        """Also with more runs: otherwise a false alarm comes back with another --seed."""
+        program = self.write(f"binaries/{SHADER.parent.name}", NOTING.format(
+            notes=self.folder / "notes", program=BINARIES / SHADER.parent.name))
+        program.chmod(0o755)
+        seeds = []
+        for seed in (0, 1):
+            self.check(3, "--runs", 2 + seed, "--samples", 1, "--backend", "compute", "--seed", seed,
+                       environment={"LAB_BINARIES": str(program.parent)})
+            notes = (self.folder / "notes").read_text()
+            (self.folder / "notes").unlink()
+            seeds.append(set(re.findall(r"--seed (\d+)", notes)))
+            self.assertEqual(len(seeds[-1]), 2 + seed)
+        self.assertFalse(seeds[0] & seeds[1], seeds)
 
     def test_what_is_still_to_be_written_is_no_mistake(self):
         text = SHADER.read_text(encoding="utf-8")

@@ -3,13 +3,10 @@
 import os
 import pty
 import subprocess
-import sys
 import unittest
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tools"))
-import show_diff  # noqa: E402  (found by the line above)
+from program import PROJECT as ROOT  # first: it finds the tools
+from lesson import diff as show_diff
 
 STEPS = [number for number in show_diff.CHAPTERS if number - 1 in show_diff.CHAPTERS]
 
@@ -21,7 +18,7 @@ def diff(*arguments, **streams):
 class DiffTest(unittest.TestCase):
     def test_rows_are_the_two_shaders(self):
         for number in STEPS:
-            before, after = (show_diff.shader_lines(show_diff.CHAPTERS[n]) for n in (number - 1, number))
+            before, after = map(show_diff.shader_lines, (number - 1, number))
             rows, _, moved = show_diff.compare(before, after)
             self.assertEqual([line for mark, line, _ in rows if mark != "-"], after)
             kept = [line for mark, line, _ in rows if mark != "+" and line.strip()]
@@ -38,7 +35,7 @@ class DiffTest(unittest.TestCase):
         self.assertEqual(show_diff.compare(before, before)[1], {"code": 0, "comments": 0, "words": 0})
 
     def test_what_later_chapters_share_counts_as_moved(self):
-        *_, moved = show_diff.compare(*(show_diff.shader_lines(show_diff.CHAPTERS[n]) for n in (3, 4)))
+        *_, moved = show_diff.compare(*map(show_diff.shader_lines, (3, 4)))
         body = (ROOT / "shaders/direct_light.glsl").read_text(encoding="utf-8").splitlines()[2:]
         self.assertEqual(moved, [(sum(bool(line.strip()) for line in body), "shaders/direct_light.glsl")])
 

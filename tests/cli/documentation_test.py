@@ -14,11 +14,10 @@ import unittest
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from program import BINARIES
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tools"))
-import make_numerics  # noqa: E402  (found by the line above)
+from program import BINARIES, TOOLS  # first: it finds the tools
+from program import PROJECT as ROOT
+import measure
+from docs import numerics
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
@@ -95,7 +94,7 @@ class DocumentationTest(unittest.TestCase):
                     self.assertTrue(quoted, f"{page.relative_to(ROOT)}: {target} has no, or more than one, `{piece}`")
 
     def test_code_that_is_named_exists(self):
-        text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab") + text_of(ROOT / "tools/fresh_machine")
+        text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab") + text_of(ROOT / "tests/fresh_machine")
         for page in PAGES:
             for code in re.findall(r"`([^`\n]+)`", text_of(page)):
                 # Names with an underscore or a scope, and calls, are taken for identifiers of ours or of Vulkan's.
@@ -126,26 +125,25 @@ class DocumentationTest(unittest.TestCase):
             self.assertTrue(named and set(named) <= suites, f"{chapter}: tests {named}")
 
     def test_results_are_what_the_records_say(self):
-        for tool in ("make_results.py", "make_numerics.py"):
-            subprocess.run([sys.executable, "-B", ROOT / "tools" / tool, "--check"], check=True)
+        subprocess.run([sys.executable, "-B", TOOLS, "tables", "--check"], check=True)
 
     def test_every_numerical_trap_has_tests_that_exist(self):
-        cases = make_numerics.load_cases()
+        cases = numerics.load_cases()
         listed = {case["research"] for case in cases}
         self.assertEqual([trap for trap in NUMERICAL_TRAPS if trap not in listed], [])
         for case in cases:
             self.assertEqual(bool(case["tests"]), case["research"] not in TRAPS_THAT_CANNOT_OCCUR, case["case"])
-        self.assertEqual(make_numerics.missing_tests(), [])
+        self.assertEqual(measure.missing_tests(), [])
 
 
 class DocumentedCommandsTest(unittest.TestCase):
     def test_commands_exist(self):
-        lab, options = text_of(ROOT / "lab"), text_of(ROOT / "lab") + sources(["tools"], {".py", ".cpp"})
+        lab, options = text_of(ROOT / "lab"), text_of(ROOT / "lab") + sources(["tools", "tests"], {".py", ".cpp"})
         for page in PAGES:
             for name, *arguments in commands(page):
                 self.assertTrue(f"\ncommand_{name}()" in lab, f"{page.relative_to(ROOT)}: ./lab {name}")
                 if name == "sample" and arguments:
-                    self.assertIn(f'    "{arguments[0]}": Playground(', text_of(ROOT / "tools/sample.py"))
+                    self.assertIn(f'    "{arguments[0]}": Playground(', text_of(ROOT / "tools/lesson/sample.py"))
                 for argument in arguments if name != "run" else []:
                     if argument.startswith("--"):
                         self.assertTrue(argument in options, f"{page.relative_to(ROOT)}: ./lab {name} {argument}")

@@ -2,33 +2,30 @@
 
 import re
 import subprocess
+import sys
 import unittest
 
-from program import PROJECT, ProgramTest, python_with_plots
+from program import PROJECT, TOOLS, ProgramTest
 
-TOOLS = PROJECT / "tools"
 # The command with its renders in a folder of the test's own, and with one small figure of two renders.
 COMMAND = """import sys
 sys.path.insert(0, sys.argv.pop(1))
 from pathlib import Path
-import make_figures
-make_figures.CACHE = Path("renders").resolve()
-renders = [make_figures.Render(name, 1, "cornell_box", 16, ("--samples", 4, "--max-path-length", length))
+import project
+from docs import figures
+figures.CACHE = Path("renders").resolve()
+renders = [figures.Render(name, "01_uniform_sampling", "cornell_box", 16, ("--samples", 4, "--max-path-length", length))
            for name, length in (("only_0", 0), ("only_1", 1))]
-make_figures.FIGURES["small"] = (renders, make_figures.figure_plots.path_lengths)
-make_figures.main()"""
+figures.FIGURES["small"] = (lambda: renders, figures.figure_plots.path_lengths)
+project.run_tool(figures)"""
 MOST_BYTES = 20 * 2**20
 
 
 class FiguresTest(ProgramTest):
-    @classmethod
-    def setUpClass(cls):
-        cls.python = python_with_plots()
-
     def figures(self, *arguments):
         """Standard error of a run; the pictures are in the folder `pictures`."""
         command = ["-B", "-c", COMMAND, TOOLS, "--output=pictures", *arguments]
-        code, _, err = self.run_program(*command, program=self.python)
+        code, _, err = self.run_program(*command, program=sys.executable)
         self.assertEqual(code, 0, err)
         return err
 
@@ -49,7 +46,7 @@ class FiguresTest(ProgramTest):
     def test_other_settings_are_other_renders(self):
         for samples in (4, 8):
             command = COMMAND.replace('"--samples", 4', f'"--samples", {samples}')
-            self.render("-B", "-c", command, TOOLS, "--output=pictures", "small", program=self.python)
+            self.render("-B", "-c", command, TOOLS, "--output=pictures", "small", program=sys.executable)
         self.assertEqual(len(list(self.folder.glob("renders/*/small/*.exr"))), 4)
 
     def test_points_need_no_renders(self):
@@ -58,7 +55,7 @@ class FiguresTest(ProgramTest):
         self.assertEqual(names, ["random_numbers.png", "sampler_points.png"])
 
     def test_makes_all_pictures_of_the_pages(self):
-        made = (TOOLS / "figure_plots.py").read_text(encoding="utf-8")
+        made = (TOOLS / "docs/figure_plots.py").read_text(encoding="utf-8")
         chapters = {path.name for path in (PROJECT / "chapters").iterdir()}
         pictures = list((PROJECT / "docs/pictures").iterdir())
         for picture in pictures:
@@ -69,11 +66,11 @@ class FiguresTest(ProgramTest):
         self.assertEqual(sorted(picture.name for picture in pictures), sorted(shown), "made but not shown, or the other way")
 
     def test_other_names_are_refused(self):
-        self.assert_refused(["-B", TOOLS / "make_figures.py", "nothing"], "'nothing'", "convergence", program=self.python)
+        self.assert_tool_refused(["figures", "nothing"], "'nothing'", "convergence")
 
     def test_a_failing_render_is_told(self):
         command = COMMAND.replace('"cornell_box"', '"no_such_scene"')
-        result = subprocess.run([self.python, "-B", "-c", command, TOOLS, "--output=pictures", "small"], cwd=self.folder,
+        result = subprocess.run([sys.executable, "-B", "-c", command, TOOLS, "--output=pictures", "small"], cwd=self.folder,
                                 capture_output=True, text=True)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"\Aerror: only_0: [^\n]*no_such_scene[^\n]*\n\Z")

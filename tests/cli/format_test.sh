@@ -7,4 +7,4 @@ if [[ $(clang-format --version 2>/dev/null) != *'version 14.'* ]]; then
     echo 'skipped: clang-format 14 is not installed'
     exit 77
 fi
-find common chapters tests shaders/interface.h -name '*.cpp' -o -name '*.h' | sort | xargs clang-format --dry-run -Werror
+find common chapters tests tools shaders/interface.h -name '*.cpp' -o -name '*.h' | sort | xargs clang-format --dry-run -Werror

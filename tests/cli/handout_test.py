@@ -4,17 +4,18 @@ import json
 import os
 import re
 import subprocess
+import sys
 import unittest
 
-from program import BINARIES, PROJECT, ProgramTest, python_with_plots
+from program import BINARIES, PROJECT, TOOLS, ProgramTest
 
-EXERCISES = json.loads((PROJECT / "tools/exercises.json").read_text(encoding="utf-8"))
+EXERCISES = json.loads((TOOLS / "course/exercises.json").read_text(encoding="utf-8"))
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
 
 
 class HandoutTest(ProgramTest):
     def handout(self, *arguments):
-        command = [python_with_plots(), "-B", PROJECT / "tools/make_handout.py", *arguments]
+        command = [sys.executable, "-B", TOOLS, "handout", *arguments]
         return subprocess.run(list(map(str, command)), cwd=self.folder, capture_output=True, text=True,
                               env=os.environ | {"LAB_BINARIES": str(BINARIES)})
 

@@ -1,10 +1,11 @@
-"""./lab install and the container: what they would install. Whether it works, tools/fresh_machine tries."""
+"""./lab install and the container: what they would install. Whether it works, tests/fresh_machine tries."""
 
 import re
 import subprocess
 import unittest
+from pathlib import Path
 
-from program import PROJECT
+from program import PROJECT, ProgramTest
 
 LAB = (PROJECT / "lab").read_text(encoding="utf-8")
 
@@ -18,7 +19,7 @@ class InstallTest(unittest.TestCase):
         """All lists at the top of lab but that of ./lab fuzz."""
         lists = dict(re.findall(r"^packages_to_(\w+)='\n(.*?)'$", LAB, re.MULTILINE | re.DOTALL))
         del lists["fuzz"]
-        self.assertEqual(set(lists), {"run", "test", "report"})
+        self.assertEqual(set(lists), {"run", "script", "test", "report"})
         names = [name for text in lists.values() for line in text.splitlines() for name in line.split("|")[0].split()]
         self.assertEqual(lab("install", "--list").stdout.split(), names)
 
@@ -31,6 +32,23 @@ class InstallTest(unittest.TestCase):
         steps = re.findall(r"^RUN \./lab (\w+)", (PROJECT / "Containerfile").read_text(encoding="utf-8"), re.MULTILINE)
         self.assertEqual(steps, ["install"])
         self.assertIn("\ncommand_install()", LAB)
+
+
+class BareMachineTest(ProgramTest):
+    """Without Python, and with apt that has nothing installed and installs nothing."""
+
+    def test_commands_in_python_install_it(self):
+        commands = self.folder / "bin"
+        commands.mkdir()
+        for path in (path for folder in ("/usr/bin", "/bin") for path in Path(folder).iterdir()):
+            if not path.name.startswith(("python", "apt", "dpkg", "sudo")) and not (commands / path.name).exists():
+                (commands / path.name).symlink_to(path)
+        for name in ("apt-get", "dpkg-query"):
+            self.write(f"bin/{name}", "#!/bin/sh\nexit 1\n").chmod(0o755)
+        for command in (["diff", "2"], ["reference", "--all"], ["fuzz", "--help"]):
+            code, _, err = self.run_program(*command, program=PROJECT / "lab", environment={"PATH": str(commands)})
+            self.assertEqual(code, 1, err)
+            self.assertRegex(err, r"these packages are needed[^\n]*\n +python3 +\w")
 
 
 if __name__ == "__main__":

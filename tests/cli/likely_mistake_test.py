@@ -3,15 +3,14 @@
 import json
 import random
 import re
-import sys
 import unittest
 
-from program import PROJECT
-
-sys.path.append(str(PROJECT / "tools"))
-from confusion_table import rates  # noqa: E402  (found by the line above)
-from likely_mistake import SIGNATURES, Signature, rank, read_signatures  # noqa: E402
-from planting import catalogue, trials  # noqa: E402
+from program import PROJECT  # first: it finds the tools
+import learn
+from check.grading import MOST_RUNS, SEED_STEP
+from check.likely_mistake import SIGNATURES, Signature, rank, read_signatures
+from docs.confusion_table import rates
+from planting import catalogue, trials
 
 KNOWN = json.loads(SIGNATURES.read_text(encoding="utf-8"))
 CHAPTER_3 = read_signatures(KNOWN["3"])
@@ -24,8 +23,14 @@ class LikelyMistakeTest(unittest.TestCase):
             expected[str(chapter)][mistake["name"]] = {key: mistake["check"][key] for key in ("hint", "slide")}
         known = {chapter: {name: {key: entry[key] for key in ("hint", "slide")} for name, entry in entries.items()}
                  for chapter, entries in KNOWN.items()}
-        self.assertEqual(known, expected, "tools/learn_mistakes.py learn")
+        self.assertEqual(known, expected, "tests/mistakes/learn.py learn")
         self.assertGreater(sum(map(len, known.values())), 70)
+
+    def test_nothing_was_learnt_from_the_seeds_of_a_check(self):
+        plans = (learn.LEARNING, learn.LEVELS, learn.TRYING)
+        seeds = [seed for plan in plans for seed in range(plan["first_seed"], plan["first_seed"] + plan["runs"])]
+        self.assertEqual(len(set(seeds)), len(seeds))
+        self.assertTrue(all(MOST_RUNS < seed <= SEED_STEP for seed in seeds), seeds)
 
     def test_every_slide_to_read_again_is_in_the_slide_map(self):
         titles = re.findall(r"^### (.*)$", (PROJECT / "docs/slides.md").read_text(encoding="utf-8"), re.MULTILINE)
@@ -35,7 +40,7 @@ class LikelyMistakeTest(unittest.TestCase):
 
     def test_the_confusion_matrix_has_every_trial_and_four_fifths_are_named_right(self):
         record = json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
-        self.assertEqual(set(record["trials"]), set(trials()), "tools/learn_mistakes.py confusion")
+        self.assertEqual(set(record["trials"]), set(trials()), "tests/mistakes/learn.py confusion")
         for (condition, is_mistake), (tried, found, right, _) in rates(record).items():
             if is_mistake:
                 self.assertGreaterEqual(right / tried, 0.8, condition)

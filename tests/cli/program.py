@@ -12,8 +12,8 @@ import unittest
 from pathlib import Path
 
 from image_files import Exr, largest_ulp_difference
+from tools_path import PROJECT, TOOLS
 
-PROJECT = Path(__file__).resolve().parents[2]
 BINARIES = Path(os.environ.get("LAB_BINARIES", PROJECT / "build" / "bin"))
 CHAPTER = BINARIES / "01_uniform_sampling"
 MERGE = BINARIES / "merge_images"
@@ -45,14 +45,6 @@ BAD_INPUT_SECONDS = 20
 BAD_INPUT_MEMORY = 8 << 30
 
 
-def python_with_plots():
-    """One with numpy and matplotlib: Debian's are for its own Python."""
-    for python in (sys.executable, "/usr/bin/python3"):
-        if subprocess.run([python, "-c", "import numpy, matplotlib"], capture_output=True).returncode == 0:
-            return python
-    raise RuntimeError("no Python has numpy and matplotlib: install python3-numpy and python3-matplotlib")
-
-
 class ProgramTest(unittest.TestCase):
     """Each test has an empty folder as working directory, with the scene quad.json in it."""
 
@@ -67,6 +59,7 @@ class ProgramTest(unittest.TestCase):
     def write(self, name, contents):
         """Writes a file of the test's folder; returns its path."""
         path = self.folder / name
+        path.parent.mkdir(exist_ok=True)
         path.write_bytes(contents if isinstance(contents, bytes) else contents.encode())
         return path
 
@@ -106,6 +99,15 @@ class ProgramTest(unittest.TestCase):
         code, out, err = self.run_program(*arguments, **options)
         self.assertEqual(code, 0, f"{arguments}: {err}")
         return out
+
+    def start_tool(self, *arguments, **options):
+        return self.start("-B", TOOLS, *arguments, program=sys.executable, **options)
+
+    def run_tool(self, *arguments, **options):
+        return self.run_program("-B", TOOLS, *arguments, program=sys.executable, **options)
+
+    def assert_tool_refused(self, arguments, *words, **options):
+        self.assert_refused(["-B", TOOLS, *arguments], *words, program=sys.executable, **options)
 
     def assert_refused(self, arguments, *words, code=1, environment=None, prepare=None, program=CHAPTER):
         """The command ends soon with this exit code and one line that has all the words, and writes no picture."""

@@ -2,21 +2,20 @@
 
 import math
 import random
-import sys
 import unittest
 
-from program import PROJECT
-
-sys.path.insert(0, str(PROJECT / "tools"))
-import report_numbers as numbers  # noqa: E402
+import tools_path  # noqa: F401  (first: it finds the others)
+import numpy as np
+from references.images import Reference
+from report import numbers
 
 PIXELS = 16 * 16
 REFERENCE = {"mean": [0.5, 0.25, 0.125], "variance": [1e-10] * 3, "freedom": 63}
 
 
-def synthetic_run(seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent=-1.0, bias=0.0, deviation=0.2):
+def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent=-1.0, bias=0.0, deviation=0.2):
     """Rows at 1, 2, 4, …: error × samples^exponent with noise, and image means with a deviation for one sample."""
-    dice = random.Random(seed)
+    dice = random.Random(dice_seed)
     rows, done, sums = [], 0, [0.0] * 3
     while done < samples:
         added = max(done, 1)
@@ -25,11 +24,11 @@ def synthetic_run(seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent
         done += added
         rows.append({"samples": done, "seconds": seconds * done, "device_seconds": 0.5 * seconds * done, "rays": 3 * PIXELS * done,
                      "rel_mse": error * done**exponent * math.exp(noise * dice.gauss(0, 1)), "mean": [s / done for s in sums]})
-    return {"seed": seed, "command_seconds": rows[-1]["seconds"] + 0.3, "rows": rows}
+    return {"command_seconds": rows[-1]["seconds"] + 0.3, "rows": rows}
 
 
-def synthetic_case(name, count=5, first_seed=1, **truth):
-    runs = [synthetic_run(seed, **truth) for seed in range(first_seed, first_seed + count)]
+def synthetic_case(name, count=5, first_dice=1, **truth):
+    runs = [synthetic_run(dice, **truth) | {"seed": seed} for seed, dice in enumerate(range(first_dice, first_dice + count), 1)]
     return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": "", "backend": "", "note": "", "refused": None,
             "width": 16, "height": 16, "max_path_length": 3, "reference": REFERENCE, "runs": runs}
 
@@ -44,8 +43,8 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertGreater(interval[2], truth)
 
     def test_quantiles_of_students_distribution(self):
-        for probability, freedom, expected in ((0.975, 4, 2.776445), (0.9995, 10, 4.586894), (0.975, 1e6, 1.959966), (0.6, 2, 0.288675)):
-            self.assertAlmostEqual(numbers.student_quantile(probability, freedom), expected, delta=2e-6)
+        for confidence, freedom, expected in ((0.95, 4, 2.776445), (0.999, 10, 4.586894), (0.95, 1e6, 1.959966), (0.2, 2, 0.288675)):
+            self.assertAlmostEqual(numbers.two_sided(confidence, freedom), expected, delta=2e-6)
 
     def test_slopes(self):
         for exponent in (-1.0, -0.5):
@@ -67,20 +66,71 @@ class ReportNumbersTest(unittest.TestCase):
 
     def test_gain_over_a_peer_and_time_to_one_percent(self):
         scene = summary(synthetic_case("a", error=0.8, seconds=0.01, noise=0.05),
-                        synthetic_case("Mitsuba", error=0.8, seconds=0.03, noise=0.05, first_seed=100))
+                        synthetic_case("Mitsuba", error=0.8, seconds=0.03, noise=0.05, first_dice=100))
         self.assert_covers(scene["gains"][0]["gain"], 3)
         self.assert_covers(scene["cases"][0]["seconds_to_target"], 0.3 + 0.8 / 1e-4 * 0.01)
         self.assertAlmostEqual(scene["cases"][0]["start_up_seconds"][0], 0.3)
 
-    def test_intervals_cover_the_truth_as_often_as_they_say(self):
-        trials, found = 400, 0
+    def assert_share(self, found, trials, probability):
+        """As many as a probability says, up to chance."""
+        self.assertLess(abs(found / trials - probability), 4 * math.sqrt(probability * (1 - probability) / trials))
+
+    def covered(self, ratio, shared, trials=2000):
+        """How many intervals of a quotient hold the truth, 2, where the two series have so much of their noise in common."""
+        found = 0
         for trial in range(trials):
-            dice = random.Random(trial)
-            now, base = ([dice.gauss(mean, 0.05 * mean) for _ in range(5)] for mean in (2.0, 1.0))
-            quotient = numbers.ratio(numbers.estimate(now), numbers.estimate(base))
-            found += quotient[1] < 2 < quotient[2]
-        self.assertGreater(found / trials, 0.95 - 4 * math.sqrt(0.05 * 0.95 / trials))
-        self.assertLess(found / trials, 0.95 + 4 * math.sqrt(0.05 * 0.95 / trials))
+            dice = np.random.default_rng(trial)
+            noise = [shared * both + math.sqrt(1 - shared**2) * dice.normal(size=5) for both in [dice.normal(size=5)] * 2]
+            now, base = (numbers.Series(dict(enumerate(mean * (1 + 0.05 * part)))) for mean, part in zip((2, 1), noise))
+            _, low, high = ratio(now, base)
+            found += low < 2 < high
+        return found, trials
+
+    def test_intervals_cover_the_truth_as_often_as_they_say(self):
+        found, trials = self.covered(numbers.ratio, 0.0)
+        self.assertGreater(found / trials, 0.95)  # never less, see half_width()
+        self.assertLess(found / trials, 0.98)
+
+    def test_intervals_of_cases_that_share_seeds_cover_the_truth_as_often_as_they_say(self):
+        for shared in (0.0, 0.9):
+            self.assert_share(*self.covered(numbers.paired_ratio, shared), 0.95)
+
+    def test_efficiencies_pair_the_runs_with_the_same_seed(self):
+        """Of equal runs but for a factor the quotient is known exactly, however much they scatter."""
+        first, second = (synthetic_case(name, error=error, noise=0.5) for name, error in (("a", 4.0), ("b", 2.0)))
+        second["runs"].reverse()
+        for end in summary(first, second)["cases"][1]["efficiency"]:
+            self.assertAlmostEqual(end, 2.0)
+
+    def test_intervals_hold_the_noise_of_the_reference(self):
+        """Runs that all miss the truth alike, by what the reference says that it may add."""
+        trials, found = 400, {"error": 0, "efficiency": 0, "slope": 0}
+        for trial in range(trials):
+            shift = 0.001 * random.Random(-trial).gauss(0, 1)
+            cases = [synthetic_case(name, error=error, noise=0.01, first_dice=10 * trial + 1) for name, error in (("a", 1.0), ("b", 0.5))]
+            for case in cases:
+                case["reference"] = REFERENCE | {"rel_mse_deviation": 0.001}
+                for row in (row for run in case["runs"] for row in run["rows"]):
+                    row["rel_mse"] += shift
+            first, second = summary(*cases)["cases"]
+            for name, (_, low, high), truth in (("error", first["error"], 1 / 64), ("efficiency", second["efficiency"], 2),
+                                                ("slope", first["slope_samples"], -1)):
+                found[name] += low < truth < high
+        for name in found:
+            self.assert_share(found[name], trials, 0.95)
+
+    def test_the_noise_of_the_reference_is_what_it_says(self):
+        """Many references of the same scene: how much rel_mse of one image scatters."""
+        dice, batches = np.random.default_rng(1), 64
+        truth = dice.uniform(0.1, 1, (16, 16, 1)) * np.ones(3)
+        results, stated = [], []
+        for _ in range(1000):
+            samples = truth + 0.2 * truth * dice.normal(size=(batches, 16, 16, 1))  # channels go together
+            reference = Reference(samples.mean(axis=0), samples.var(axis=0, ddof=1) / batches, {"batches": str(batches)})
+            weights = 1 / (truth**2 + 0.01 * truth.mean() ** 2)
+            results.append((weights * ((truth - reference.mean) ** 2 - reference.variance)).mean())
+            stated.append(reference.rel_mse_deviation)
+        self.assertAlmostEqual(np.std(results) / np.mean(stated), 1, delta=0.1)
 
     def test_a_planted_bias_is_found_and_stated(self):
         for channel in summary(synthetic_case("a", bias=-0.14))["cases"][0]["bias"]:
@@ -91,19 +141,42 @@ class ReportNumbersTest(unittest.TestCase):
     def test_without_bias_there_are_no_alarms(self):
         alarms = 0
         for trial in range(100):
-            case = summary(synthetic_case("a", first_seed=10 * trial))["cases"][0]
+            case = summary(synthetic_case("a", first_dice=10 * trial))["cases"][0]
             alarms += any(channel["is_biased"] for channel in case["bias"])
         self.assertLessEqual(alarms, 5)  # 1 % is expected
 
-    def test_what_is_said_to_be_found_is_found(self):
-        trials, found = 100, 0
-        for trial in range(trials):
-            truth = {"first_seed": 10 * trial, "deviation": 0.1}
-            smallest = numbers.bias(synthetic_case("a", **truth)["runs"], 0, REFERENCE, 3)["detectable"]
-            case = synthetic_case("a", bias=smallest, **truth | {"first_seed": 5000 + 10 * trial})
-            found += numbers.bias(case["runs"], 0, REFERENCE, 3)["is_biased"]
-        self.assertGreaterEqual(found, 85)  # 95 are expected, a few less since the smallest bias is an estimate itself
-        self.assertLess(found, 100)
+    def share_called_biased(self, runs, bias, part, level, trials=40000):
+        """Of many tests at once, each of a render of its own and a reference of its own with `part` of the render's noise; what is
+        said to be found, too, as standard errors of the mean."""
+        dice, deviation, freedom = np.random.default_rng(runs), 0.1, 63
+        error = deviation / math.sqrt(runs)
+        reference = {"mean": 1 + part * error * dice.normal(size=trials), "freedom": freedom,
+                     "variance": (part * error) ** 2 * dice.chisquare(freedom, trials) / freedom}
+        means = 1 + bias * error + deviation * dice.normal(size=(runs, trials))
+        tests = numbers.biases([{"rows": [{"samples": 1, "mean": mean}]} for mean in means], reference, numbers.FALSE_ALARMS / level)
+        # Noise as it really is: means of two values that lie as far apart as it says.
+        known = [{"rows": [{"samples": 1, "mean": [1 + deviation * math.sqrt((runs - 1) / runs) * (-1) ** run]}]} for run in range(runs)]
+        sure = {"mean": [1.0], "variance": [(part * error) ** 2], "freedom": freedom}
+        stated = numbers.biases(known, sure, numbers.FALSE_ALARMS / level)[0]["detectable"] / error
+        return sum(test["is_biased"] for test in tests), trials, stated
+
+    def test_levels_and_powers_are_those_that_are_stated(self):
+        for runs in (4, 12):
+            for level in (0.05, 0.001):
+                with self.subTest(runs=runs, level=level):
+                    found, trials, stated = self.share_called_biased(runs, 0.0, 0.02, level)
+                    self.assert_share(found, trials, level)
+                    found, trials, _ = self.share_called_biased(runs, stated, 0.02, level)
+                    self.assertAlmostEqual(found / trials, numbers.POWER, delta=0.006)
+
+    def test_no_level_is_exceeded_where_the_reference_is_noisy(self):
+        for runs in (2, 4, 12):
+            for part in (0.1, 1.0, 5.0):
+                with self.subTest(runs=runs, part=part):
+                    found, trials, stated = self.share_called_biased(runs, 0.0, part, 0.001)
+                    self.assertLess(found / trials, 0.001 + 4 * math.sqrt(0.001 / trials))
+                    found, trials, _ = self.share_called_biased(runs, stated, part, 0.001)
+                    self.assertGreater(found / trials, numbers.POWER - 0.006)
 
     def test_one_run_has_no_intervals_but_numbers(self):
         case = summary(synthetic_case("a", count=1))["cases"][0]

@@ -3,28 +3,29 @@
 import csv
 import json
 import re
+import sys
 import time
 import unittest
 
-from program import BINARIES, PROJECT, ProgramTest, python_with_plots
+from program import BINARIES, PROJECT, TOOLS, ProgramTest
 
-TOOLS = PROJECT / "tools"
 REFERENCE = PROJECT / "assets/references/cornell_box_1.exr"
 # The command, with a folder of the test's own where references are looked for.
 COMMAND = """import sys
 sys.path.insert(0, sys.argv.pop(1))
 from pathlib import Path
-import reference_image
-reference_image.FOLDERS.append(Path(sys.argv.pop(1)))
-import make_report
-make_report.main()"""
+import project
+from references import images
+images.FOLDERS.append(Path(sys.argv.pop(1)))
+from report import make
+project.run_tool(make)"""
 # --record with the last two cases alone, which have no reference.
 RECORD = """import sys
 sys.path.insert(0, sys.argv.pop(1))
-import make_report
-import measurement
-make_report.study_cases = lambda: measurement.study_cases()[-2:]
-make_report.main()"""
+import project
+from report import make, measurement
+make.study_cases = lambda: measurement.study_cases()[-2:]
+project.run_tool(make)"""
 # A chapter that loses its device at seed 2 as long as the file `broken` is there.
 LOSES_DEVICE = """#!/bin/sh
 case " $* " in *" --seed 2 "*) if [ -e '{broken}' ]; then echo 'error: the device is gone' >&2; exit 3; fi ;; esac
@@ -34,12 +35,8 @@ SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
 
 
 class ReportCommandTest(ProgramTest):
-    @classmethod
-    def setUpClass(cls):
-        cls.python = python_with_plots()
-
     def start_report(self, *arguments, environment=None):
-        return self.start("-B", "-c", COMMAND, TOOLS, self.folder, *arguments, program=self.python, environment=environment)
+        return self.start("-B", "-c", COMMAND, TOOLS, self.folder, *arguments, program=sys.executable, environment=environment)
 
     def report(self, *arguments, code=0, environment=None):
         """Standard error of a run to the end."""
@@ -56,7 +53,7 @@ class ReportCommandTest(ProgramTest):
 
     def assert_report_refused(self, arguments, *words, environment=None):
         arguments = ["-B", "-c", COMMAND, TOOLS, self.folder, *arguments]
-        self.assert_refused(arguments, *words, program=self.python, environment=environment)
+        self.assert_refused(arguments, *words, program=sys.executable, environment=environment)
 
     def changed_reference(self, name, old, new):
         """A copy of a reference in which bytes of the same number are replaced."""
@@ -145,12 +142,12 @@ class ReportCommandTest(ProgramTest):
 
     def test_a_record_can_be_shown_in_the_results(self):
         arguments = ["--record=record.json", "--backend=compute", "--seconds=0.2", "--repetitions=2"]
-        self.render("-B", "-c", RECORD, TOOLS, *arguments, program=self.python)
+        self.render("-B", "-c", RECORD, TOOLS, *arguments, program=sys.executable)
         record = json.loads((self.folder / "record.json").read_text())
         self.assertTrue(record["is_complete"])
         self.assertNotIn(str(PROJECT), json.dumps(record))
-        show = "import json, sys; sys.path.insert(0, sys.argv[1]); import make_results; print(make_results.chapter_tables(json.load(open('record.json'))))"
-        table = self.render("-B", "-c", show, TOOLS, program=self.python)
+        show = "import json, sys; sys.path.insert(0, sys.argv[1]); from docs import tables; print(tables.chapter_tables(json.load(open('record.json'))))"
+        table = self.render("-B", "-c", show, TOOLS, program=sys.executable)
         self.assertRegex(table, r"\| the same with roulette \| `--samples \d+ --split-every-hit [^|]*` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(")
 
     def test_references_that_do_not_fit_are_refused(self):
@@ -174,7 +171,7 @@ class ReportCommandTest(ProgramTest):
 
     def test_without_mitsuba_it_says_how_to_get_it(self):
         (self.folder / "bin").mkdir()
-        self.write("bin/python3", f'#!/bin/sh\nexec "{self.python}" -S "$@"\n').chmod(0o755)
+        self.write("bin/python3", f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n').chmod(0o755)
         environment = {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
         self.assert_report_refused(["cornell_box", "--peer=mitsuba"], "Mitsuba 3", "pip install mitsuba", environment=environment)
 

@@ -2,28 +2,22 @@
 
 import re
 import shutil
-import sys
 import unittest
 
-from program import BINARIES, PROJECT, ProgramTest, python_with_plots
-
-sys.path.append(str(PROJECT / "tests/mistakes"))
-import mistake  # noqa: E402  (found by the line above)
+from program import BINARIES, TOOLS, ProgramTest  # first: it finds the tools
+import mistake
 
 NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-point"]
 
 
 class SampleTest(ProgramTest):
-    @classmethod
-    def setUpClass(cls):
-        cls.python = python_with_plots()
-
     def sample(self, *arguments, binaries=BINARIES):
-        command = ["-B", PROJECT / "tools/sample.py", *arguments]
-        return self.render(*command, program=self.python, environment={"LAB_BINARIES": str(binaries)})
+        code, out, err = self.run_tool("sample", *arguments, environment={"LAB_BINARIES": str(binaries)})
+        self.assertEqual(code, 0, err)
+        return out
 
     def refuse(self, arguments, *words):
-        self.assert_refused(["-B", PROJECT / "tools/sample.py", *arguments], *words, program=self.python)
+        self.assert_tool_refused(["sample", *arguments], *words)
 
     def test_names_are_listed(self):
         self.assertEqual(re.findall(r"^  ([\w-]+)  ", self.sample(), re.MULTILINE), NAMES)
@@ -54,9 +48,9 @@ class SampleTest(ProgramTest):
     def test_a_mistake_in_the_chapter_shows(self):
         tree = self.folder / "tree"
         mistake.make(mistake.load()["flat-hemisphere"], tree)
-        for name in ("tools/sample_points.comp", "bin/sample_points"):
-            (tree / name).parent.mkdir(exist_ok=True)
-        shutil.copy(PROJECT / "tools/sample_points.comp", tree / "tools")
+        for name in ("tools/lesson", "bin"):
+            (tree / name).mkdir(parents=True, exist_ok=True)
+        shutil.copy(TOOLS / "lesson/sample_points.comp", tree / "tools/lesson")
         shutil.copy(BINARIES / "sample_points", tree / "bin")
         self.assertIn("too large for chance", self.sample("cosine", "--output=picture.png", binaries=tree / "bin"))
 

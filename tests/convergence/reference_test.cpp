@@ -1,4 +1,4 @@
-// The chapters against images that another renderer has made: Mitsuba 3, see tools/make_references.py.
+// The chapters against images that another renderer has made: Mitsuba 3, see tools/references.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

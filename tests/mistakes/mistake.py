@@ -16,11 +16,10 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tools"))
+sys.path += [str(ROOT / "tools"), str(ROOT / "tests")]
 import test_report  # noqa: E402  (found by the line above)
 from planting import Stale, plant  # noqa: E402
-
-BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build" / "bin"))
+from project import BINARIES  # noqa: E402
 
 
 def load():

@@ -1,8 +1,6 @@
 """Compares each estimator here with its chapter's own: images must agree, noise and rays stay near. Images and their
 tiles of 8 x 8 pixels are compared by z = difference / standard error over the seeds; |z| above 4 is rare by chance: see
 whether it is there with another --first-seed, too."""
-import json
-import subprocess
 import sys
 import tempfile
 import time
@@ -11,49 +9,43 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "tools"))
-from command_line import Parser, at_least  # noqa: E402
-from grading import make_tree, programs  # noqa: E402
+sys.path += [str(HERE.parents[1] / "tools"), str(HERE.parent / "mistakes")]
+from check.grading import make_tree  # noqa: E402  (found by the line above)
 from planting import own_shader  # noqa: E402
-from progress import show_progress  # noqa: E402
-from reference_image import read_rgb  # noqa: E402
+from project import CHAPTERS, Parser, number, read_json, run_program, show_progress  # noqa: E402
+from references.images import read_rgb  # noqa: E402
 
 SIZE, TILE, SAMPLES = 64, 8, {1: 256, 2: 256, 3: 96, 4: 24, 5: 32, 6: 32}  # that a chapter renders in less than a second
 LIMITS = {"z": 4, "mean": 1, "noise": 1.4, "rays": 1.4}
-# First and last chapter, scene, options. The scenes together have all that an estimator must handle.
-SETTINGS = [
-    (1, 6, "cornell_box", "--max-path-length 5"),
-    (1, 6, "cornell_box", "--max-path-length 4 --only-path-length 2"),
-    (1, 6, HERE / "under_the_sky.json", "--max-path-length 3"),
-    (1, 6, "textured", "--max-path-length 3"),
-    (1, 6, "glossy", "--max-path-length 4"),
-    (1, 2, "furnace", "--max-path-length 4"),
-    (3, 6, "furnace", "--max-path-length 4 --light-sampling off"),
-    (3, 6, "heart_light", "--max-path-length 4"),
-    (3, 6, "cornell_box", "--max-path-length 3 --light-sampling off"),
-    (4, 6, HERE / "under_the_sky.json", "--max-path-length 2 --splitting-factor 1"),
-    (4, 6, "cornell_box", "--max-path-length 1 --splitting-factor 3"),
-    (5, 6, "cornell_box", "--max-path-length 40 --splitting-factor 3 --survival-cap 0.6 --roulette-start 2"),
-    (6, 6, "glass", "--max-path-length 8"),
-    (6, 6, "glass", "--max-path-length 6 --only-path-length 3"),
-]
+# First and last chapter: scenes and options. The scenes together have all that an estimator must handle.
+SETTINGS = {
+    (1, 6): [("cornell_box", "--max-path-length 5"), ("cornell_box", "--max-path-length 4 --only-path-length 2"),
+             (HERE / "under_the_sky.json", "--max-path-length 3"), ("textured", "--max-path-length 3"),
+             ("glossy", "--max-path-length 4")],
+    (1, 2): [("furnace", "--max-path-length 4")],
+    (3, 6): [("furnace", "--max-path-length 4 --light-sampling off"), ("heart_light", "--max-path-length 4"),
+             ("cornell_box", "--max-path-length 3 --light-sampling off")],
+    (4, 6): [(HERE / "under_the_sky.json", "--max-path-length 2 --splitting-factor 1"),
+             ("cornell_box", "--max-path-length 1 --splitting-factor 3")],
+    (5, 6): [("cornell_box", "--max-path-length 40 --splitting-factor 3 --survival-cap 0.6 --roulette-start 2")],
+    (6, 6): [("glass", "--max-path-length 8"), ("glass", "--max-path-length 6 --only-path-length 3")],
+}
 
 
 def render(chapter, shader, scene, options, seeds):
     """Images [seed, row, column, channel] and rays a sample, by a chapter's program with this file as its shader."""
     images, rays = [], 0
     with tempfile.TemporaryDirectory() as folder:
-        program, _ = make_tree(programs()[chapter], shader, Path(folder))
+        program, _ = make_tree(CHAPTERS[chapter], shader, Path(folder))
         picture, report = Path(folder) / "a.exr", Path(folder) / "a.json"
         for seed in seeds:
             command = [program, scene, *options.split(), "--width", SIZE, "--height", SIZE, "--samples", SAMPLES[chapter],
                        "--seed", seed, "--output", picture, "--report", report, "--headless", "--quiet", "--backend", "compute"]
-            ended = subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True, text=True)
+            ended = run_program(command)
             if ended.returncode != 0:
                 sys.exit(f"error: {shader} {scene}: {ended.stderr.strip()}")
             images.append(read_rgb(picture))
-            rays += json.loads(report.read_text(encoding="utf-8"))["rows"][-1]["rays"]
+            rays += read_json(report)["rows"][-1]["rays"]
     return np.array(images), rays / (len(images) * SIZE**2 * SAMPLES[chapter])
 
 
@@ -77,18 +69,18 @@ def compare(images, rays, own_images, own_rays):
 
 
 def main():
-    parser = Parser(description=__doc__)
+    parser = Parser("tests/variants/verify.py", __doc__)
     parser.add_argument("files", nargs="*", metavar="FILE", help="of variants.json; without any, all of them")
-    parser.add_argument("--first-seed", type=at_least(1, int), default=1, help="default: 1")
-    parser.add_argument("--seeds", type=at_least(2, int), default=8, help="of each of both, default: 8")
+    parser.add_argument("--first-seed", type=number(int, 1), default=1, help="default: 1")
+    parser.add_argument("--seeds", type=number(int, 2), default=8, help="of each of both, default: 8")
     options = parser.parse_args()
     first, count = options.first_seed, options.seeds
-    variants = [variant for variant in json.loads((HERE / "variants.json").read_text(encoding="utf-8"))
+    variants = [variant for variant in read_json(HERE / "variants.json")
                 if not options.files or variant["file"] in options.files]
     started, own, is_near = time.monotonic(), {}, True
     for done, variant in enumerate(variants, 1):
         chapter, results = variant["chapter"], {}
-        for _, _, *setting in (s for s in SETTINGS if s[0] <= chapter <= s[1]):
+        for setting in (setting for (low, high), those in SETTINGS.items() if low <= chapter <= high for setting in those):
             if (chapter, *setting) not in own:
                 own[chapter, *setting] = render(chapter, own_shader(chapter), *setting, range(first + count, first + 2 * count))
             rendered = render(chapter, HERE / variant["file"], *setting, range(first, first + count))

@@ -1,0 +1,14 @@
+"""Makes the modules of tools/, tests/ and tests/mistakes known, in a Python that has the packages that they need."""
+
+import os
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[2]
+TOOLS = PROJECT / "tools"
+DEBIANS_PYTHON = "/usr/bin/python3"  # has Debian's packages; the one that was called may be another
+
+if not all(map(find_spec, ("matplotlib", "numpy", "PIL", "scipy"))) and sys.executable != DEBIANS_PYTHON:
+    os.execv(DEBIANS_PYTHON, [DEBIANS_PYTHON, *sys.orig_argv[1:]])
+sys.path += map(str, (TOOLS, PROJECT / "tests", PROJECT / "tests/mistakes"))

@@ -1,0 +1,151 @@
+"""Writes a student's tree of chapters 1 to N into the folder DIR: what exercises.json lists of chapter N is a TODO.
+
+It has neither later chapters nor the tests, which name solutions, nor the history. --verify proves for all chapters that
+the tree configures, and that its chapter fails ./lab check before the solution is filled in and passes with it.
+"""
+import os
+import re
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, number, read_json, run_program, show_progress
+
+HERE = Path(__file__).parent
+EXERCISES = read_json(HERE / "exercises.json")
+FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
+FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
+# What only teachers need: it names solutions or makes what belongs to the whole course.
+TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check", "tools/course", "tools/docs"]
+EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
+FEW = ["--runs", "8", "--samples", "4"]  # enough to tell a TODO from its solution
+
+
+def exercises(chapter):
+    return [exercise for exercise in EXERCISES if exercise["chapter"] == chapter]
+
+
+def find_once(text, piece, exercise):
+    if text.count(piece) != 1:
+        raise UserError(f"stale: {exercise['file']} has {text.count(piece)} places with {piece!r}")
+    return text.index(piece)
+
+
+def take_out(text, exercise):
+    """The shader with the placeholder in place of the solution, and the solution."""
+    begin = find_once(text, exercise["first"], exercise)
+    end = find_once(text, exercise["last"], exercise) + len(exercise["last"])
+    if begin >= end:
+        raise UserError(f"stale: {exercise['file']}: {exercise['last']!r} is before {exercise['first']!r}")
+    indent = " " * (begin - text.rindex("\n", 0, begin) - 1)
+    return text[:begin] + f"\n{indent}".join(exercise["placeholder"]) + text[end:], text[begin:end]
+
+
+def included(chapters):
+    """Files of shaders/ that the shaders of chapters include."""
+    return {name for chapter in chapters for shader in (ROOT / "chapters" / chapter).glob("*.glsl")
+            for name in re.findall(r'#include "(.*)"', shader.read_text(encoding="utf-8"))}
+
+
+def write_handout(chapter, folder):
+    """The student's tree in `folder`, which must not exist."""
+    kept = [name for n, name in CHAPTERS.items() if n <= chapter]
+    later = [name for n, name in CHAPTERS.items() if n > chapter]
+    ignore = shutil.ignore_patterns("__pycache__")
+    for name in [*FOLDERS, *(f"chapters/{name}" for name in kept)]:
+        shutil.copytree(ROOT / name, folder / name, ignore=ignore)
+    for name in FILES:
+        shutil.copy(ROOT / name, folder / name)
+    for name in TEACHERS:
+        shutil.rmtree(folder / name) if (folder / name).is_dir() else (folder / name).unlink()
+    # Shared shaders that only later chapters include hold what this one asks for.
+    for name in included(later) - included(kept):
+        (folder / "shaders" / name).unlink()
+    # Splitting at every hit repeats the estimators of the chapters that have it.
+    if any("split_every_hit" in read_json(ROOT / "chapters" / name / "chapter.json") for n, name in CHAPTERS.items() if n >= chapter):
+        (folder / "shaders/path_trace_every_hit.glsl").unlink()
+    for exercise in exercises(chapter):
+        shader = folder / exercise["file"]
+        text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
+        shader.write_text(text, encoding="utf-8")
+        hide(solution, folder)
+    readme = (HERE / "readme.md").read_text(encoding="utf-8")
+    for name, value in (("NUMBER", str(chapter)), ("FOLDER", CHAPTERS[chapter]), ("SHADER", exercises(chapter)[0]["file"])):
+        readme = readme.replace(name, value)
+    (folder / "README.md").write_text(readme, encoding="utf-8")
+    leave_out_tests(folder)
+    unlink_what_is_missing(folder)
+
+
+def hide(solution, folder):
+    """Takes quotations of the solution out of the pages."""
+    for page in folder.rglob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        page.write_text(re.sub(r"\[`([^`]+)`\](?=\([^)]*\.glsl\))", lambda quote: "[TODO]" if quote[1] in solution and
+                               not re.fullmatch(r"\w+(\(\))?", quote[1]) else quote[0], text), encoding="utf-8")
+
+
+def leave_out_tests(folder):
+    """An exercise is done when the check says so."""
+    for page in folder.glob("chapters/*/README.md"):
+        text = page.read_text(encoding="utf-8")
+        text = re.sub(r"Done\s+when all tests named [^,]* pass,\s+and\s+(?=`\./lab check)", "Done when ", text)
+        text = re.sub(r"\s+Tests are run by `\./lab test -R` and\s+their\s+name\.", "", text)
+        page.write_text(text, encoding="utf-8")
+
+
+def unlink_what_is_missing(folder):
+    """Links to files that stay out become plain text."""
+    for page in folder.rglob("*.md"):
+        def shown(link):
+            target = link[2].split("#")[0]
+            return link[0] if "://" in target or (page.parent / target).exists() else link[1]
+
+        page.write_text(re.sub(r"(?<!!)\[([^\[\]]+)\]\(([^()\s]+)\)", shown, page.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def run(command, expected, what, **options):
+    result = run_program(command, **options)
+    if result.returncode != expected:
+        raise UserError(f"{what}: exit code {result.returncode} instead of {expected}:\n{result.stdout}{result.stderr}")
+
+
+def verify(chapter, folder):
+    """Proves what the help says of one chapter. The programs are those of this tree: only shaders differ."""
+    tree = folder / f"handout_{chapter}"
+    write_handout(chapter, tree)
+    missing = [name for name in CHAPTERS.values() if name > CHAPTERS[chapter] and (tree / "chapters" / name).exists()]
+    if missing or (tree / "tests").exists():
+        raise UserError(f"chapter {chapter}: the handout has {missing or 'tests'}")
+    run(["cmake", "-S", tree, "-B", tree / "build", "-G", "Ninja"], 0, f"chapter {chapter}: CMake")
+    environment = os.environ | {"LAB_BINARIES": str(BINARIES.resolve())}
+    check = [sys.executable, "-B", tree / "tools", "check", chapter, *FEW]
+    run(check, EXPECTED["biased"], f"chapter {chapter}: check of the TODO", env=environment)
+    solution = ROOT / "chapters" / CHAPTERS[chapter] / "path_trace.glsl"
+    run([*check, solution], EXPECTED["correct"], f"chapter {chapter}: check of the solution", env=environment)
+
+
+def main():
+    parser = Parser("./lab handout", __doc__)
+    parser.add_argument("chapter", type=number(int, 1), nargs="?", metavar="N", help="the last chapter")
+    parser.add_argument("folder", type=Path, nargs="?", metavar="DIR", help="to be made; must not exist")
+    parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
+    options = parser.parse_intermixed_args()
+    known = [chapter for chapter in CHAPTERS if exercises(chapter)]
+    if options.chapter not in [*known, *([None] if options.verify else [])]:
+        parser.error(f"N must be a chapter with an exercise in tools/course/exercises.json: {', '.join(map(str, known))}")
+    if options.verify == bool(options.folder):
+        parser.error("give N and DIR, or --verify")
+    if not options.verify:
+        if options.folder.exists():
+            raise UserError(f"{options.folder} exists already: choose another folder")
+        write_handout(options.chapter, options.folder)
+        print(f"{options.folder}: chapters 1 to {options.chapter}; cd there, ./lab run {options.chapter} and ./lab check {options.chapter}")
+        return
+    chapters, started = [options.chapter] if options.chapter else known, time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        for done, chapter in enumerate(chapters, 1):
+            verify(chapter, Path(folder))
+            show_progress(f"chapter {chapter}: fails before, passes with the solution", done, len(chapters), started)

@@ -1,0 +1,139 @@
+"""The part of docs/results.md on what features cost and how cost grows, from records of build/bin/cost_record."""
+import math
+from statistics import linear_regression, median
+
+from project import table
+
+FEATURES = """
+## Features
+
+What a scene has not got is neither compiled nor allocated. Here each feature stands alone in a scene of 39,612 diffuse
+triangles without any light, rendered by chapter 6, which knows all of them. The texture is white, and only one triangle is a
+dielectric: so paths stay as they are, and what is measured is the code and the memory accesses. Instructions are those of
+the SPIR-V after SPIRV-Tools' optimiser; time is that of a path relative to the scene without features, the median of five runs
+in turns, in brackets the least and the most.
+"""
+
+GROWTH = """
+## Growth
+
+How the cost follows the size of the task. The time of a path is relative to the first row, the median of five runs in turns,
+in brackets the least and the most; memory is all that the scene, its acceleration structure and the film take on the device,
+without the bounded buffer of a small image's samples ([Threads and pixels](backends.md#threads-and-pixels)). The exponent is
+the slope in log-log axes, by least squares over all rows.
+"""
+
+UNITS = ["bytes", "KiB", "MiB", "GiB"]
+
+
+def bytes_text(count):
+    unit = min(int(math.log(max(count, 1), 1024)), len(UNITS) - 1)
+    return f"{count / 1024**unit:.3g} {UNITS[unit]}" if unit else f"{count} bytes"
+
+
+def seconds_text(seconds):
+    for factor, unit in ((1, "s"), (1e3, "ms"), (1e6, "µs")):
+        if seconds * factor >= 1:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds * 1e9:.3g} ns"
+
+
+def time_ratios(row, base):
+    """Time of a path relative to another row's, in each run."""
+    return [b / a for a, b in zip(row["paths_per_second"], base["paths_per_second"])]
+
+
+def time_text(row, base):
+    if row is base:
+        return f"1 = {seconds_text(1 / median(row['paths_per_second']))}"
+    ratios = time_ratios(row, base)
+    return f"{median(ratios):.2f} ({min(ratios):.2f} – {max(ratios):.2f})"
+
+
+def device_heading(record):
+    return (f"\n### {record['device']}\n\nDriver {record['driver']}, Vulkan {record['api_version']}, {record['cpu_threads']} "
+            f"threads of the CPU, {record['size']} x {record['size']} pixels.\n")
+
+
+def feature_table(record):
+    """What each feature costs on a device, a pair of columns for each backend."""
+    measured = record["features"]
+    head = ["", "buffers"]
+    for backend in measured:
+        head += [f"`{backend['backend']}`: instructions", "time of a path"]
+    rows = []
+    for i, row in enumerate(measured[0]["rows"]):
+        bare = measured[0]["rows"][0]["bytes"] if i else {}
+        cells = [row["feature"], buffers_text({name: count for name, count in row["bytes"].items() if bare.get(name) != count})]
+        for backend in measured:
+            cells += [str(backend["rows"][i]["instructions"]), time_text(backend["rows"][i], backend["rows"][0])]
+        rows.append(cells)
+    return device_heading(record) + "\n" + table(head, rows, left=2) + "\n" + scene_table(record)
+
+
+def buffers_text(sizes):
+    return ", ".join(f"{name} {bytes_text(count)}" for name, count in sizes.items())
+
+
+def scene_table(record):
+    """The memory of the shipped scenes."""
+    rows = [[f"`{scene['scene']}`", buffers_text(scene["bytes"]), f"{scene['triangles']:,}", f"{scene['instances']:,}"]
+            for scene in record["scenes"]]
+    return "The shipped scenes:\n\n" + table(["scene", "buffers", "triangles", "instances"], rows, left=2)
+
+
+def memory_of(row):
+    return sum(row["bytes"].values()) + row["structure_bytes"] + row["film_bytes"]
+
+
+def exponent(rows, quantity):
+    """Slope of the logarithms, for what is never 0."""
+    counts = [math.log(row["count"]) for row in rows]
+    if len(rows) < 2:
+        return "-"
+    slope = linear_regression(counts, [math.log(quantity(row)) for row in rows]).slope
+    return f"{round(slope, 2) + 0.0:.2f}"  # never -0.00
+
+
+def growth_table(measured):
+    """How cost follows one quantity on all backends of a device."""
+    first = measured[0]
+    grows = memory_of(first["rows"][0]) != memory_of(first["rows"][-1])
+    builds = first["rows"][0]["structure_bytes"] != first["rows"][-1]["structure_bytes"]
+    head = [first["quantity"], "rays of a path"]
+    rows = [[f"{row['count']:,}", f"{row['rays_per_path']:.3g}"] for row in first["rows"]]
+    slopes = ["exponent", exponent(first["rows"], lambda row: row["rays_per_path"])]
+    for backend in measured:
+        base = backend["rows"][0]
+        columns = [("time of a path", lambda row: 1 / median(row["paths_per_second"]), lambda row: time_text(row, base))]
+        if grows:
+            columns.append(("memory", memory_of, lambda row: bytes_text(memory_of(row))))
+        if builds:
+            columns.append(("structure built in", lambda row: row["structure_seconds"],
+                            lambda row: seconds_text(row["structure_seconds"])))
+        for number, (name, quantity, text) in enumerate(columns):
+            head.append(name if number else f"`{backend['backend']}`: {name}")
+            slopes.append(exponent(backend["rows"], quantity))
+            for cells, row in zip(rows, backend["rows"]):
+                cells.append(text(row))
+    chapter = f"Chapter {int(first['chapter'][:2])}:\n\n"
+    return chapter + table(head, rows + [slopes], left=0)
+
+
+def growth_tables(record):
+    text = device_heading(record)
+    for quantity in dict.fromkeys(growth["quantity"] for growth in record["growth"]):
+        text += "\n" + growth_table([growth for growth in record["growth"] if growth["quantity"] == quantity])
+        if quantity == "triangles":
+            text += build_rate(record)
+    return text
+
+
+def build_rate(record):
+    """How fast our own tree is built, from the largest scene."""
+    for growth in record["growth"]:
+        if growth["quantity"] == "triangles" and growth["backend"] == "compute":
+            row = growth["rows"][-1]
+            return (f"\n`compute` builds its tree on the CPU: {row['count'] / row['structure_seconds'] / 1e6:.3g} million triangles "
+                    f"a second with {record['cpu_threads']} threads.\n")
+    return ""

@@ -1,0 +1,152 @@
+"""Renders and plots all pictures of the pages into docs/pictures, then writes the tables of docs/results.md,
+docs/numerics.md and the chapter pages from the records. Ctrl-C keeps what is there; the same command goes on.
+"""
+import hashlib
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from docs import figure_plots, tables
+from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, last_line, load_records, read_json, run_program,
+                     show_progress)
+from references.images import read_rgb
+from report.measurement import digest_of_sources
+from report.numbers import last_rows, mean_of
+
+GOES_ON = True
+PICTURES = ROOT / "docs/pictures"
+CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
+RAYS_PER_PIXEL = 400  # of the chapters' pictures
+SECONDS = 2  # of the renders that are compared at equal time
+
+
+@dataclass
+class Render:
+    """A render with a chapter's program, kept until the sources change."""
+
+    name: str
+    chapter: str
+    scene: str
+    size: int
+    options: tuple
+    rays_per_pixel: int = 0  # instead of --samples, if not 0
+
+    def file(self, folder):
+        """Of the image. Its name changes with whatever is rendered."""
+        return folder / f"{self.name}_{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}.exr"
+
+    def run(self, folder):
+        """Makes the image, unless it is there; returns the report of the chapter."""
+        file = self.file(folder)
+        report = file.with_suffix(".json")
+        if not file.exists():
+            options = self.options
+            if self.rays_per_pixel:
+                options = (*options, "--samples", self.samples_for_rays(folder))
+            unfinished = file.with_suffix(".unfinished.exr")
+            command = [BINARIES / self.chapter, self.scene, "--width", self.size, "--height", self.size, *options,
+                       "--backend", "compute", "--quiet", "--output", unfinished, "--report", report]
+            process = run_program(command)
+            if process.returncode != 0:
+                raise UserError(f"{self.name}: {last_line(process)}")
+            os.replace(unfinished, file)
+        return read_json(report)
+
+    def samples_for_rays(self, folder):
+        pilot = Render(f"{self.name}_pilot", self.chapter, self.scene, self.size, (*self.options, "--samples", 1))
+        rays = pilot.run(folder)["rows"][-1]["rays"]
+        return max(1, round(self.rays_per_pixel * self.size**2 / rays))
+
+
+def renders_of_chapters():
+    glass = chapter_named("dielectrics")
+    return [Render(name, name, "glass" if name == glass else "cornell_box", 320, (), RAYS_PER_PIXEL) for name in CHAPTERS.values()]
+
+
+def renders_of_path_lengths():
+    return [Render(f"only_{length}", chapter_named("next_event_estimation"), "cornell_box", 160,
+                   ("--samples", 256, "--only-path-length", length, "--max-path-length", 9)) for length in range(10)]
+
+
+def renders_of_effects():
+    cosine, light = chapter_named("cosine_sampling"), chapter_named("next_event_estimation")
+    return [Render("occlusion", cosine, "instances", 256, ("--samples", 256, "--background", "1,1,1", "--max-path-length", 1)),
+            Render("shadow", light, "heart_light", 256, ("--samples", 256, "--max-path-length", 1)),
+            Render("reflection", light, "glossy", 256, ("--samples", 256, "--specular"))]
+
+
+def renders_at_equal_time():
+    """As many samples as take the same time by the first record of docs/records/chapters, whatever else runs now."""
+    renders, size = [], 160
+    for case in load_records("chapters")[0]["cases"]:
+        if tables.kind_of(case) == "chapter" and not case["scene"].startswith("torus"):
+            seconds = mean_of(last_rows(case["runs"]), "device_seconds") / (case["samples"] * case["width"] * case["height"])
+            scene = Path(case["scene_file"]).stem
+            options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
+            renders.append(Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options))
+    return renders
+
+
+def renders_of_convergence():
+    """Four runs of each chapter but that of glass, whose errors are averaged; a sample of splitting is several paths."""
+    reference = ("--reference", "assets/references/cornell_box_6.exr", "--max-path-length", 6)
+    splitting, glass = chapter_named("splitting"), chapter_named("dielectrics")
+    return [Render(f"run_{number}_{seed}", name, "cornell_box", 128,
+                   ("--samples", 64 if name >= splitting else 256, "--seed", seed, *reference))
+            for number, name in CHAPTERS.items() if name != glass for seed in range(1, 5)]
+
+
+def renders_of_bvh_steps():
+    return [Render(f"steps_{scene}", CHAPTERS[1], scene, 256, ("--samples", 4, "--view", "bvh-steps")) for scene in ("torus", "instances")]
+
+
+# Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
+FIGURES = {
+    "chapters": (renders_of_chapters, figure_plots.chapters),
+    "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
+    "effects": (renders_of_effects, figure_plots.effects),
+    "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
+    "equal_time": (renders_at_equal_time, figure_plots.equal_time),
+    "convergence": (renders_of_convergence, figure_plots.convergence),
+    "sampler_points": (list, figure_plots.sampler_points),
+    "one_over_root_n": (list, figure_plots.one_over_root_n),
+    "grid_and_random": (list, figure_plots.grid_and_random),
+    "random_numbers": (list, figure_plots.random_numbers),
+    "window": (list, figure_plots.window),
+}
+
+
+def parse():
+    parser = Parser("./lab figures", __doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}")
+    parser.add_argument("--output", type=Path, default=PICTURES, metavar="FOLDER", help="default: docs/pictures")
+    options = parser.parse_args()
+    for name in options.names:
+        if name not in FIGURES:
+            parser.error(f"there is no figure '{name}': {', '.join(FIGURES)}")
+    return options
+
+
+def make(names, output):
+    output = output.resolve()
+    output.mkdir(parents=True, exist_ok=True)
+    folder = CACHE / digest_of_sources([])
+    steps = [(name, render) for name in names for render in [*FIGURES[name][0](), None]]
+    started = time.monotonic()
+    for done, (name, render) in enumerate(steps, 1):
+        renders, compose = FIGURES[name][0](), FIGURES[name][1]
+        if render:
+            (folder / name).mkdir(parents=True, exist_ok=True)
+            render.run(folder / name)
+        else:
+            images = {render.name: read_rgb(render.file(folder / name)) for render in renders}
+            compose(output, images, {render.name: render.run(folder / name) for render in renders})
+        show_progress(f"{name}{f', {render.name}' if render else ''}", done, len(steps), started)
+
+
+def main():
+    options = parse()
+    make(options.names or list(FIGURES), options.output)
+    if not options.names:
+        tables.write_pages()

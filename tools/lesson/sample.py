@@ -1,0 +1,171 @@
+"""A playground before pixels: points of the lab's own samplers against their density, and the integrals that they
+estimate, as text and as a picture. The points come from the shaders of the chapters: what is changed there shows here.
+"""
+import math
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+from lesson import sample_plots
+from project import BINARIES, ROOT, Parser, UserError, number, run_program
+from report.numbers import CONFIDENCE, two_sided
+
+PROGRAM = BINARIES / "sample_points"
+BINS = 16
+
+
+@dataclass
+class Integral:
+    formula: str
+    value: Callable  # exact, for a number of dimensions
+    terms: Callable  # of points [index, column]: f/p of each, whose mean estimates the integral
+
+
+@dataclass
+class Playground:
+    title: str
+    sampler: str  # of the program sample_points
+    integrals: list
+    coordinate: str  # what the histogram is of
+    coordinates: Callable  # of points
+    cumulative: Callable  # the distribution function of that coordinate
+    dimensions: int = 2
+    kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
+
+
+def drop_lost(points):
+    """Directions that the estimator has not dropped."""
+    return points[np.any(points[:, :3] != 0, axis=1)]
+
+
+def identity(x):
+    return x
+
+
+DARTS = Integral("area of the quarter disk, ∫ [u_x² + u_y² < 1] du", lambda k: math.pi / 4,
+                 lambda u: (u[:, 0] ** 2 + u[:, 1] ** 2 < 1).astype(float))
+COSINES = [Integral("∫ n·ω dω over the hemisphere", lambda k: math.pi, lambda p: math.pi * p[:, 3]),
+           Integral("∫ (n·ω)² dω over the hemisphere", lambda k: 2 * math.pi / 3, lambda p: math.pi * p[:, 3] * p[:, 2])]
+MEAN_SQUARE = Integral("∫ ((u_1 + … + u_k) / k)² du over [0,1]^k", lambda k: 1 / 4 + 1 / (12 * k),
+                       lambda u: u.mean(axis=1) ** 2)
+
+PLAYGROUNDS = {
+    "1d": Playground("1D Monte Carlo integration", "numbers", [
+        Integral("∫ sin(π u) du from 0 to 1", lambda k: 2 / math.pi, lambda u: np.sin(np.pi * u[:, 0]))],
+        "u", lambda u: u[:, 0], identity, dimensions=1),
+    "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1",
+                     lambda u: u[:, 0], identity, dimensions=4),
+    "numbers": Playground("pairs of random numbers by PCG2D, shaders/random.glsl", "numbers", [DARTS], "u_x",
+                          lambda u: u[:, 0], identity),
+    "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS],
+                            "u_x", lambda u: u[:, 0], identity),
+    "uniform-angles": Playground("directions of chapter 1, density 1 / (π² sin θ)", "uniform-angles", COSINES, "cos θ",
+                                 lambda p: drop_lost(p)[:, 2], lambda c: 1 - 2 / np.pi * np.arccos(c), kind="disk"),
+    "cosine": Playground("directions of chapter 2, density cos θ / π", "cosine", COSINES, "cos θ",
+                         lambda p: drop_lost(p)[:, 2], lambda c: c ** 2, kind="disk"),
+    "light-point": Playground("points of chapter 3 on a light's triangle of area 1, density 1", "light-point", [
+        Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])],
+        "w_1", lambda w: w[:, 0], lambda w: 1 - (1 - w) ** 2, kind="triangle"),
+}
+
+
+def draw(playground, count, seed, dimensions, device=None):
+    """Array [index, column] of points."""
+    command = [PROGRAM, playground.sampler, "--count", count, "--seed", seed, "--dimensions", dimensions]
+    result = run_program(command + (["--device", device] if device else []), text=False)
+    if result.returncode != 0:
+        raise UserError(result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}")
+    return np.frombuffer(result.stdout, np.float32).reshape(count, -1).astype(float)
+
+
+def histogram(playground, points):
+    """Edges of bins, the number of points in each and how many are expected."""
+    values = playground.coordinates(points)
+    counts, edges = np.histogram(values, BINS, (0, 1))
+    return edges, counts, np.diff(playground.cumulative(edges)) * len(values)
+
+
+def estimates(terms):
+    """Rows (N, mean, half of the 95 % interval) for N = 1, 4, 16, …; one term tells nothing about its spread."""
+    rows, sizes = [(1, terms[0], math.nan)], [4**k for k in range(1, 16) if 4**k <= len(terms)]
+    for n in sizes:
+        rows.append((n, terms[:n].mean(), two_sided(CONFIDENCE, n - 1) * terms[:n].std(ddof=1) / math.sqrt(n)))
+    return rows
+
+
+def grid(side, dimensions, offset):
+    """Points of a regular grid on [0,1]^k with `side` of them along each axis."""
+    axis = (np.arange(side) + offset) / side
+    return np.stack(np.meshgrid(*[axis] * dimensions, indexing="ij"), axis=-1).reshape(-1, dimensions)
+
+
+def grid_rows(integral, dimensions, limit):
+    """Rows (N, error of a grid of corners, error of a grid of midpoints) for as many N as fit."""
+    exact, rows = integral.value(dimensions), []
+    for side in (2**k for k in range(1, 21)):
+        if side**dimensions > limit:
+            break
+        errors = [abs(integral.terms(grid(side, dimensions, offset)).mean() - exact) for offset in (0, 0.5)]
+        rows.append((side**dimensions, *errors))
+    return rows
+
+
+def report(playground, points, dimensions):
+    """The text that is printed."""
+    edges, counts, expected = histogram(playground, points)
+    lines = [playground.title, "", f"{playground.coordinate:>12}   points  expected"]
+    scale = 40 / max(counts.max(), expected.max())
+    for low, high, count, mean in zip(edges, edges[1:], counts, expected):
+        lines.append(f"{low:5.3f}–{high:5.3f} {count:8d} {mean:9.1f}  {'#' * round(scale * count)}")
+    deviation = (np.abs(counts - expected) / np.sqrt(expected * (1 - expected / expected.sum()))).max()
+    lines.append(f"largest deviation: {deviation:.1f} standard errors" + (" - too large for chance" if deviation > 4.5 else ""))
+    for integral in playground.integrals:
+        exact = integral.value(dimensions)
+        lines += ["", f"{integral.formula} = {exact:.6f}", f"{'N':>9}   estimate   95 % interval        error"]
+        for n, mean, half in estimates(integral.terms(points)):
+            margin = "" if math.isnan(half) else f"± {half:.6f}"
+            lines.append(f"{n:9d}  {mean:9.6f}   {margin:13s}  {mean - exact:+11.6f}")
+    if playground is PLAYGROUNDS["kd"]:
+        lines += ["", f"On a grid in {dimensions} dimensions:", f"{'N':>9}   error of corners  error of midpoints"]
+        rows = grid_rows(playground.integrals[0], dimensions, len(points))
+        lines += [f"{n:9d}   {corners:16.6f}  {midpoints:18.6f}" for n, corners, midpoints in rows]
+    return "\n".join(lines)
+
+
+def parse():
+    names = "\n".join(f"  {name:15s} {playground.title}" for name, playground in PLAYGROUNDS.items())
+    parser = Parser("./lab sample", __doc__, epilog=f"names:\n{names}")
+    parser.add_argument("name", nargs="?", metavar="NAME", help="what to sample; without, the names are listed")
+    parser.add_argument("--count", type=number(int, 16, 1 << 22), default=4096, help="number of points; default: 4096")
+    parser.add_argument("--seed", type=number(int, 0, 2**32 - 1), default=0, help="chooses the random numbers; default: 0")
+    parser.add_argument("--dimensions", type=number(int, 1, 8), help="k of kd; default: 4")
+    parser.add_argument("--device", help="number or part of the name of the device")
+    parser.add_argument("--output", type=Path, help="picture; default: output/sample_NAME.png")
+    options = parser.parse_args()
+    if options.name is None:
+        print(f"Samplers, to be shown by ./lab sample NAME:\n{names}")
+        sys.exit()
+    if options.name not in PLAYGROUNDS:
+        parser.error(f"there is no sampler '{options.name}': {', '.join(PLAYGROUNDS)}")
+    if options.output and options.output.suffix != ".png":
+        parser.error(f"--output: '{options.output}' must end in .png")
+    if options.dimensions and options.name != "kd":
+        parser.error("--dimensions belongs to kd")
+    return options
+
+
+def main():
+    options = parse()
+    playground = PLAYGROUNDS[options.name]
+    dimensions = options.dimensions or playground.dimensions
+    points = draw(playground, options.count, options.seed, dimensions, options.device)
+    print(report(playground, points, dimensions))
+    output = options.output or ROOT / f"output/sample_{options.name}.png"
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+        sample_plots.save_overview(output, playground, points, dimensions, histogram, estimates)
+    except OSError as error:
+        raise UserError(f"{output}: cannot be written: {error}") from None
+    print(f"\npicture        {output}")

@@ -1,0 +1,90 @@
+// Writes points of a sampler as 32-bit numbers to the standard output: sample_points SAMPLER. ./lab sample
+// shows them.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+
+#include "error.h"
+#include "files/project_folder.h"
+#include "gpu/compute_kernel.h"
+#include "rendering/renderer.h"
+#include "shaders/interface.h"
+
+namespace {
+
+using namespace lab;
+
+struct Sampler {
+    std::string define;   // of sample_points.comp
+    std::string chapter;  // whose estimator is included there; only directions and light points run it
+    uint32_t columns;     // numbers a point; 0: as many as --dimensions says
+};
+const std::map<std::string, Sampler> samplers{
+    {"numbers", {"NUMBERS", "01_uniform_sampling", 0}},
+    {"blog-hash", {"BLOG_HASH", "01_uniform_sampling", 2}},
+    {"uniform-angles", {"DIRECTIONS", "01_uniform_sampling", 4}},
+    {"cosine", {"DIRECTIONS", "02_cosine_sampling", 4}},
+    {"light-point", {"LIGHT_POINTS", "03_next_event_estimation", 2}}};
+
+// As in sample_points.comp.
+struct Inputs {
+    uvec2 key;
+    uint32_t max_path_length;
+    LightTriangle light_triangle;
+};
+
+std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t count, uint32_t seed,
+                          const std::string& device_name) {
+    const ShaderSource source{
+        .file = project_folder() / "tools/lesson/sample_points.comp",
+        .stage = ShaderStage::compute,
+        .defines = {sampler.define, "COLUMNS " + std::to_string(columns)},
+        .named_includes = {
+            {"path_trace.glsl", project_folder() / "chapters" / sampler.chapter / "path_trace.glsl"}}};
+    const Device device({device_name, false});
+    // A table of one triangle, the stub's second one, that always stands for itself.
+    const Inputs inputs{seed_key(seed), 1, {0, 1, 0xffffffffu, 0, 1.0f}};
+    std::vector<float> points(size_t{count} * columns);
+    Buffer results(device, points.size() * sizeof(float), vk::BufferUsageFlagBits::eStorageBuffer);
+    const Buffer input_buffer(device, std::span(&inputs, 1), vk::BufferUsageFlagBits::eStorageBuffer);
+    const std::vector<Binding> bindings{storage_binding(0, results), storage_binding(1, input_buffer)};
+    const ComputeKernel kernel(device, source, bindings, 0);
+    device.submit([&](const auto& commands) { kernel.record(commands, nullptr, (count + 127) / 128); });
+    results.read(points.data(), points.size() * sizeof(float));
+    return points;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+    CLI::App app("Writes points of a sampler as 32-bit numbers", "sample_points");
+    std::string name, device;
+    uint32_t count = 4096, seed = 0, dimensions = 2;
+    app.add_option("sampler", name, "Which one")->required()->check(CLI::IsMember(samplers));
+    app.add_option("--count", count, "Number of points")->check(CLI::Range(1u, 1u << 22));
+    app.add_option("--seed", seed, "Chooses the random numbers");
+    app.add_option("--dimensions", dimensions, "Numbers a point of the sampler numbers")
+        ->check(CLI::Range(1u, 8u));
+    app.add_option("--device", device, "Number or part of the name of the device");
+    try {
+        app.parse(argument_count, arguments);
+        const Sampler& sampler = samplers.at(name);
+        const auto points =
+            sample(sampler, sampler.columns > 0 ? sampler.columns : dimensions, count, seed, device);
+        std::cout.write(reinterpret_cast<const char*>(points.data()),
+                        static_cast<std::streamsize>(points.size() * sizeof(float)));
+        return std::cout ? 0 : 1;
+    } catch (const CLI::CallForHelp&) {
+        std::cout << app.help();
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        std::cerr << "error: sample_points: " << error.what() << " (--help shows how it is used)\n";
+        return 1;
+    } catch (const DeviceError& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 2;
+    } catch (const std::exception& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 1;
+    }
+}

@@ -1,0 +1,128 @@
+"""What the tools share: where things are, their command lines, progress, records and tables."""
+import argparse
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build/bin"))
+RECORDS = ROOT / "docs/records"
+CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9][0-9]_*"))}  # number -> folder
+VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba
+BAR_WIDTH = 24
+
+
+class UserError(Exception):
+    """Bad input: one line that says what is wrong, where, and what to do."""
+
+
+def chapter_named(name):
+    """The folder of the chapter with this name, whatever its number."""
+    return next(folder for folder in CHAPTERS.values() if folder[3:] == name)
+
+
+# ---------------------------------------------------------------------------------------------- command lines
+class Parser(argparse.ArgumentParser):
+    """`name` is the command's, `description` the text above its options."""
+
+    def __init__(self, name, description, **options):
+        super().__init__(prog=name, description=description, formatter_class=argparse.RawDescriptionHelpFormatter, **options)
+
+    def error(self, message):
+        sys.exit(f"error: {message}; {self.prog} --help lists the options")
+
+
+def number(kind, low, high=1e9):
+    """Converts an argument to a number of this kind from `low` to `high`."""
+    def convert(text):
+        value = kind(text)
+        if not low <= value <= high:
+            raise ValueError
+        return value
+
+    convert.__name__ = f"number from {low:g} to {high:g}"
+    return convert
+
+
+def add_device_options(parser):
+    parser.add_argument("--backend", choices=["auto", "pipeline", "query", "compute"], default="auto", help="default: auto")
+    parser.add_argument("--device", help="number or part of the name of the device")
+
+
+def run_tool(tool):
+    """Calls main() of a module; what the user has to know of a failure is one line. A tool with GOES_ON does, when it is
+    called again after an interruption, what it has not done yet."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        tool.main()
+    except (UserError, OSError) as error:
+        sys.exit(f"error: {error}")
+    except KeyboardInterrupt:
+        sys.exit("interrupted" + (": the same command goes on" if getattr(tool, "GOES_ON", False) else ""))
+
+
+# ---------------------------------------------------------------------------------------------- programs
+def run_program(command, **options):
+    """Runs a program without input and captures what it says. In a session of its own Ctrl-C does not reach it."""
+    return subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True,
+                          **{"cwd": ROOT, "text": True, "start_new_session": True, **options})
+
+
+def last_line(process):
+    """What a program that failed said last."""
+    return process.stderr.strip().split("\n")[-1].removeprefix("error: ") or f"exit code {process.returncode}"
+
+
+def commit():
+    """Of the sources, or 'unknown' outside of a repository."""
+    try:
+        git = run_program(["git", "describe", "--always", "--dirty= with changes", "--abbrev=7", "--exclude=*"])
+    except OSError:
+        return "unknown"
+    return git.stdout.strip() or "unknown"
+
+
+# ---------------------------------------------------------------------------------------------- progress
+def duration_text(seconds):
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.1f} minutes"
+
+
+def show_progress(name, done, count, started):
+    """`done` of `count` equal steps, the first of which started at `started` by time.monotonic(): a bar with the time left on
+    a terminal, a few plain lines elsewhere."""
+    left = duration_text((time.monotonic() - started) * (count - done) / max(done, 1))
+    if sys.stderr.isatty():
+        filled = BAR_WIDTH * done // count
+        bar = "#" * filled + "-" * (BAR_WIDTH - filled)
+        print(f"\r\033[K[{bar}] {100 * done // count} %, {left} left: {name}", end="\n" if done == count else "",
+              file=sys.stderr, flush=True)
+    elif done in (1, count) or 4 * done // count > 4 * (done - 1) // count:
+        print(f"{100 * done // count} %, {left} left: {name}", file=sys.stderr, flush=True)
+
+
+# ---------------------------------------------------------------------------------------------- records and tables
+def read_json(file):
+    return json.loads(file.read_text(encoding="utf-8"))
+
+
+def write_json(file, content):
+    """The file is complete at any time."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = file.with_name(file.name + ".unfinished")
+    unfinished.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    os.replace(unfinished, file)
+
+
+def load_records(folder):
+    """Those of docs/records/FOLDER, a device each."""
+    return [read_json(path) for path in sorted((RECORDS / folder).glob("*.json"))]
+
+
+def table(head, rows, left=1):
+    """A Markdown table whose first `left` columns are text and the others numbers."""
+    ruler = ["---"] * left + ["---:"] * (len(head) - left)
+    return "".join("| " + " | ".join(cells) + " |\n" for cells in [head, ruler, *rows])

@@ -1,0 +1,151 @@
+"""Our scenes in Mitsuba 3. To be imported before the other modules here, since it says what is to be installed."""
+from project import UserError
+
+try:
+    import drjit as dr
+    import mitsuba as mi
+    import numpy as np
+    from references.bsdfs import define_bsdfs
+except ImportError as error:
+    raise UserError(f"{error}: this needs Mitsuba 3: `pip install mitsuba`, in a virtual environment that is active here") from None
+
+MAX_BATCH_PATHS = 1 << 24  # so that a batch fits into memory and ends in reasonable time
+
+
+def load_image(path):
+    """Linear RGB of an image file in 32-bit floats, rows from the top."""
+    try:
+        bitmap = mi.Bitmap(str(path))
+    except RuntimeError:
+        raise UserError(f"{path}: Mitsuba cannot read this image") from None
+    is_srgb = bitmap.component_format() == mi.Struct.Type.UInt8  # decoded here, since Mitsuba's result is rounded
+    if bitmap.srgb_gamma() != is_srgb:
+        raise UserError(f"{path}: must be an image of 8 bits a channel, or radiance of 32")
+    bitmap.set_srgb_gamma(False)
+    pixels = np.array(bitmap.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32), float)
+    return np.where(pixels <= 0.04045, pixels / 12.92, ((pixels + 0.055) / 1.055) ** 2.4) if is_srgb else pixels
+
+
+def colour(values):
+    """A constant, taken as it is: linear."""
+    return {"type": "rgb", "value": [float(value) for value in values]}
+
+
+def make_diffuse_reflectance(material):
+    if material.texture is None:
+        return colour(material.diffuse)
+    pixels = (material.diffuse * load_image(material.texture)).astype(np.float32)
+    return {"type": "bitmap", "data": mi.TensorXf(np.ascontiguousarray(pixels)), "raw": True, "format": "variant",
+            "filter_type": "bilinear", "wrap_mode": "repeat"}
+
+
+def make_bsdf(surface, own_normals):
+    material = surface.material
+    if material.refractive_index > 0:
+        bsdf = {"type": "dielectric", "int_ior": material.refractive_index, "ext_ior": 1.0}
+    elif material.specular.any():
+        bsdf = {"type": "twosided", "nested": {
+            "type": "phong_lobe", "diffuse": make_diffuse_reflectance(material),
+            "specular": colour(material.specular), "exponent": material.specular_exponent}}
+    else:
+        bsdf = {"type": "twosided",
+                "nested": {"type": "diffuse", "reflectance": make_diffuse_reflectance(material)}}
+    is_left_alone = surface.normals is None or own_normals
+    return bsdf if is_left_alone else {"type": "interpolated_normals", "nested": bsdf}
+
+
+# ---------------------------------------------------------------------------------------------- scenes
+def unit_length(scene):
+    """How long a unit of our scene is in Mitsuba's. Mitsuba moves the origin of a ray off the surface by 1e-4 times
+    one plus its largest coordinate: where coordinates are large, the one does not count."""
+    return 1000 / np.linalg.norm(scene.camera["target"] - scene.camera["position"])
+
+
+def make_mesh(surface, unit, own_normals):
+    """A mesh without shared vertices, whose normals are those of its triangles unless Mitsuba's own are wanted."""
+    properties = mi.Properties()
+    properties["mesh_bsdf"] = mi.load_dict(make_bsdf(surface, own_normals))
+    material = surface.material
+    if material.emission.any():
+        properties["emitter"] = mi.load_dict({"type": "area", "radiance": colour(material.emission)})
+    if material.absorption.any():
+        strongest = material.absorption.max()
+        properties["interior"] = mi.load_dict({
+            "type": "homogeneous", "albedo": 0.0, "scale": float(strongest / unit),
+            "sigma_t": colour(material.absorption / strongest)})
+    count = len(surface.positions)
+    has_own_normals = own_normals and surface.normals is not None and not material.emission.any()
+    mesh = mi.Mesh(material.name, 3 * count, count, props=properties, has_vertex_normals=has_own_normals,
+                   has_vertex_texcoords=True)
+    if surface.normals is not None and not own_normals:
+        mesh.add_attribute("vertex_shading_normal", 3, surface.normals.astype(np.float32).ravel())
+    buffers = mi.traverse(mesh)
+    if has_own_normals:
+        buffers["vertex_normals"] = surface.normals.astype(np.float32).ravel()
+    buffers["vertex_positions"] = (unit * surface.positions).astype(np.float32).ravel()
+    buffers["vertex_texcoords"] = surface.texture_coordinates.astype(np.float32).ravel()
+    buffers["faces"] = np.arange(3 * count, dtype=np.uint32)
+    buffers.update()
+    return mesh
+
+
+def make_light_probe(scene):
+    """Mitsuba's rows reach from pole to pole, the first and the last of ours end half a row before: finer ones at
+    all of our rows and in the middle between them, and three columns for each of ours, interpolate to the same."""
+    pixels = scene.background * load_image(scene.light_probe)
+    rows = np.repeat(pixels, 2, axis=0)  # at v = (2 j + 1) / (4 h); wanted are those at v = j / (2 h)
+    rows = np.concatenate([pixels[:1], (rows[:-1] + rows[1:]) / 2, pixels[-1:]])
+    weights = [1 / 3, 0, 1 / 3]  # of the neighbour for the three columns, of which the middle one is ours
+    left, right = np.roll(rows, 1, axis=1), np.roll(rows, -1, axis=1)
+    columns = [(1 - weight) * rows + weight * other for weight, other in zip(weights, (left, rows, right))]
+    fine = np.stack(columns, axis=2).reshape(len(rows), -1, 3).astype(np.float32)
+    # Mitsuba's image has its centre towards +Z, ours towards -Z.
+    turn = mi.ScalarTransform4f().rotate([0, 1, 0], 180 + scene.probe_rotation)
+    return {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(fine)), "to_world": turn}
+
+
+def make_camera(scene, width, height, unit):
+    position, target, up = unit * scene.camera["position"], unit * scene.camera["target"], scene.camera["up"]
+    forward = (target - position) / np.linalg.norm(target - position)
+    if np.linalg.norm(np.cross(forward, up)) <= 1e-6 * np.linalg.norm(up):  # leaves the roll open
+        up = np.array([0, 0, -1] if abs(forward[1]) > 0.5 else [0, 1, 0])
+    return {
+        "type": "perspective", "fov": float(scene.camera["vertical_fov"]), "fov_axis": "y",
+        "near_clip": 1e-2, "far_clip": 1e8,
+        "to_world": mi.ScalarTransform4f().look_at(list(position), list(target), list(up)),
+        "sampler": {"type": "independent"},
+        "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
+                 "component_format": "float32", "rfilter": {"type": "box"}},
+    }
+
+
+def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False):
+    """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself
+    where nothing emits, and not at all on lights: nearly the same picture, without Python where it renders."""
+    absorbs = any(surface.material.absorption.any() for surface in scene.surfaces)
+    integrator = "volpath" if absorbs else "path"
+    unit = unit_length(scene)
+    content = {"type": "scene", "sensor": make_camera(scene, width, height, unit),
+               "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30}}
+    for i, surface in enumerate(scene.surfaces):
+        content[f"surface_{i}"] = make_mesh(surface, unit, own_normals)
+    if scene.light_probe:
+        content["background"] = make_light_probe(scene)
+    elif scene.background.any():
+        content["background"] = {"type": "constant", "radiance": colour(scene.background)}
+    return mi.load_dict(content), integrator
+
+
+def run_mitsuba(variant, work):
+    """Calls work() with Mitsuba's variant chosen; errors end the program in one line."""
+    try:
+        mi.set_variant(variant)
+        if variant == "llvm_ad_rgb" and dr.detail.llvm_version()[0] < 19:  # it would abort
+            raise UserError("LLVM is older than 19: install libllvm19 and let DRJIT_LIBLLVM_PATH name its library")
+        mi.set_log_level(mi.LogLevel.Error)
+        define_bsdfs()
+        work()
+    except (RuntimeError, ImportError) as error:
+        while error.__cause__:  # the first one says what is wrong
+            error = error.__cause__
+        raise UserError(f"Mitsuba with variant {variant}: {' '.join(str(error).split())[:300]}") from None

@@ -1,0 +1,207 @@
+"""Reads our scene files (.json, .obj, .mtl) in Python, for tools that hand them to other renderers.
+
+It follows the section "Scene files" of the documentation as common/scene does, from which it shares no code:
+where the two read a file differently, a comparison with a reference shows it. Arrays are in double precision.
+"""
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from project import UserError
+from references.meshes import Material, ObjFile, triangle_normals
+
+
+class SourceFiles:
+    """Reads files and hashes their contents in reading order (FNV-1a, 64 bits), as common/scene/source_files.h."""
+
+    def __init__(self):
+        self.hash = 0xCBF29CE484222325
+
+    def read(self, path):
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise UserError(f"{path}: cannot be read: {error.strerror}") from None
+        value = self.hash
+        for byte in content:
+            value = (value ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+        self.hash = value
+        return content
+
+    def read_text(self, path):
+        return self.read(path).decode(errors="surrogateescape")
+
+
+@dataclass
+class Surface:
+    """All triangles of one material in world space: arrays [triangle, corner], counter-clockwise from the front."""
+    material: Material
+    positions: np.ndarray
+    normals: np.ndarray | None  # to be interpolated, then normalised; None where they are those of the triangles
+    texture_coordinates: np.ndarray  # v down from the top row of the image
+
+
+@dataclass
+class Scene:
+    surfaces: list
+    camera: dict  # position, target, up, vertical_fov in degrees
+    background: np.ndarray  # radiance, or factor of the light probe
+    light_probe: Path | None
+    probe_rotation: float  # degrees
+    width: int
+    height: int
+    max_path_length: int
+    hash: str  # of all files, as the chapters write it into their reports
+
+
+def limit_reflectance(material, specular):
+    """Ks counts only where asked for; both are divided by the largest channel of their sum where that exceeds 1."""
+    if not specular:
+        material.specular = np.zeros(3)
+    largest = max(1, *(material.diffuse + material.specular))
+    material.diffuse = material.diffuse / largest
+    material.specular = material.specular / largest
+
+
+def place_meshes(meshes, placements):
+    """Surfaces in world space, one a material; placements: (index of the mesh, object-to-world matrix)."""
+    pieces = {}  # material -> arrays of its instances
+    for index, matrix in placements:
+        mesh, linear = meshes[index], matrix[:3, :3]
+        materials = np.array([id(m) for m in mesh.materials])
+        positions = mesh.positions @ linear.T + matrix[:3, 3]
+        normals = mesh.normals @ np.linalg.inv(linear)
+        # The front is decided in object space: a mirrored instance keeps it.
+        order = [0, 2, 1] if np.linalg.det(linear) < 0 else [0, 1, 2]
+        for material in dict.fromkeys(mesh.materials):
+            chosen = materials == id(material)
+            arrays = (positions, normals, mesh.texture_coordinates)
+            pieces.setdefault(material, []).append([array[chosen][:, order] for array in arrays])
+
+    surfaces = []
+    for material, parts in pieces.items():
+        positions, normals, texture_coordinates = (np.concatenate(arrays) for arrays in zip(*parts))
+        flat = np.broadcast_to(triangle_normals(positions)[:, None], normals.shape)
+        normals = np.where(np.isnan(normals), flat, normals)
+        length = np.linalg.norm(normals, axis=2, keepdims=True)
+        is_flat = np.abs(normals / length - flat).max() < 1e-5
+        surfaces.append(Surface(material, positions, None if is_flat else normals, texture_coordinates))
+    return surfaces
+
+
+# ---------------------------------------------------------------------------------------------- scenes
+KEYS = {
+    "the scene": {"description", "meshes", "camera", "background", "specular", "width", "height", "samples",
+                  "max_path_length"},
+    "meshes": {"file", "scale", "rotation", "translation"},
+    "rotation": {"axis", "degrees"},
+    "camera": {"position", "target", "up", "vertical_fov"},
+    "background": {"radiance", "light_probe", "intensity", "rotation_degrees"},
+}
+
+
+def require_known_keys(path, where, entry):
+    if not isinstance(entry, dict):
+        raise UserError(f"{path}: {where}: expected an object {{...}}")
+    unknown, known = entry.keys() - KEYS[where], ", ".join(sorted(KEYS[where]))
+    if unknown:
+        raise UserError(f"{path}: unknown key '{min(unknown)}' in {where}; known keys are {known}")
+
+
+def triple(value):
+    return np.broadcast_to(np.asarray(value, float), 3)
+
+
+def placement_matrix(entry):
+    """Scale, then rotation, then translation."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.diag(triple(entry.get("scale", 1)))
+    if "rotation" in entry:
+        x, y, z = np.array(entry["rotation"]["axis"], float) / np.linalg.norm(entry["rotation"]["axis"])
+        angle = math.radians(entry["rotation"]["degrees"])
+        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # Rodrigues' formula
+        rotation = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+        matrix[:3, :3] = rotation @ matrix[:3, :3]
+    matrix[:3, 3] = entry.get("translation", 0)
+    return matrix
+
+
+def framing_camera(meshes, placements):
+    """The camera of scenes without one: the bounding sphere touches the upper and lower edge of the image."""
+    points = []
+    for index, matrix in placements:
+        corners = meshes[index].positions.reshape(-1, 3)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        box = np.array([[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)])
+        points.append(box @ matrix[:3, :3].T + matrix[:3, 3])
+    low, high = np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
+    centre, radius, fov = (low + high) / 2, np.linalg.norm(high - low) / 2, 45
+    direction = np.array([0, 0.25, 1]) / math.hypot(0.25, 1)
+    return {"position": list(centre + radius / math.sin(math.radians(fov / 2)) * direction),
+            "target": list(centre), "up": [0, 1, 0], "vertical_fov": fov}
+
+
+def read_description(path, files):
+    """The content of a .json scene, its keys checked; that of a bare .obj is the mesh alone."""
+    if path.suffix.lower() == ".obj":
+        return {"meshes": [{"file": path.name}]}
+    if path.suffix.lower() != ".json":
+        raise UserError(f"{path}: a scene must be a .json or .obj file")
+    try:
+        root = json.loads(files.read_text(path))
+    except json.JSONDecodeError as error:
+        raise UserError(f"{path}:{error.lineno}: not valid JSON: {error.msg}") from None
+    require_known_keys(path, "the scene", root)
+    if not root.get("meshes") or not isinstance(root["meshes"], list):
+        raise UserError(f"{path}: there are no meshes to be seen")
+    for entry in root["meshes"]:
+        require_known_keys(path, "meshes", entry)
+        require_known_keys(path, "rotation", entry.get("rotation", {}))
+    for key in ("camera", "background"):
+        require_known_keys(path, key, root.get(key, {}))
+    return root
+
+
+def read_scene(path):
+    """Reads a scene with all its files, in the order in which the renderer reads them, on which the hash depends."""
+    path = Path(path)
+    files = SourceFiles()
+    root = read_description(path, files)
+    try:
+        meshes, indices, placements = [], {}, []
+        for entry in root["meshes"]:
+            file = path.parent / entry["file"]
+            if file.resolve() not in indices:
+                indices[file.resolve()] = len(meshes)
+                meshes.append(ObjFile(file, files))
+            placements.append((indices[file.resolve()], placement_matrix(entry)))
+
+        textures = set()
+        for mesh in meshes:
+            for material in sorted(dict.fromkeys(mesh.materials), key=lambda m: m.refractive_index > 0):
+                limit_reflectance(material, root.get("specular", False))
+                if material.texture and material.texture.resolve() not in textures:
+                    textures.add(material.texture.resolve())
+                    files.read(material.texture)
+        surfaces = place_meshes(meshes, placements)
+
+        background = root.get("background", {})
+        light_probe = path.parent / background["light_probe"] if "light_probe" in background else None
+        if light_probe:
+            files.read(light_probe)
+        radiance = background.get("intensity", 1) if light_probe else background.get("radiance", 0)
+        if path.suffix.lower() == ".obj" and not any(s.material.emission.any() for s in surfaces):
+            radiance = 1  # a bare mesh without lights is lit by a white sky
+        camera = {"up": [0, 1, 0], "vertical_fov": 45,
+                  **(root.get("camera") or framing_camera(meshes, placements))}
+        camera = {key: np.asarray(camera[key], float) for key in ("position", "target", "up", "vertical_fov")}
+        return Scene(surfaces, camera,
+                     triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
+                     root.get("width", 512), root.get("height", 512), root.get("max_path_length", 8),
+                     f"{files.hash:x}")
+    except KeyError as error:
+        raise UserError(f"{path}: the key {error} is missing") from None
+    except (TypeError, ValueError, np.linalg.LinAlgError) as error:
+        raise UserError(f"{path}: a value has the wrong type or no meaning: {error}") from None

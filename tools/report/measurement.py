@@ -1,0 +1,267 @@
+"""Runs chapters, and Mitsuba as their peer, and keeps a record of what they report: see numbers.py.
+
+The record is a file that is written after every run, so that an interrupted measurement goes on where it was. The runs
+of all cases are interleaved: what else the machine does meanwhile hits all of them alike.
+"""
+import hashlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from datetime import datetime
+from pathlib import Path
+
+from project import (BINARIES, CHAPTERS, ROOT, VARIANTS, UserError, chapter_named, commit, duration_text, last_line, read_json,
+                     run_program, show_progress, write_json)
+from references.images import read_reference
+
+PILOT_PART = 0.3  # of a run's seconds: tells how many samples a run takes
+START_UP_SECONDS = {False: 0.4, True: 2.0}  # of ours and a peer, for the first guess of how long all takes
+DEVICE_LOST = 3  # exit code
+
+
+class Refused(UserError):
+    """A program does not render a scene, which is no mistake: chapters before 6 know no dielectrics."""
+
+
+# ---------------------------------------------------------------------------------------------- cases
+def relative(path):
+    """Of files of the project without where that lies."""
+    return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+
+
+def new_case(scene_file, reference_file, name, program, options=(), is_peer=False):
+    """Something to be rendered repeatedly. Resolution and path length are the reference's, if there is one."""
+    case = {
+        "scene": reference_file.stem if reference_file else scene_file.stem, "scene_file": relative(scene_file),
+        "reference_file": None, "reference": None, "width": 128, "height": 128, "max_path_length": None, "case": name,
+        "program": program, "options": " ".join(options), "is_peer": is_peer, "backend": None, "note": "",
+        "samples": None, "refused": None, "runs": [], "pictures": {},
+    }
+    if reference_file:
+        reference = read_reference(reference_file)
+        height, width, _ = reference.mean.shape
+        case |= {
+            "reference_file": relative(reference_file), "width": width, "height": height,
+            "max_path_length": int(reference.attributes["max_path_length"]),
+            "reference": {
+                "scene_hash": reference.attributes["scene_hash"], "mean": reference.mean.mean(axis=(0, 1)).tolist(),
+                "variance": (reference.variance.sum(axis=(0, 1)) / (width * height) ** 2).tolist(),
+                "freedom": reference.freedom, "rel_mse_deviation": reference.rel_mse_deviation}}
+    return case
+
+
+def report_cases(scenes, chapters, variants):
+    """Every chapter, and every variant of Mitsuba, on pairs (scene file, reference file)."""
+    cases = []
+    for scene, reference in scenes:
+        cases += [new_case(scene, reference, f"chapter {number}", CHAPTERS[number]) for number in chapters]
+        cases += [new_case(scene, reference, f"Mitsuba {VARIANTS[variant]}", variant, is_peer=True) for variant in variants]
+    return cases
+
+
+def study_cases():
+    """What docs/results.md shows: neighbours are compared with each other."""
+    cases = []
+    splitting, roulette, glass = map(chapter_named, ("splitting", "russian_roulette", "dielectrics"))
+
+    def add(scene, length, name, program, *options):
+        reference = ROOT / f"assets/references/{scene}_{length}.exr" if length else None
+        cases.append(new_case(ROOT / f"assets/scenes/{scene}.json", reference, name, program, options))
+
+    for scene, length in (("cornell_box", 6), ("torus", 5), ("heart_light", 4)):
+        for number, program in CHAPTERS.items():
+            if program != glass:  # where nothing is of glass, it is the chapter before
+                add(scene, length, f"chapter {number}", program)
+    for scene, length in (("cornell_box", 6), ("heart_light", 4)):
+        for factor in (1, 2, 4, 8, 16):
+            add(scene, length, f"splitting factor {factor}", splitting, "--splitting-factor", str(factor))
+        for start in (1, 2, 3, 4):
+            add(scene, length, f"roulette start {start}", roulette, "--roulette-start", str(start))
+    for switch in ("on", "off"):
+        add("glass", 8, f"light sampling {switch}", glass, "--light-sampling", switch)
+    # The blog's setting: two branches at every hit, light that is reflected up to five times. It has no reference:
+    # there the error is estimated from two halves of the samples.
+    blog = ("--split-every-hit", "--splitting-factor", "2", "--max-path-length", "5")
+    add("cornell_box", None, "splitting at every hit", splitting, *blog)
+    add("cornell_box", None, "the same with roulette", roulette, *blog, "--roulette-start", "1")
+    return cases
+
+
+# ---------------------------------------------------------------------------------------------- programs
+def peer_command(variant):
+    """Mitsuba is looked for where the user's python3 finds it, in an active virtual environment for instance."""
+    return [shutil.which("python3") or sys.executable, ROOT / "tools", "peer", "--variant", variant]
+
+
+def working_variants():
+    """Those of Mitsuba's variants that run here. Each is tried in a process of its own: some crash."""
+    size = ["--width", "8", "--height", "8", "--max-path-length", "1", "--samples", "1", "--seed", "1"]
+    tried = {variant: run_program([*peer_command(variant), ROOT / "assets/scenes/cornell_box.json", *size]) for variant in VARIANTS}
+    works = [variant for variant in VARIANTS if tried[variant].returncode == 0]
+    if not works:
+        raise UserError(last_line(tried["scalar_rgb"]))
+    return works
+
+
+def run_case(case, settings, arguments):
+    """The report of one run, with the seconds from its start to its end."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [*peer_command(case["program"])] if case["is_peer"] else [BINARIES / case["program"], "--quiet"]
+        command += [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
+        if case["reference_file"]:
+            command += ["--max-path-length", case["max_path_length"], "--reference", ROOT / case["reference_file"]]
+        if not case["is_peer"]:
+            command += ["--backend", case["backend"] or settings["backend"]]
+            command += ["--device", settings["device"]] if settings["device"] else []
+        command += ["--report", Path(folder) / "report.json", *arguments]
+        if "--output" not in arguments:
+            command += ["--output", Path(folder) / "picture.exr"]
+        started = time.perf_counter()
+        limit = settings.get("time_limit")
+        try:
+            process = run_program(command, timeout=limit)
+        except subprocess.TimeoutExpired:
+            raise UserError(f"{case['scene']}, {case['case']}: ended after {limit:g} s: does each loop of the shader end? "
+                            "On a slow machine allow more by --time-limit") from None
+        seconds = time.perf_counter() - started
+        if process.returncode != 0:
+            error = last_line(process)
+            if "cannot render" in error or case["is_peer"]:
+                raise Refused(error)
+            lost = "the device was lost: " if process.returncode == DEVICE_LOST else ""
+            raise UserError(f"{case['scene']}, {case['case']}: {lost}{error}")
+        report = read_json(Path(folder) / "report.json")
+    if case["reference"] and report["scene_hash"] != case["reference"]["scene_hash"]:
+        raise UserError(f"{case['reference_file']}: is of another version of {case['scene_file']}: "
+                        f"make it anew with ./lab reference {case['scene_file']}")
+    return report | {"command_seconds": seconds}
+
+
+def devices_text(program):
+    """The devices of this machine, as a chapter lists them."""
+    return run_program([BINARIES / program, "--list-devices"]).stdout
+
+
+def driver_of(program, device):
+    """Kind of the device, Vulkan's version and the driver."""
+    found = re.search(rf"^ *\d+ +{re.escape(device)} \((.*)\)$", devices_text(program), re.MULTILINE)
+    return found[1] if found else "unknown"
+
+
+def digest_of_sources(cases):
+    """Of all that decides what a run computes: with other sources a measurement starts anew."""
+    files = [path for folder in ("chapters", "common", "shaders", "assets") for path in (ROOT / folder).rglob("*")]
+    files += [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
+    digest = hashlib.sha256()
+    for path in sorted(set(files)):
+        if path.is_file() and path.suffix != ".md":
+            digest.update(str(path).encode() + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+# ---------------------------------------------------------------------------------------------- measuring
+class Measurement:
+    """Fills a record. `pictures` is the folder for images, or None where nobody looks at them."""
+
+    def __init__(self, file, cases, settings, pictures=None):
+        self.file, self.pictures = file, pictures
+        settings = settings | {"sources": digest_of_sources(cases)}
+        self.record = {"settings": settings, "environment": {}, "is_complete": False, "cases": cases}
+        previous = read_json(file) if file.exists() else {"is_complete": True}
+        if previous.get("settings") == settings and not previous["is_complete"]:
+            self.record = previous
+            done = sum(len(case["runs"]) for case in previous["cases"])
+            print(f"{file}: goes on after {done} runs", file=sys.stderr)
+
+    def save(self):
+        write_json(self.file, self.record)
+
+    def run_seconds(self):
+        """Rendering time of one run."""
+        return self.record["settings"]["seconds"] / self.record["settings"]["repetitions"]
+
+    def steps(self):
+        """What is to be done, in order; whether it still has to be is known only when its turn comes."""
+        cases = self.record["cases"]
+        yield from ((self.try_out, case, 0) for case in cases)
+        for seed in range(1, self.record["settings"]["repetitions"] + 1):
+            yield from ((self.repeat, case, seed) for case in cases)
+        if self.pictures:
+            yield from ((self.render_equal_error, case, 1) for case in cases)
+
+    def expected_seconds(self):
+        settings, total = self.record["settings"], 0
+        for case in self.record["cases"]:
+            total += (settings["repetitions"] + 2) * START_UP_SECONDS[case["is_peer"]]
+            total += settings["seconds"] * (1 + 1.5 * PILOT_PART / settings["repetitions"])
+        return total
+
+    def measure(self):
+        """Does what the record lacks."""
+        cases, steps = self.record["cases"], list(self.steps())
+        print(f"{len(cases)} cases, {self.record['settings']['repetitions']} runs of {self.run_seconds():.2g} s each: about "
+              f"{duration_text(self.expected_seconds())}. Ctrl-C keeps what is there, and the same command goes on.",
+              file=sys.stderr)
+        open_steps = [step for step in steps if self.is_open(*step)]
+        started = time.monotonic()
+        for done, (do, case, seed) in enumerate(open_steps, 1):
+            if self.is_open(do, case, seed):
+                do(case, seed)
+                self.save()
+            show_progress(f"{case['scene']}, {case['case']}", done, len(open_steps), started)
+
+    def is_open(self, do, case, seed):
+        if case["refused"]:
+            return False
+        if do == self.try_out:
+            return case["samples"] is None
+        return len(case["runs"]) < seed if do == self.repeat else "equal_error" not in case["pictures"]
+
+    def try_out(self, case, _):
+        """Finds out how many samples a run takes, so that all of them take equally many."""
+        settings, limit = self.record["settings"], PILOT_PART * self.run_seconds()
+        limits = ["--time-limit", limit] if case["is_peer"] else ["--time-limit", limit, "--samples", 2**32 - 1]
+        try:
+            report = run_case(case, settings, [*limits, "--seed", 0])
+            if not report["rows"]:  # not a single sample was done by then
+                report = run_case(case, settings, ["--samples", 1, "--seed", 0])
+        except Refused as refusal:
+            case["refused"] = str(refusal).replace(f"{ROOT}/", "")
+            return
+        row = report["rows"][-1]
+        samples = max(1, round(row["samples"] * self.run_seconds() / row["seconds"]))
+        if not case["reference_file"]:
+            samples = max(2, 1 << (samples.bit_length() - 1))  # both halves of them must be in the rows
+        case |= {"samples": samples, "backend": report["backend"], "note": report.get("note", "")}
+        environment = self.record["environment"]
+        if case["is_peer"]:
+            environment["peer"] = report["device"]
+        elif "device" not in environment:
+            environment |= {
+                "device": report["device"], "driver": driver_of(case["program"], report["device"]), "commit": commit(),
+                "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M")}
+
+    def repeat(self, case, seed):
+        case["runs"].append(self.render(case, seed, case["samples"], "equal_time" if seed == 1 else None))
+
+    def render(self, case, seed, samples, picture):
+        """A run, with its picture kept for the page if it has a name."""
+        arguments = ["--samples", samples, "--seed", seed]
+        if self.pictures and picture:
+            file = self.pictures / f"{case['scene']}_{case['program']}_{picture}.exr"
+            self.pictures.mkdir(parents=True, exist_ok=True)
+            arguments += ["--output", file]
+        report = run_case(case, self.record["settings"], arguments)
+        if self.pictures and picture:
+            case["pictures"][picture] = {"file": file.name, **report["rows"][-1]}
+        return {"seed": seed, "command_seconds": report["command_seconds"], "rows": report["rows"]}
+
+    def render_equal_error(self, case, seed):
+        """With as many samples as have the error of the scene's noisiest case, or one where that is less already."""
+        others = [other for other in self.record["cases"] if other["scene"] == case["scene"] and other["runs"]]
+        errors = {id(other): sum(run["rows"][-1]["rel_mse"] for run in other["runs"]) / len(other["runs"]) for other in others}
+        samples = max(1, round(case["samples"] * errors[id(case)] / (max(errors.values()) or 1)))
+        self.render(case, seed, samples, "equal_error")

@@ -1,0 +1,249 @@
+"""The numbers of a record of measurements: errors, slopes, efficiencies and the test for bias, with their intervals.
+
+A record holds cases, what was rendered, each with runs of other seeds, each with rows: what a chapter reports at 1, 2,
+4, … samples. Intervals hold 95 % of the time. They come from the spread of the runs and from the noise of the reference,
+which moves the errors of all runs of a scene together.
+"""
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import nctdtrinc, stdtrit
+
+CONFIDENCE = 0.95
+FALSE_ALARMS = 0.01  # probability that a report calls anything biased that is not
+POWER = 0.95  # probability of finding the bias that a test says it would have found
+TARGET_ERROR = 0.01  # for the time to it; the root of rel_mse
+SLOPE_ROWS = 6  # the last ones, since the first are ruled by fixed costs
+KNOWN = 1e6  # degrees of freedom of an error that is not estimated
+ROUNDING = 1e-5  # of a mean, which other programs sum in another order
+
+
+# ---------------------------------------------------------------------------------------------- numbers as text
+def short(value, digits=3):
+    """A number with so many digits, without an exponent where that is readable."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0 or isinstance(value, int) or not 1e-4 <= abs(value) < 1e7:
+        return f"{value:,}" if isinstance(value, int) else f"{value:.{digits}g}"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:,.{decimals}f}"
+
+
+def with_interval(values):
+    """[value, low, high]; low is None where a single run tells no interval."""
+    value, low, high = values
+    return short(value, 2) + ("" if low is None else f" ({short(low, 2)} – {short(high, 2)})")
+
+
+# ---------------------------------------------------------------------------------------------- intervals
+def two_sided(confidence, freedom):
+    """The t whose negative and which Student's distribution has this probability between."""
+    return -stdtrit(freedom, (1 - confidence) / 2)
+
+
+def half_width(parts, factor=lambda freedom: two_sided(CONFIDENCE, freedom)):
+    """Half of an interval around a sum of independent parts (squared standard error, its degrees of freedom), numbers or arrays.
+    It holds at least as often as it says, however few the degrees of freedom (Cochran and Cox); exactly where one part rules.
+    Welch's interval does not, far out in the tails."""
+    return np.sqrt(sum(square * factor(freedom) ** 2 for square, freedom in parts))
+
+
+def mean_part(numbers):
+    """What the mean of independent numbers contributes to half_width()."""
+    return np.var(numbers, ddof=1) / len(numbers), len(numbers) - 1
+
+
+def log_interval(value, parts):
+    """[value, low, high] of a quotient whose logarithm has these parts."""
+    factor = math.exp(half_width(parts))
+    return [value, value / factor, value * factor]
+
+
+class Series(NamedTuple):
+    """Errors of a case, or what is proportional to them, a run each. `shift` is the standard deviation of what the noise of
+    the reference adds to all of them, as part of their mean: it goes up and down with that of the scene's other cases."""
+    numbers: dict  # seed -> number
+    shift: float = 0.0
+
+    @property
+    def mean(self):
+        return sum(self.numbers.values()) / len(self.numbers)
+
+    def interval(self):
+        """[mean, low, high] of what cannot be negative. None where it is not positive: an error may be lost in the noise
+        of the reference."""
+        mean = self.mean
+        if mean <= 0 or len(self.numbers) < 2:
+            return [mean if mean > 0 else None, None, None]
+        return log_interval(mean, [mean_part([x / mean for x in self.numbers.values()]), (self.shift**2, KNOWN)])
+
+
+def ratio(now, base):
+    """[quotient, low, high] of the means of two series whose runs are independent."""
+    if now.mean <= 0 or base.mean <= 0:
+        return [None, None, None]
+    quotient = now.mean / base.mean
+    if min(len(now.numbers), len(base.numbers)) < 2:
+        return [quotient, None, None]
+    parts = [mean_part([x / series.mean for x in series.numbers.values()]) for series in (now, base)]
+    return log_interval(quotient, parts + [((now.shift - base.shift) ** 2, KNOWN)])
+
+
+def paired_ratio(now, base):
+    """The same for runs with the same seeds. The cases of a scene then share random numbers, so that their errors go up and
+    down together: only the spread of the differences between runs with the same seed tells how sure the quotient is."""
+    seeds = sorted(now.numbers.keys() & base.numbers.keys())
+    now, base = (Series({seed: of.numbers[seed] for seed in seeds}, of.shift) for of in (now, base))
+    if not seeds or now.mean <= 0 or base.mean <= 0:
+        return [None, None, None]
+    quotient = now.mean / base.mean
+    if len(seeds) < 2:
+        return [quotient, None, None]
+    differences = [now.numbers[seed] / now.mean - base.numbers[seed] / base.mean for seed in seeds]
+    return log_interval(quotient, [mean_part(differences), ((now.shift - base.shift) ** 2, KNOWN)])
+
+
+# ---------------------------------------------------------------------------------------------- of runs
+def last_rows(runs):
+    return [run["rows"][-1] for run in runs]
+
+
+def mean_of(rows, key):
+    """None where a row lacks it."""
+    values = [row.get(key) for row in rows]
+    return None if None in values else sum(values) / len(values)
+
+
+def deviation(case):
+    """Standard deviation of what the noise of the reference adds to rel_mse."""
+    return (case["reference"] or {}).get("rel_mse_deviation", 0.0)
+
+
+def errors(case, key=None, index=-1):
+    """Series of rel_mse in rows with this index, or of its product with something: what the same error costs, however many
+    samples were taken."""
+    rows = {run["seed"]: run["rows"][index] for run in case["runs"]}
+    mean = mean_of(rows.values(), "rel_mse")
+    numbers = {seed: row["rel_mse"] * (row[key] if key else 1) for seed, row in rows.items()}
+    return Series(numbers, deviation(case) / mean if mean else 0.0)
+
+
+def curve(case):
+    """For each number of samples that all runs report: samples, mean seconds, [error, low, high]."""
+    points = []
+    for index, rows in enumerate(zip(*(run["rows"] for run in case["runs"]))):
+        if len({row["samples"] for row in rows}) == 1 and all(row["rel_mse"] for row in rows):
+            seconds = {key: mean_of(rows, key) for key in ("seconds", "device_seconds")}
+            points.append({"samples": rows[0]["samples"], **seconds, "error": errors(case, index=index).interval()})
+    return points
+
+
+def slope(case, key):
+    """[exponent, low, high] of the error as a power of samples or seconds, fitted to each run's last rows."""
+    slopes, shifts = [], []
+    for run in case["runs"]:
+        rows = [row for row in run["rows"][-SLOPE_ROWS:] if row["rel_mse"] and row.get(key)]
+        x, y = (np.log([row[name] for row in rows]) for name in (key, "rel_mse"))
+        if len(set(x)) > 1:
+            weights = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
+            slopes.append(float(weights @ y))
+            shifts.append(float(weights @ (deviation(case) / np.exp(y))))
+    if not slopes:
+        return None
+    mean = sum(slopes) / len(slopes)
+    if len(slopes) < 2:
+        return [mean, None, None]
+    half = float(half_width([mean_part(slopes), ((sum(shifts) / len(shifts)) ** 2, KNOWN)]))
+    return [mean, mean - half, mean + half]
+
+
+def batches(runs):
+    """Samples [batch] and means [batch, channel] of what each run added from one row to the next: independent of each other."""
+    counts, means = [], []
+    for run in runs:
+        before, mean_before = 0, 0.0
+        for row in run["rows"]:
+            samples, mean = row["samples"], np.array(row["mean"])
+            counts.append(samples - before)
+            means.append((samples * mean - before * mean_before) / (samples - before))
+            before, mean_before = samples, mean
+    return np.array(counts), np.array(means)
+
+
+def biases(runs, reference, comparisons):
+    """The test for bias of each channel's mean over the image: difference from the reference as part of it.
+
+    The batches' variance is that of one sample over their sizes; the reference's own counts as well. `comparisons` such tests
+    together raise a false alarm in FALSE_ALARMS of all reports. `detectable` is the smallest bias that is found with the
+    probability POWER, by the noncentral t-distribution, where noise is what it was estimated to be.
+    """
+    counts, means = batches(runs)
+    samples, expected = counts.sum(), np.array(reference["mean"])
+    mean, scale = counts @ means / samples, np.where(expected != 0, expected, 1)
+    values = (mean - expected) / scale
+    if len(counts) < 2:
+        return [{"value": value, "half_width": None, "detectable": None, "is_biased": False} for value in values.tolist()]
+    freedom, level = len(counts) - 1, FALSE_ALARMS / comparisons
+    parts = [(counts @ (means - mean) ** 2 / freedom / samples / scale**2, freedom),
+             (np.array(reference["variance"]) / scale**2, reference["freedom"]), (ROUNDING**2, KNOWN)]
+    columns = {"value": values, "half_width": half_width(parts),
+               "detectable": half_width(parts, lambda nu: nctdtrinc(nu, 1 - POWER, two_sided(1 - level, nu))),
+               "is_biased": np.abs(values) > half_width(parts, lambda nu: two_sided(1 - level, nu))}
+    return [dict(zip(columns, row)) for row in zip(*(column.tolist() for column in columns.values()))]
+
+
+# ---------------------------------------------------------------------------------------------- of a record
+def seconds_to_target(case):
+    """[seconds, low, high] from the command to an error of TARGET_ERROR, start-up included, and that of start-up.
+
+    The error is taken to fall as 1 / samples beyond the run.
+    """
+    start_ups = {run["seed"]: run["command_seconds"] - run["rows"][-1]["seconds"] for run in case["runs"]}
+    rendering = errors(case, "seconds")
+    whole = Series({seed: start_ups[seed] + product / TARGET_ERROR**2 for seed, product in rendering.numbers.items()})
+    part = rendering.mean / TARGET_ERROR**2 / whole.mean if whole.mean > 0 else 0.0
+    return whole._replace(shift=part * rendering.shift).interval(), Series(start_ups).interval()
+
+
+def summarize_case(case, base, comparisons):
+    """What the page shows of a case; `base` is the case that efficiencies are relative to."""
+    rows, pixels = last_rows(case["runs"]), case["width"] * case["height"]
+    summary = {key: case[key] for key in ("case", "is_peer", "program", "backend", "note")}
+    summary |= {"runs": len(rows), "samples": rows[0]["samples"], "seconds": mean_of(rows, "seconds"),
+                "device_seconds": mean_of(rows, "device_seconds"), "rays": mean_of(rows, "rays"),
+                "error": errors(case).interval(), "curve": curve(case),
+                "slope_samples": slope(case, "samples"), "slope_seconds": slope(case, "seconds")}
+    paths = summary["samples"] * pixels
+    summary["paths_per_second"] = paths / summary["seconds"]
+    if summary["rays"]:
+        summary["rays_per_path"] = summary["rays"] / paths
+        summary["rays_per_second"] = summary["rays"] / summary["seconds"]
+        summary["rays_per_device_second"] = summary["rays"] / summary["device_seconds"]
+    for key, name in (("seconds", "efficiency"), ("device_seconds", "device_efficiency")):
+        if summary[key] and base["runs"]:
+            summary[name] = [1.0, None, None] if case is base else paired_ratio(errors(base, key), errors(case, key))
+    summary["seconds_to_target"], summary["start_up_seconds"] = seconds_to_target(case)
+    summary["bias"] = biases(case["runs"], case["reference"], comparisons)
+    return summary
+
+
+def summarize(record):
+    """The content of report.json: a list of scenes with their cases, and how our chapters compare with peers."""
+    measured = [case for case in record["cases"] if case["runs"]]
+    comparisons = max(3 * len(measured), 1)
+    scenes = []
+    for name in dict.fromkeys(case["scene"] for case in record["cases"]):
+        cases = [case for case in record["cases"] if case["scene"] == name]
+        ours = [case for case in cases if case["runs"] and not case["is_peer"]]
+        peers = [case for case in cases if case["runs"] and case["is_peer"]]
+        scenes.append({
+            **{key: cases[0][key] for key in ("scene", "width", "height", "max_path_length", "reference")},
+            "refused": [{"case": case["case"], "why": case["refused"]} for case in cases if case["refused"]],
+            "cases": [summarize_case(case, ours[0] if ours else case, comparisons) for case in ours + peers],
+            # How often the time of one of ours fits into a peer's, for the same error.
+            "gains": [{"case": case["case"], "peer": peer["case"],
+                       "gain": paired_ratio(errors(peer, "seconds"), errors(case, "seconds"))}
+                      for peer in peers for case in ours],
+        })
+    return scenes

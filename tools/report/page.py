@@ -1,0 +1,193 @@
+"""Writes a report: the page index.html, which needs no other file, and its numbers as report.json and report.csv."""
+import csv
+import math
+from html import escape
+
+from project import ROOT, write_json
+from references.images import read_reference, read_rgb
+from report.numbers import CONFIDENCE, FALSE_ALARMS, POWER, TARGET_ERROR, short, summarize
+from report.plots import DIFFERENCE_FACTOR, difference_picture, picture, plot_errors, style
+
+STYLE = """
+body { font: 18px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 1500px; box-sizing: border-box; margin: 2em auto; padding: 0 1.5em; }
+h1 { font-size: 2em; margin-bottom: 0.2em; } h2 { font-size: 1.6em; margin-top: 2.2em; border-top: 2px solid #ccc; padding-top: 0.6em; }
+h3 { font-size: 1.15em; margin: 1.4em 0 0.4em; } p, ul { max-width: 65em; } svg { width: 100%; height: auto; }
+.wide { overflow-x: auto; } table { border-collapse: collapse; margin: 0.8em 0; font-variant-numeric: tabular-nums; font-size: 0.9em; }
+th, td { padding: 0.25em 0.8em; text-align: right; border-bottom: 1px solid #ddd; vertical-align: baseline; }
+th { font-weight: 600; border-bottom: 2px solid #999; } th:first-child, td:first-child, td.text { text-align: left; }
+td:first-child { white-space: nowrap; }
+small, .range { color: #666; font-size: 0.85em; white-space: nowrap; } .bad { color: #b2182b; font-weight: 600; }
+.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(170px, 1fr)); gap: 0.8em; }
+figure { margin: 0; font-size: 0.8em; line-height: 1.3; } img { width: 100%; image-rendering: pixelated; display: block; margin-bottom: 0.25em; }
+.note { background: #fff4d6; padding: 0.5em 1em; }
+"""
+
+HOW_TO_READ = f"""
+<p>Error is <i>rel_mse</i>, the mean over pixels and channels of (x − r)² / (r² + 0.01 r̄²) against the reference r, less
+what the reference's own noise adds. Without bias it falls as 1 / samples: a slope of −1. <b>Efficiency</b> is 1 / (error ×
+time) relative to the scene's first chapter: 10 means the same error in a tenth of the time. Device time is
+measured by timestamps on the device, wall time by the clock from the first sample on. Small grey ranges and bands
+hold {100 * CONFIDENCE:.0f} % of the time. They come from the spread of the runs, for efficiencies from the spread of the differences
+between runs with the same seed, and from the noise of the reference. The <b>bias test</b> compares the mean of each channel over the image
+with the reference; a report without bias gives a false alarm in {100 * FALSE_ALARMS:.0f} % of the cases, and what it says would have been
+found would have been so with {100 * POWER:.0f} % probability.</p>
+"""
+
+
+def percent_of_root(error):
+    return "–" if error is None else f"{100 * math.sqrt(error):.3g}&nbsp;%"
+
+
+def ranged(values, digits=2):
+    """[value, low, high] with its interval."""
+    if values is None:
+        return "–"
+    value, low, high = values
+    spread = "" if low is None else f' <span class="range">{short(low, digits)} – {short(high, digits)}</span>'
+    return f"{short(value, digits)}{spread}"
+
+
+def bias_text(result):
+    """The verdict on one channel."""
+    if result["half_width"] is None:
+        return "one batch: unknown"
+    if result["is_biased"]:
+        return f'<span class="bad">biased: {100 * result["value"]:+.2g} % ± {100 * result["half_width"]:.1g} %</span>'
+    return f'agrees <small>{100 * result["detectable"]:.2g} % would have been found</small>'
+
+
+def table(head, rows):
+    """Cells are HTML already."""
+    lines = ["".join(f"<{kind}>{cell}</{kind}>" for cell in row) for kind, row in [("th", head), *(("td", row) for row in rows)]]
+    return '<div class="wide"><table>' + "".join(f"<tr>{line}</tr>" for line in lines) + "</table></div>"
+
+
+def overview(scenes):
+    """Scenes against chapters: efficiency, and where a bias was found."""
+    names = list(dict.fromkeys(case["case"] for scene in scenes for case in scene["cases"]))
+    rows = []
+    for scene in scenes:
+        found = {case["case"]: case for case in scene["cases"]}
+        cells = []
+        for name in names:
+            case = found.get(name)
+            is_biased = case and any(channel["is_biased"] for channel in case["bias"])
+            cells.append("–" if not case else ranged(case.get("efficiency")) + (' <span class="bad">biased</span>' if is_biased else ""))
+        rows.append([f'<a href="#{escape(scene["scene"])}">{escape(scene["scene"])}</a>', *cells])
+    return "<h3>Efficiency in wall time</h3>" + table(["scene", *map(escape, names)], rows)
+
+
+def speed_table(scene):
+    rows = [[
+        escape(case["case"]), short(case["samples"]), ranged(case["error"], digits=3), percent_of_root(case["error"][0]),
+        short(case.get("rays_per_path")), short(case["paths_per_second"] / 1e6),
+        short(case["rays_per_second"] / 1e6) if case["rays"] else "–",
+        short(case["rays_per_device_second"] / 1e6) if case["rays"] else "–",
+        short(case["seconds"]), short(case["device_seconds"]), ranged(case["slope_samples"]), ranged(case["slope_seconds"]),
+        ranged(case.get("efficiency")), ranged(case.get("device_efficiency"))] for case in scene["cases"]]
+    head = ["", "samples", "error", "its root", "rays a path", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
+            "slope against samples", "against seconds", "efficiency", "in device time"]
+    return table(head, rows)
+
+
+def bias_table(scene):
+    rows = [[escape(case["case"]), *map(bias_text, case["bias"])] for case in scene["cases"]]
+    return "<h3>Bias</h3>" + table(["", "red", "green", "blue"], rows)
+
+
+def peer_tables(scene):
+    """Time to equal error against Mitsuba, and from the command on."""
+    if not scene["gains"]:
+        return ""
+    peers = list(dict.fromkeys(gain["peer"] for gain in scene["gains"]))
+    gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
+    ours = [case for case in scene["cases"] if not case["is_peer"]]
+    rows = [[escape(case["case"]), *(ranged(gains[case["case"], peer]) for peer in peers)] for case in ours]
+    best = max(ours, key=lambda case: gains[case["case"], peers[0]][0] or 0)
+    starts = [[escape(case["case"]), ranged(case["seconds_to_target"]), ranged(case["start_up_seconds"])] for case in scene["cases"]]
+    notes = "".join(f"<p>{escape(case['case'])}: {escape(case['note'])}.</p>" for case in scene["cases"] if case["note"])
+    return ("<h3>Time to equal error: how many times faster than Mitsuba</h3>"
+            f"<p>Wall time of rendering alone; the fastest is {escape(best['case'])}.</p>" + table(["", *map(escape, peers)], rows)
+            + notes + f"<h3>Seconds from the command to {100 * TARGET_ERROR:.0f} % error</h3><p>With start-up: the process, the scene, its kernels "
+            "(which both keep from earlier runs). The error is taken to fall as 1 / samples beyond what was rendered.</p>"
+            + table(["", "seconds", "of which start-up"], starts))
+
+
+def picture_rows(record, name, folder):
+    """Pictures and differences of a scene at equal time and equal error."""
+    cases = [case for case in record["cases"] if case["scene"] == name]
+    reference_file = cases[0]["reference_file"]
+    reference = read_reference(ROOT / reference_file).mean
+    parts = []
+    for kind, title in (("equal_time", "Equal time"), ("equal_error", "Equal error")):
+        figures = [f'<figure><img src="{picture(reference)}" alt="reference">reference</figure>']
+        for case in cases:
+            if kind not in case["pictures"]:
+                continue
+            row = case["pictures"][kind]
+            radiance = read_rgb(folder / row["file"])
+            caption = f"{row['samples']} samples, {short(row['seconds'])} s, error {percent_of_root(row['rel_mse'])}"
+            figures.append(f'<figure><img src="{picture(radiance)}" alt="{escape(case["case"])}">'
+                           f'<img src="{difference_picture(radiance, reference)}" alt="difference">'
+                           f"<b>{escape(case['case'])}</b><br>{caption}</figure>")
+        if len(figures) > 1:
+            parts.append(f'<h3>{title}</h3><div class="pictures">{"".join(figures)}</div>')
+    if parts:
+        parts.append(f"<p><small>Lower pictures: difference of luminance from the reference × {DIFFERENCE_FACTOR}, relative to the reference's "
+                     "mean; red is too bright, blue too dark. Where one sample has less error than the noisiest chapter, one was taken.</small></p>")
+    return "".join(parts)
+
+
+def scene_section(record, scene, folder):
+    name, styles, peers = scene["scene"], {}, 0
+    for case in scene["cases"]:
+        number = int(case["program"][:2]) - 1 if not case["is_peer"] else 0
+        styles[case["case"]] = style(case, number, peers)
+        peers += case["is_peer"]
+    refused = "".join(f"<li>{escape(item['case'])} does not render it: {escape(item['why'])}</li>" for item in scene["refused"])
+    text = (f'<h2 id="{escape(name)}">{escape(name)}</h2><p>{scene["width"]} × {scene["height"]} pixels, paths of up to '
+            f'{scene["max_path_length"]} bounces.</p>' + (f"<ul>{refused}</ul>" if refused else ""))
+    if scene["cases"]:
+        text += plot_errors(scene, styles) + speed_table(scene) + bias_table(scene) + peer_tables(scene)
+    return text + picture_rows(record, name, folder)
+
+
+def progress_note(record):
+    wanted = sum(record["settings"]["repetitions"] for case in record["cases"] if not case["refused"])
+    done = sum(len(case["runs"]) for case in record["cases"])
+    return "" if done == wanted else f'<p class="note">Interrupted after {done} of {wanted} runs; the same command goes on.</p>'
+
+
+def page(record, scenes, folder):
+    settings, environment = record["settings"], record["environment"]
+    backends = sorted({case["backend"] for case in record["cases"] if case["backend"] and not case["is_peer"]})
+    facts = {
+        "device": environment.get("device"), "driver": environment.get("driver"), "backend": ", ".join(backends),
+        "compared with": environment.get("peer"), "commit": environment.get("commit"), "date": environment.get("date"),
+        "settings": f"{settings['repetitions']} interleaved runs of about {settings['seconds'] / settings['repetitions']:.2g} s for each "
+                    f"chapter and scene, seeds 1 to {settings['repetitions']}"}
+    lines = table(["", ""], [[f"<b>{key}</b>", f"{escape(str(value))}"] for key, value in facts.items() if value]).replace("<td>", '<td class="text">')
+    body = "".join(scene_section(record, scene, folder) for scene in scenes)
+    return (f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>Speed against error</title><style>{STYLE}</style></head>'
+            f"<body><h1>Speed against error</h1>{progress_note(record)}{lines}{HOW_TO_READ}{overview(scenes)}{body}</body></html>\n")
+
+
+def write_csv(file, record):
+    """Every row of every run."""
+    keys = ["samples", "seconds", "device_seconds", "rays", "rel_mse"]
+    with open(file, "w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["scene", "case", "seed", *keys, "mean_r", "mean_g", "mean_b"])
+        for case in record["cases"]:
+            for run in case["runs"]:
+                for row in run["rows"]:
+                    writer.writerow([case["scene"], case["case"], run["seed"], *(row.get(key) for key in keys), *row["mean"]])
+
+
+def write_report(record, folder):
+    """All files; pictures are in folder/pictures."""
+    scenes = summarize(record)
+    content = {"settings": record["settings"], "environment": record["environment"], "scenes": scenes}
+    write_json(folder / "report.json", content)
+    write_csv(folder / "report.csv", record)
+    (folder / "index.html").write_text(page(record, scenes, folder / "pictures"), encoding="utf-8")

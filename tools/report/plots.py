@@ -1,0 +1,88 @@
+"""Plots and pictures of a report, as they stand in a page: SVG and PNG."""
+import base64
+import io
+import re
+
+import matplotlib
+
+matplotlib.use("svg")
+import numpy as np
+from matplotlib import image, pyplot, ticker
+
+# Okabe and Ito's colours, which can be told apart by everybody; peers are grey.
+COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9"]
+PEER_COLOURS = ["#000000", "#666666", "#a0a0a0"]
+MARKERS = "osD^vP"
+DIFFERENCE_FACTOR = 4  # of difference images: full red or blue is a difference of a quarter of the reference's mean
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+
+
+def style(case, index, peer_index):
+    """Line, colour and marker: the same for a chapter in all plots."""
+    if case["is_peer"]:
+        return {"color": PEER_COLOURS[peer_index % len(PEER_COLOURS)], "linestyle": "--", "marker": "x"}
+    return {"color": COLOURS[index % len(COLOURS)], "linestyle": "-", "marker": MARKERS[index % len(MARKERS)]}
+
+
+def style_axis(axis, **labels):
+    axis.set(**labels)
+    axis.grid(color="#dddddd", linewidth=0.8)
+    axis.set_axisbelow(True)
+    axis.spines[["top", "right"]].set_visible(False)
+
+
+def plot_errors(scene, styles):
+    """SVG: error against samples and against wall seconds, with 95 % bands."""
+    pyplot.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "font.size": 13})
+    figure, axes = pyplot.subplots(1, 2, figsize=(13, 5), sharey=True, layout="constrained")
+    for axis, key, label in zip(axes, ("samples", "seconds"), ("samples a pixel", "seconds")):
+        for case in scene["cases"]:
+            points = [point for point in case["curve"] if point[key]]
+            x, y = [point[key] for point in points], [point["error"] for point in points]
+            axis.plot(x, [error[0] for error in y], label=case["case"], markersize=5, linewidth=1.8, **styles[case["case"]])
+            if y and y[0][1]:
+                axis.fill_between(x, [error[1] for error in y], [error[2] for error in y], alpha=0.2, linewidth=0,
+                                  color=styles[case["case"]]["color"])
+        style_axis(axis, xscale="log", yscale="log", xlabel=label)
+    axes[0].set_ylabel("error (rel_mse)")
+    root = axes[1].secondary_yaxis("right", functions=(lambda e: 100 * np.sqrt(np.maximum(e, 0)), lambda e: (e / 100) ** 2))
+    root.set_ylabel("its root")
+    root.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+    root.yaxis.set_major_formatter(lambda percent, _: f"{percent:g} %")
+    root.yaxis.set_minor_locator(ticker.NullLocator())
+    axes[0].legend(frameon=False, fontsize=12)
+    return svg_text(figure)
+
+
+def svg_text(figure):
+    """The element <svg> alone, without what names its maker."""
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", metadata={key: None for key in ("Creator", "Date", "Format", "Type")})
+    pyplot.close(figure)
+    return re.sub(r' (width|height)="[\d.]+pt"', "", stream.getvalue()[stream.getvalue().index("<svg"):], count=2)
+
+
+def png_uri(pixels):
+    """A data URI of an array [row, column, channel] of numbers in [0, 1]."""
+    stream = io.BytesIO()
+    image.imsave(stream, (255 * np.clip(pixels, 0, 1)).round().astype(np.uint8), format="png",
+                 pil_kwargs={"optimize": True})
+    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
+
+
+def encode_srgb(radiance):
+    """As the chapters' PNG files: sRGB, what is brighter than white cut off. Numbers in [0, 1]."""
+    linear = np.clip(radiance, 0, 1)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def picture(radiance):
+    return png_uri(encode_srgb(radiance))
+
+
+def difference_picture(radiance, reference):
+    """Red where the luminance is too high, blue where it is too low, white where it is right."""
+    mean = (reference @ LUMINANCE).mean() or 1
+    excess = np.clip(DIFFERENCE_FACTOR * ((radiance - reference) @ LUMINANCE) / mean, -1, 1)[:, :, None]
+    red, blue = np.array([0.70, 0.09, 0.17]), np.array([0.13, 0.40, 0.67])
+    return png_uri(1 - np.abs(excess) * (1 - np.where(excess > 0, red, blue)))
