@@ -20,6 +20,11 @@ layout(scalar, set = 0, binding = BINDING_TEXTURE_COORDINATES) readonly buffer T
 };
 layout(set = 0, binding = BINDING_TEXTURES) uniform sampler2D textures[TEXTURE_COUNT];
 #endif
+#ifdef FEATURE_DOUBLE_SIDED
+layout(scalar, set = 0, binding = BINDING_OTHER_SIDES) readonly buffer OtherSides {
+    uint other_sides[];  // of each triangle: the one that is its back, or itself
+};
+#endif
 #ifdef FEATURE_TRANSFORMS
 layout(scalar, set = 0, binding = BINDING_INSTANCES) readonly buffer Instances { Instance instances[]; };
 #endif

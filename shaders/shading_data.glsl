@@ -84,6 +84,16 @@ SurfacePoint get_surface_point(Hit hit) {
 // What a ray of the given unit direction finds at its hit.
 ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     SurfacePoint point = get_surface_point(hit);
+    bool is_front = dot(point.geometric_normal, ray_direction) < 0.0;
+#ifdef FEATURE_DOUBLE_SIDED
+    // Of two triangles in the same place that face opposite ways rays find either. They see the one that faces them.
+    if (!is_front && other_sides[hit.triangle] != hit.triangle) {
+        is_front = true;
+        hit.triangle = other_sides[hit.triangle];
+        hit.barycentrics = hit.barycentrics.yx;
+        point.geometric_normal = -point.geometric_normal;
+    }
+#endif
     ShadingData s;
     s.position = point.position;
     s.geometric_normal = point.geometric_normal;
@@ -118,7 +128,6 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     s.specular_exponent = material.specular_exponent;
 #endif
     // Emitters emit from the front; surfaces reflect on both sides, so from here on both normals face the ray's origin.
-    bool is_front = dot(s.geometric_normal, ray_direction) < 0.0;
     s.emission = is_front ? material.emission : vec3(0.0);
     if (!is_front) {
         s.geometric_normal = -s.geometric_normal;

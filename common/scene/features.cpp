@@ -23,6 +23,7 @@ SceneFeatures features_of(const Scene& scene) {
         any_material([](const Material& material) { return material.refractive_index > 0; });
     features.absorption =
         any_material([](const Material& material) { return material.absorption != vec3(0); });
+    features.double_sided = !scene.double_sided.empty();
     features.transforms = std::any_of(scene.instances.begin(), scene.instances.end(), is_moved);
     return features;
 }
@@ -36,6 +37,7 @@ std::vector<std::string> SceneFeatures::defines() const {
         {specular, "FEATURE_SPECULAR"},
         {dielectrics, "FEATURE_DIELECTRICS"},
         {absorption, "FEATURE_ABSORPTION"},
+        {double_sided, "FEATURE_DOUBLE_SIDED"},
         {transforms, "FEATURE_TRANSFORMS"},
     };
     std::vector<std::string> present;

@@ -16,7 +16,8 @@ struct SceneFeatures {
     bool specular = false;     // some material has a Phong lobe
     bool dielectrics = false;
     bool absorption = false;
-    bool transforms = false;  // some instance is moved, turned or scaled
+    bool double_sided = false;  // some emissive triangle has another one as its back
+    bool transforms = false;    // some instance is moved, turned or scaled
 
     // FEATURE_VERTEX_NORMALS and so on, for those present.
     std::vector<std::string> defines() const;

@@ -1,11 +1,11 @@
 #include "scene/light_table.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "error.h"
 #include "scene/alias_table.h"
+#include "scene/coincident_lights.h"
 
 namespace lab {
 namespace {
@@ -22,27 +22,13 @@ double get_world_area(const Scene& scene, uint32_t instance, const uvec3& corner
                                         linear * (glm::dvec3(scene.positions[corners.z]) - origin)));
 }
 
-// The corners in the world, the least one first: equal for triangles in the same place that face the same
-// way.
-std::array<float, 9> get_place(const Scene& scene, uint32_t instance, const uvec3& corners) {
-    std::array<std::array<float, 3>, 3> world;
-    for (int i = 0; i < 3; ++i) {
-        const vec3 corner =
-            scene.instances[instance].object_to_world * glm::vec4(scene.positions[corners[i]], 1);
-        world[i] = {corner.x, corner.y, corner.z};
-    }
-    std::rotate(world.begin(), std::min_element(world.begin(), world.end()), world.end());
-    const auto& [a, b, c] = world;
-    return {a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]};
-}
-
-// Rays find one of several emissive triangles in the same place: the table counts the first, too, and keeps
-// the order.
+// Rays find one of several instances' emissive triangles in the same place: the table counts the first, too,
+// and keeps the order.
 void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& lights) {
-    std::vector<std::pair<std::array<float, 9>, size_t>> places;
+    std::vector<std::pair<Place, size_t>> places;
     places.reserve(lights.size());
     for (const LightTriangle& light : lights)
-        places.emplace_back(get_place(scene, light.instance, scene.triangles[light.triangle]), places.size());
+        places.emplace_back(get_place(scene, scene.instances[light.instance], light.triangle), places.size());
     std::sort(places.begin(), places.end());
     std::vector<bool> is_first(lights.size(), true);
     for (size_t i = 1; i < places.size(); ++i)

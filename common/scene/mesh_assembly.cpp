@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "image/image_checks.h"
+#include "scene/coincident_lights.h"
 
 namespace lab {
 namespace {
@@ -40,7 +41,7 @@ class Assembly {
         vertices_.clear();
         vertices_.reserve(obj.positions.size());
         Mesh mesh{obj.file, static_cast<uint32_t>(scene_.triangles.size())};
-        std::vector<uint32_t> scene_materials(obj.materials.size(), ObjCorner::none);
+        std::vector<uint32_t> scene_materials(obj.materials.size(), ObjCorner::none), lines;
         size_t dropped = 0;
         for (const bool dielectric : {false, true}) {
             for (size_t i = 0; i < obj.triangle_materials.size(); ++i) {
@@ -53,6 +54,7 @@ class Assembly {
                 if (scene_materials[source] == ObjCorner::none)
                     scene_materials[source] = add_material(obj, obj.materials[source]);
                 scene_.triangle_materials.push_back(scene_materials[source]);
+                lines.push_back(obj.triangle_lines[i]);
                 ++mesh.triangle_count;
                 if (dielectric) ++mesh.dielectric_count;
             }
@@ -61,8 +63,13 @@ class Assembly {
         if (dropped > 0)
             scene_.warnings.push_back(obj.file + ": " + std::to_string(dropped) +
                                       " triangles without area are left out");
+        resolve_coincident_lights(scene_, mesh, lines);
+        lines_.insert(lines_.end(), lines.begin(), lines.end());
         scene_.meshes.push_back(mesh);
     }
+
+    // Of the files, one for each of the scene's triangles.
+    std::vector<uint32_t> take_lines() { return std::move(lines_); }
 
   private:
     // False if the triangle has no area: it has no normal then.
@@ -165,6 +172,7 @@ class Assembly {
     bool with_normals_ = false;
     bool with_texture_coordinates_ = false;
     bool ignored_specular_ = false;
+    std::vector<uint32_t> lines_;
     std::unordered_map<ObjCorner, uint32_t, CornerHash> vertices_;  // of the current file
     std::map<std::filesystem::path, int> textures_;
 };
@@ -182,11 +190,13 @@ bool has_textures(const ObjFile& obj) {
 
 }  // namespace
 
-void assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene) {
+std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources,
+                                      Scene& scene) {
     const bool with_normals = std::any_of(files.begin(), files.end(), has_normals);
     const bool with_texture_coordinates = std::any_of(files.begin(), files.end(), has_textures);
     Assembly assembly(specular, sources, scene);
     for (const ObjFile& file : files) assembly.add(file, with_normals, with_texture_coordinates);
+    return assembly.take_lines();
 }
 
 }  // namespace lab

@@ -25,7 +25,10 @@ constexpr size_t max_library_names = 256;
 // Lets tinyobjloader read text in memory, and knows the line that it read last.
 class TextBuffer : public std::streambuf {
   public:
-    explicit TextBuffer(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
+    explicit TextBuffer(std::string& text) {
+        setg(text.data(), text.data(), text.data() + text.size());
+        counted_end_ = eback();
+    }
 
     std::string_view last_line() const {
         std::string_view line(eback(), static_cast<size_t>(gptr() - eback()));
@@ -35,12 +38,17 @@ class TextBuffer : public std::streambuf {
         return end_before == std::string_view::npos ? line : line.substr(end_before + 1);
     }
 
+    // Counts on from the line that it was asked for last.
     size_t last_line_number() const {
-        std::string_view text(eback(), static_cast<size_t>(gptr() - eback()));
-        size_t count = 0;
-        for (; !text.empty(); ++count) take_line(text);
-        return count;
+        std::string_view text(counted_end_, static_cast<size_t>(gptr() - counted_end_));
+        for (; !text.empty(); ++counted_lines_) take_line(text);
+        counted_end_ = gptr();
+        return counted_lines_;
     }
+
+  private:
+    mutable const char* counted_end_;
+    mutable size_t counted_lines_ = 0;
 };
 
 // Collects what tinyobjloader's callbacks report.
@@ -199,6 +207,7 @@ class ObjReader : public tinyobj::MaterialReader {
             fail("its triangles need far more memory than a file of its size should");
         obj_.corners.insert(obj_.corners.end(), {face_[a], face_[b], face_[c]});
         obj_.triangle_materials.push_back(*material_);
+        obj_.triangle_lines.push_back(static_cast<uint32_t>(buffer_.last_line_number()));
     }
 
     void read_library(const std::filesystem::path& file) {

@@ -23,6 +23,7 @@ struct ObjFile {
     std::vector<vec3> normals;              // as in the file: of any length
     std::vector<ObjCorner> corners;         // three a triangle, at least one triangle
     std::vector<uint32_t> triangle_materials;
+    std::vector<uint32_t> triangle_lines;  // of the file, counted from 1
     std::vector<MtlMaterial> materials;
 };
 

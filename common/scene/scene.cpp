@@ -5,6 +5,7 @@
 
 #include "error.h"
 #include "image/image_checks.h"
+#include "scene/coincident_lights.h"
 #include "scene/dielectric_warnings.h"
 #include "scene/features.h"
 #include "scene/mesh_assembly.h"
@@ -36,9 +37,11 @@ void load_meshes(const SceneDescription& description, bool specular, SourceFiles
         if (is_new) files.push_back(read_obj(placement.file, sources, scene.warnings));
         scene.instance_meshes.push_back(mesh->second);
     }
-    assemble_meshes(files, specular, sources, scene);
+    const std::vector<uint32_t> lines = assemble_meshes(files, specular, sources, scene);
     for (const MeshPlacement& placement : description.meshes)
         scene.instances.push_back(make_instance(placement));
+    for (std::string& warning : coincident_light_warnings(scene, lines))
+        scene.warnings.push_back(std::move(warning));
 }
 
 }  // namespace

@@ -61,6 +61,8 @@ struct Scene {
     std::vector<uvec3> triangles;           // three positions, counter-clockwise seen from the front
     std::vector<uint32_t> triangle_materials;
     std::vector<Material> materials;
+    std::vector<uvec2> double_sided;  // opaque triangles in the same place that face opposite ways: of the
+                                      // second, the corners run the other way round from the same first one
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<uint32_t> instance_meshes;  // one an instance

@@ -1,5 +1,7 @@
 #include "tracing/gpu_scene.h"
 
+#include <numeric>
+
 #include "scene/light_table.h"
 
 namespace lab {
@@ -39,6 +41,16 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
     if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);
     if (features.textures) add("texture coordinates", BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
     if (features.transforms) add("instances", BINDING_INSTANCES, scene.instances);
+    std::vector<uint32_t> other_sides;
+    if (features.double_sided) {
+        other_sides.resize(scene.triangles.size());
+        std::iota(other_sides.begin(), other_sides.end(), 0u);
+        for (const auto& sides : scene.double_sided) {
+            other_sides[sides.x] = sides.y;
+            other_sides[sides.y] = sides.x;
+        }
+        add("other sides of triangles", BINDING_OTHER_SIDES, other_sides);
+    }
     std::vector<LightTriangle> lights;
     if (features.area_lights && light_sampling == LightSampling::on) {
         lights = build_light_table(scene);

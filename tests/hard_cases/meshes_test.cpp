@@ -40,13 +40,13 @@ class ObjText {
 
 class BadMeshes : public OnEachBackend {
   protected:
-    // A floor under a grey sky and a lamp above it, with `add_bad_ones` in between; the material "bad"
-    // shines, too.
+    // A floor under a grey sky and a lamp above it, with `add_bad_ones` in between; the materials "bad" and
+    // "bright" shine, too.
     Scene load(const std::function<void(ObjText&)>& add_bad_ones) const {
         const TestFolder folder;
         folder.write("m.mtl",
                      "newmtl floor\nKd 0.8 0.8 0.8\nnewmtl lamp\nKd 0 0 0\nKe 4 4 4\n"
-                     "newmtl bad\nKd 0.5 0.5 0.5\nKe 2 2 2\n");
+                     "newmtl bad\nKd 0.5 0.5 0.5\nKe 2 2 2\nnewmtl bright\nKd 0.2 0.2 0.2\nKe 9 9 9\n");
         ObjText obj;
         obj.use("floor");
         obj.add({-2, 0, 2}, {2, 0, 2}, {2, 0, -2});
@@ -145,6 +145,33 @@ TEST_P(BadMeshes, DuplicatesShineOnce) {
     };
     expect_sane("duplicates", load([&](ObjText& obj) { add(obj, 4); }),
                 load([&](ObjText& obj) { add(obj, 1); }));
+}
+
+TEST_P(BadMeshes, TrianglesInTheSamePlaceThatFaceTheSameWayAreTheFirstThatShines) {
+    const auto add = [](ObjText& obj, const std::string& material, size_t first_corner) {
+        obj.use(material);
+        obj.add(corners[first_corner], corners[(first_corner + 1) % 3], corners[(first_corner + 2) % 3]);
+    };
+    expect_sane("another emission", load([&](ObjText& obj) { add(obj, "bad", 0), add(obj, "bright", 1); }),
+                load([&](ObjText& obj) { add(obj, "bad", 0); }));
+    expect_sane("no emission", load([&](ObjText& obj) { add(obj, "floor", 2), add(obj, "bright", 0); }),
+                load([&](ObjText& obj) { add(obj, "bright", 0); }));
+}
+
+// A double-sided lamp: each side is what it would be if there were a gap between them.
+TEST_P(BadMeshes, TrianglesInTheSamePlaceThatFaceOppositeWaysAreTwoSides) {
+    const dvec3 gap = 1e-3 * glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    const auto load_lamp = [&](const std::string& front, const std::string& back, const dvec3& distance) {
+        return load([&](ObjText& obj) {
+            obj.use(front);
+            obj.add(corners[0], corners[1], corners[2]);
+            obj.use(back);
+            obj.add(corners[1] - distance, corners[0] - distance, corners[2] - distance);
+        });
+    };
+    for (const auto& [front, back] : {std::pair{"bad", "bad"}, {"bright", "bad"}, {"floor", "bright"}})
+        expect_sane(std::string(front) + " and " + back, load_lamp(front, back, dvec3(0)),
+                    load_lamp(front, back, gap));
 }
 
 TEST_P(BadMeshes, NormalsThatAreZeroOrFaceAwayDoNoHarm) {

@@ -1,0 +1,198 @@
+#include "scene/coincident_lights.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "scene/features.h"
+
+namespace lab {
+namespace {
+
+using Corners = std::array<std::array<float, 3>, 3>;
+
+constexpr size_t max_searched_triangles = 10'000'000;
+
+const Material& material_of(const Scene& scene, uint32_t triangle) {
+    return scene.materials[scene.triangle_materials[triangle]];
+}
+
+bool is_emissive(const Scene& scene, uint32_t triangle) {
+    return material_of(scene, triangle).emission != vec3(0);
+}
+
+bool is_dielectric_triangle(const Scene& scene, uint32_t triangle) {
+    return material_of(scene, triangle).refractive_index > 0;
+}
+
+std::array<float, 3> corner_at(const Scene& scene, uint32_t triangle, int corner) {
+    const vec3 position = scene.positions[scene.triangles[triangle][corner]];
+    return {position.x, position.y, position.z};
+}
+
+// Lets the second triangle's corners run the other way round from the first one's first corner: then a point
+// has the same barycentric coordinates in both, exchanged.
+void align(Scene& scene, uint32_t first, uint32_t second) {
+    uvec3& corners = scene.triangles[second];
+    while (corner_at(scene, second, 0) != corner_at(scene, first, 0))
+        corners = uvec3(corners.y, corners.z, corners.x);
+}
+
+// A triangle in the place of an emissive one. The first of those that face the same way stays.
+struct Candidate {
+    Place place;
+    bool is_dark;
+    uint32_t triangle;
+    auto operator<=>(const Candidate&) const = default;
+};
+
+// An emissive triangle of an instance.
+struct PlacedLight {
+    Place place;
+    uint32_t instance;
+    uint32_t triangle;
+};
+
+}  // namespace
+
+Place get_place(const Scene& scene, const Instance& instance, uint32_t triangle) {
+    Place place;
+    for (int i = 0; i < 3; ++i) {
+        const vec3 corner =
+            instance.object_to_world * glm::vec4(scene.positions[scene.triangles[triangle][i]], 1);
+        place.corners[i] = {corner.x + 0.0f, corner.y + 0.0f, corner.z + 0.0f};  // no negative zeros
+    }
+    place.is_turned = glm::determinant(glm::dmat3(mat3(instance.object_to_world))) < 0;
+    const auto order = [&](size_t a, size_t b) {
+        if (place.corners[a] <= place.corners[b]) return;
+        std::swap(place.corners[a], place.corners[b]);
+        place.is_turned = !place.is_turned;
+    };
+    order(0, 1);
+    order(1, 2);
+    order(0, 1);
+    return place;
+}
+
+void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& lines) {
+    const Instance as_it_is{mat4x3(1), mat3(1)};
+    const uint32_t first = mesh.first_triangle, end = first + mesh.triangle_count - mesh.dielectric_count;
+    std::vector<Corners> lights;
+    for (uint32_t i = first; i < end; ++i)
+        if (is_emissive(scene, i)) lights.push_back(get_place(scene, as_it_is, i).corners);
+    if (lights.empty()) return;
+    std::sort(lights.begin(), lights.end());
+    std::vector<Candidate> places;
+    for (uint32_t i = first; i < end; ++i) {
+        const Place place = get_place(scene, as_it_is, i);
+        if (std::binary_search(lights.begin(), lights.end(), place.corners))
+            places.push_back({place, !is_emissive(scene, i), i});
+    }
+    std::sort(places.begin(), places.end());
+
+    std::vector<std::pair<uint32_t, uint32_t>> left_out;  // and what stays in its place
+    size_t kept = 0;
+    for (size_t i = 1; i < places.size(); ++i) {
+        if (places[i].place == places[kept].place)
+            left_out.emplace_back(places[i].triangle, places[kept].triangle);
+        else
+            places[++kept] = places[i];
+    }
+    places.resize(kept + 1);
+    std::sort(left_out.begin(), left_out.end());
+    if (!left_out.empty()) {
+        const auto [triangle, other] = left_out.front();
+        scene.warnings.push_back(
+            mesh.file + ":" + std::to_string(lines[triangle - first]) + ": lies in the same place as line " +
+            std::to_string(lines[other - first]) + ", faces the same way, and one of them emits: left out" +
+            (left_out.size() > 1 ? ", as " + std::to_string(left_out.size() - 1) + " others" : ""));
+    }
+
+    // Where the triangles that stay will be.
+    std::vector<uint32_t> moved(mesh.triangle_count);
+    auto next_left_out = left_out.begin();
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < mesh.triangle_count; ++i) {
+        moved[i] = first + count;
+        if (next_left_out != left_out.end() && next_left_out->first == first + i) {
+            ++next_left_out;
+            continue;
+        }
+        scene.triangles[first + count] = scene.triangles[first + i];
+        scene.triangle_materials[first + count] = scene.triangle_materials[first + i];
+        lines[count++] = lines[i];
+    }
+    mesh.triangle_count = count;
+    scene.triangles.resize(first + count);
+    scene.triangle_materials.resize(first + count);
+    lines.resize(count);
+
+    for (size_t i = 1; i < places.size(); ++i) {
+        if (places[i].place.corners != places[i - 1].place.corners) continue;
+        const uint32_t a = moved[places[i - 1].triangle - first], b = moved[places[i].triangle - first];
+        align(scene, a, b);
+        scene.double_sided.emplace_back(a, b);
+    }
+}
+
+std::vector<std::string> coincident_light_warnings(const Scene& scene, const std::vector<uint32_t>& lines) {
+    if (scene.instances.size() == 1 && !features_of(scene).dielectrics) return {};
+    std::vector<PlacedLight> lights;
+    Bounds bounds;
+    const auto for_each_triangle = [&](const auto& visit) {
+        size_t visited = 0;
+        for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
+            const Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
+            visited += mesh.triangle_count;
+            if (visited > max_searched_triangles) return;
+            for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
+                visit(instance, i);
+        }
+    };
+    for_each_triangle([&](uint32_t instance, uint32_t triangle) {
+        if (!is_emissive(scene, triangle)) return;
+        lights.push_back({get_place(scene, scene.instances[instance], triangle), instance, triangle});
+        for (const auto& [x, y, z] : lights.back().place.corners) bounds.grow({x, y, z});
+    });
+    // Any difference within a place shows in its first or its last light.
+    std::sort(lights.begin(), lights.end(), [&](const PlacedLight& a, const PlacedLight& b) {
+        const auto key = [&](const PlacedLight& light) {
+            const vec3 e = material_of(scene, light.triangle).emission;
+            return std::tuple(light.place, e.x, e.y, e.z, light.instance, light.triangle);
+        };
+        return key(a) < key(b);
+    });
+
+    std::vector<std::string> warnings;
+    const auto compare = [&](const PlacedLight& light, const Place& place, uint32_t instance,
+                             uint32_t triangle) {
+        const bool is_glass =
+            is_dielectric_triangle(scene, light.triangle) != is_dielectric_triangle(scene, triangle);
+        const bool is_same =
+            light.place.is_turned == place.is_turned &&
+            material_of(scene, light.triangle).emission == material_of(scene, triangle).emission;
+        if (!warnings.empty() || (instance == light.instance ? !is_glass : is_same && !is_glass)) return;
+        const auto name = [&](uint32_t owner, uint32_t index) {
+            return scene.meshes[scene.instance_meshes[owner]].file + ":" + std::to_string(lines[index]);
+        };
+        warnings.push_back(name(light.instance, light.triangle) + ": emits, and lies in the same place as " +
+                           name(instance, triangle) + (is_glass ? ", of glass" : ", of another instance") +
+                           ": rays find either by chance, so that chapters may disagree; move one of them");
+    };
+    for_each_triangle([&](uint32_t instance, uint32_t triangle) {
+        const vec3 corner = scene.instances[instance].object_to_world *
+                            glm::vec4(scene.positions[scene.triangles[triangle].x], 1);
+        if (glm::any(glm::lessThan(corner, bounds.low)) || glm::any(glm::greaterThan(corner, bounds.high)))
+            return;
+        const Place place = get_place(scene, scene.instances[instance], triangle);
+        const auto [begin, end] = std::equal_range(
+            lights.begin(), lights.end(), PlacedLight{place, 0, 0},
+            [](const PlacedLight& a, const PlacedLight& b) { return a.place.corners < b.place.corners; });
+        if (begin == end) return;
+        compare(*begin, place, instance, triangle);
+        compare(*(end - 1), place, instance, triangle);
+    });
+    return warnings;
+}
+
+}  // namespace lab
