@@ -52,7 +52,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         // Russian roulette with the survival probability q = min(max throughput, cap). The split's 1/s plays no part.
         if (path_length >= parameters.roulette_start) {
             float survival_probability = min(max_component(throughput), parameters.survival_cap);
-            if (get_random_numbers(seed).x >= survival_probability) continue;
+            if (!happens(survival_probability, seed)) continue;
             throughput /= survival_probability;
         }
 

@@ -27,3 +27,14 @@ vec2 get_random_numbers(inout uvec2 seed) {
     advance_random_state(seed);
     return vec2(seed >> 8u) * (1.0 / 16777216.0);
 }
+
+// Whether something of this probability happens: whether a random number of 64 bits is below it, exactly from 2^-40 on.
+// With 24 bits what has the probability 1e-9 would happen sixty times too often. If the probability is not a number it
+// happens, so that the sample is counted as invalid.
+bool happens(float probability, inout uvec2 seed) {
+    advance_random_state(seed);
+    if (!(probability < 1.0)) return true;
+    float scaled = 4294967296.0 * probability;
+    uint first = uint(scaled), second = uint(4294967296.0 * fract(scaled));
+    return seed.x < first || (seed.x == first && seed.y < second);
+}

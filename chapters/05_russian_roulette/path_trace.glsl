@@ -29,7 +29,7 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
         // Russian roulette with the survival probability q = min(max throughput, cap). The split's 1/s plays no part.
         if (path_length >= parameters.roulette_start) {
             float survival_probability = min(max_component(throughput), parameters.survival_cap);
-            if (get_random_numbers(seed).x >= survival_probability) break;
+            if (!happens(survival_probability, seed)) break;
             throughput /= survival_probability;
         }
 

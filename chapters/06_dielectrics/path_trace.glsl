@@ -21,15 +21,15 @@ float get_fresnel_reflectance(float cos_theta, float eta, float eta_cos_theta_t)
     return 0.5 * (r_s * r_s + r_p * r_p);
 }
 
-// The direction ω_k behind or before a smooth dielectric, reflected with probability F, for u uniform in [0,1).
-vec3 sample_dielectric(ShadingData s, vec3 out_direction, float u) {
+// The direction ω_k behind or before a smooth dielectric, reflected with probability F.
+vec3 sample_dielectric(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     float cos_theta = dot(s.normal, out_direction);
     float eta = s.relative_index;
     float contrast = (eta - 1.0) * (eta + 1.0);
     float square = contrast + cos_theta * cos_theta;
     // Without a refracted direction all light is reflected: total internal reflection.
     float eta_cos_theta_t = sqrt(max(square, 0.0));
-    if (square <= 0.0 || u < get_fresnel_reflectance(cos_theta, eta, eta_cos_theta_t))
+    if (square <= 0.0 || happens(get_fresnel_reflectance(cos_theta, eta, eta_cos_theta_t), seed))
         return 2.0 * cos_theta * s.normal - out_direction;
     // cos θ - η cos θ_t, once more without cancellation.
     float difference = -contrast / (cos_theta + eta_cos_theta_t);
@@ -58,15 +58,14 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
 
         // Sample ω_k: at a dielectric one of two directions, elsewhere with density n·ω_k / π with respect to solid
         // angle and the weight π ρ. A direction on opposite sides of the two normals carries nothing.
-        vec2 u = get_random_numbers(seed);
         vec3 omega;
         if (s.is_dielectric) {
-            omega = sample_dielectric(s, out_direction, u.x);
+            omega = sample_dielectric(s, out_direction, seed);
             bool is_refracted = dot(s.normal, omega) < 0.0;
             if (is_refracted != (dot(s.geometric_normal, omega) < 0.0)) break;
             if (is_refracted) radiance_scale /= s.relative_index * s.relative_index;
         } else {
-            omega = get_shading_space(s.normal) * sample_hemisphere(u);
+            omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
             if (!is_above_surface(s, omega)) break;
             throughput *= get_pi_brdf(s, omega, out_direction);
         }
@@ -74,7 +73,7 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
         // Russian roulette with the survival probability q = min(max throughput, cap). The split's 1/s plays no part.
         if (path_length >= parameters.roulette_start) {
             float survival_probability = min(max_component(throughput), parameters.survival_cap);
-            if (get_random_numbers(seed).x >= survival_probability) break;
+            if (!happens(survival_probability, seed)) break;
             throughput /= survival_probability;
         }
 

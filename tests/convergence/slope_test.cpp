@@ -21,7 +21,7 @@ void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings
     std::printf("  variance of a sample, from 1, 4, 16 ... samples:%s\n  slope %.4f; finds one off by %.3f\n",
                 slope.variances.c_str(), slope.value, finds);
     EXPECT_NEAR(slope.value, -0.5, slope_tolerance);
-    EXPECT_LT(finds, 0.07) << "the test is too weak, take larger images";
+    EXPECT_LT(slope.standard_error, largest_slope_error) << "the test is too weak, take larger images";
 }
 
 class Convergence : public testing::TestWithParam<std::string> {};

@@ -71,7 +71,11 @@ SplittingFit fit_variances(const std::vector<std::vector<double>>& variances_of_
     double chi_square = 0;
     for (size_t i = 0; i < splitting_factors.size(); ++i) {
         const double predicted = fit.outer.value + fit.inner / splitting_factors[i];
-        chi_square += std::pow((estimates[i].mean - predicted) / estimates[i].standard_error, 2);
+        // The standard error is an estimate, too: t² would exceed what a chi-square variable allows too
+        // often.
+        const Difference misfit{estimates[i].mean - predicted, estimates[i].standard_error,
+                                static_cast<double>(variances_of_factor[i].size() - 1)};
+        chi_square += misfit.z() * misfit.z();
     }
     fit.p_value = chi_square_p_value(chi_square, static_cast<double>(splitting_factors.size() - 2));
     fit.smallest_detectable_misfit = smallest_detectable_bias(worst_error, significance, power);

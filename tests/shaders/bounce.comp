@@ -27,6 +27,10 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= results.length()) return;
     set_surface(normal, material, max_path_length);
+#ifdef SURVIVAL_CAP
+    parameters.roulette_start = 1u;
+    parameters.survival_cap = SURVIVAL_CAP;
+#endif
     uvec2 seed = i < seeds.length() ? seeds[i] : random_start_state(i, 0u, key);
     vec3 radiance = path_trace(Ray(out_direction, -out_direction), seed);
     results[i] = Bounce(traced_direction, radiance.r, ray_count);

@@ -10,7 +10,7 @@ struct Input {
     vec3 out_direction;
     float eta;
     float eta_cos_theta_t;
-    float u;
+    uvec2 seed;
 };
 struct Result {
     float reflectance;
@@ -28,7 +28,8 @@ void main() {
     ShadingData s;
     s.normal = inputs[i].normal;
     s.relative_index = inputs[i].eta;
+    uvec2 seed = inputs[i].seed;
     float cos_theta = dot(s.normal, inputs[i].out_direction);
     results[i].reflectance = get_fresnel_reflectance(cos_theta, inputs[i].eta, inputs[i].eta_cos_theta_t);
-    results[i].direction = sample_dielectric(s, inputs[i].out_direction, inputs[i].u);
+    results[i].direction = sample_dielectric(s, inputs[i].out_direction, seed);
 }

@@ -11,11 +11,15 @@
 #include "support/device_arithmetic.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
+#include "support/pcg2d.h"
 
 namespace lab {
 namespace {
 
 using glm::dvec3;
+
+// The random state whose next number is u.
+RandomState seed_of(double u) { return state_before(static_cast<uint64_t>(std::max(u, 0.0) * 0x1p64)); }
 
 // As in fresnel.comp.
 struct DielectricInput {
@@ -23,7 +27,7 @@ struct DielectricInput {
     vec3 out_direction;
     float eta;
     float eta_cos_theta_t = 0;
-    float u = 0;
+    RandomState seed = seed_of(0);
 };
 struct DielectricResult {
     float reflectance;
@@ -83,20 +87,20 @@ vec3 direction_of_cosine(float cos_theta) {
     return {std::sqrt(1 - double{cos_theta} * double{cos_theta}), 0, cos_theta};
 }
 
-DielectricInput make_input(float cos_theta, float eta, float u = 0) {
+DielectricInput make_input(float cos_theta, float eta, double u = 0) {
     const long double eta_cos_theta_t = eta * Textbook(cos_theta, eta).cos_theta_t;
     return {.out_direction = direction_of_cosine(cos_theta),
             .eta = eta,
             .eta_cos_theta_t = static_cast<float>(eta_cos_theta_t),
-            .u = u};
+            .seed = seed_of(u)};
 }
 
 bool is_reflected(const DielectricInput& input, const DielectricResult& result) {
     return glm::dot(input.normal, result.direction) > 0;
 }
 
-// The largest number below 1 that the generator yields: it asks for refraction, if there is any.
-constexpr float refract = 1 - 0x1p-24f;
+// The largest number below 1: it asks for refraction, if there is any.
+constexpr double refract = 1 - 0x1p-53;
 
 TEST(Fresnel, IsTheTextbooksReflectance) {
     double worst_of_all = 0;
@@ -153,19 +157,21 @@ TEST(Dielectric, ReflectsIfTheRandomNumberIsBelowTheReflectance) {
     double widest = 0;
     for (const float eta : test_etas) {
         std::vector<DielectricInput> inputs;
+        std::vector<bool> is_total;
         for (const float cos_theta : test_cosines()) {
             const auto reflectance = static_cast<double>(Textbook(cos_theta, eta).reflectance);
             const double error = 1e-6 * reflectance + rounding_effect(cos_theta, eta);
             if (reflectance < 1) widest = std::max(widest, error);
-            inputs.push_back(make_input(cos_theta, eta, static_cast<float>(reflectance - error)));
-            inputs.push_back(make_input(cos_theta, eta, static_cast<float>(reflectance + error)));
+            inputs.push_back(make_input(cos_theta, eta, reflectance - error));
+            inputs.push_back(make_input(cos_theta, eta, std::min(reflectance + error, refract)));
+            is_total.push_back(reflectance + error >= 1);
         }
         const auto results = evaluate(inputs);
         for (size_t i = 0; i < inputs.size(); i += 2) {
             const float cos_theta = inputs[i].out_direction.z;
             const std::string what = std::to_string(eta) + ", cosine " + std::to_string(cos_theta);
             ASSERT_TRUE(eta == 1 || is_reflected(inputs[i], results[i])) << what;
-            ASSERT_TRUE(inputs[i + 1].u >= 1 || !is_reflected(inputs[i + 1], results[i + 1])) << what;
+            ASSERT_TRUE(is_total[i / 2] || !is_reflected(inputs[i + 1], results[i + 1])) << what;
         }
     }
     std::printf("  the threshold is that of the textbook up to %.2g, and 1e-6 where it is not critical\n",
@@ -179,7 +185,8 @@ TEST(Dielectric, ReflectsAsOftenAsTheReflectanceSays) {
     } cases[] = {{1, 1.5f}, {0.3f, 1.5f}, {0.8f, 1 / 1.5f}, {0.5f, 2.4f}};
     for (const auto& [cos_theta, eta] : cases) {
         std::vector<DielectricInput> inputs(1'000'000, make_input(cos_theta, eta));
-        for (DielectricInput& input : inputs) input.u = static_cast<float>(generator() >> 8) * 0x1p-24f;
+        for (DielectricInput& input : inputs)
+            input.seed = {static_cast<uint32_t>(generator()), static_cast<uint32_t>(generator())};
         const auto results = evaluate(inputs);
         std::vector<double> reflected;
         for (size_t i = 0; i < inputs.size(); ++i)
@@ -231,7 +238,7 @@ TEST(Dielectric, OfIndexOneIsTransparent) {
 }
 
 // Surfaces and directions in general position, for each index ratio.
-std::vector<DielectricInput> random_inputs(float u) {
+std::vector<DielectricInput> random_inputs(double u) {
     std::mt19937 generator(2);
     std::normal_distribution<double> normal;
     const auto direction = [&] {
@@ -243,7 +250,7 @@ std::vector<DielectricInput> random_inputs(float u) {
             const dvec3 n = direction();
             dvec3 out = direction();
             if (glm::dot(n, out) < 0) out = -out;
-            inputs.push_back({.normal = vec3(n), .out_direction = vec3(out), .eta = eta, .u = u});
+            inputs.push_back({.normal = vec3(n), .out_direction = vec3(out), .eta = eta, .seed = seed_of(u)});
         }
     return inputs;
 }

@@ -24,6 +24,10 @@ Result evaluate(Input i) {
     for (int dimension = 0; dimension < NUMBERS; ++dimension) result.numbers[dimension] = get_random_numbers(seed);
     return result;
 }
+#elif defined(HAPPENS)
+struct Input { uvec2 state; float probability; };
+#define Result uint
+uint evaluate(Input i) { return happens(i.probability, i.state) ? 1u : 0u; }
 #else
 // Sum over an image of `pixels` pixels with a sample each, and sum of squares, of a function of four random numbers.
 struct Input { uint pixels; uint sample_index; uvec2 key; };

@@ -1,5 +1,7 @@
 #include "support/bounce.h"
 
+#include <cstdio>
+
 #include "files/project_folder.h"
 #include "rendering/renderer.h"
 
@@ -7,7 +9,8 @@ namespace lab {
 namespace {
 
 std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surface, uvec2 key,
-                                const std::vector<RandomState>& seeds, size_t count, const Device& device) {
+                                const std::vector<RandomState>& seeds, size_t count, const Device& device,
+                                std::vector<std::string> defines = {}) {
     struct Header {
         Surface surface;
         uint32_t max_path_length;
@@ -18,7 +21,7 @@ std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surfa
                seed_bytes = std::as_bytes(std::span(seeds));
     std::vector<std::byte> inputs(header_bytes.begin(), header_bytes.end());
     inputs.insert(inputs.end(), seed_bytes.begin(), seed_bytes.end());
-    TestShader shader{.name = "bounce.comp"};
+    TestShader shader{.name = "bounce.comp", .defines = std::move(defines)};
     shader.named_includes = {
         {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
     if (surface.material.specular_albedo != vec3(0)) shader.defines.emplace_back("FEATURE_SPECULAR");
@@ -46,6 +49,14 @@ std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surfac
     std::vector<RandomState> seeds;
     for (const auto& u : numbers) seeds.push_back(state_before(u));
     return run_bounces(chapter, surface, {0, 0}, seeds, seeds.size(), device);
+}
+
+std::vector<Bounce> bounces_with_roulette(const std::string& chapter, float survival_probability,
+                                          const std::vector<RandomState>& seeds) {
+    char define[40];
+    std::snprintf(define, sizeof define, "SURVIVAL_CAP %.9g", survival_probability);
+    return run_bounces(chapter, {.material = white_material()}, {0, 0}, seeds, seeds.size(), test_device(),
+                       {define});
 }
 
 }  // namespace lab

@@ -34,4 +34,9 @@ std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surfac
                                const std::vector<std::array<double, 2>>& numbers,
                                const Device& device = test_device());
 
+// Bounces at white_material() that Russian roulette with this survival probability follows, from random
+// states.
+std::vector<Bounce> bounces_with_roulette(const std::string& chapter, float survival_probability,
+                                          const std::vector<RandomState>& seeds);
+
 }  // namespace lab

@@ -86,10 +86,7 @@ void expect_distribution(const std::string& what, std::span<const uint64_t> coun
 void expect_uniform(const std::string& what, const std::vector<double>& numbers, double largest_distance) {
     const double p_value = kolmogorov_smirnov_p_value(numbers);
     record_p_value(what, p_value);
-    // The distance whose asymptotic p-value is the significance, plus as much as it varies.
-    const double count = static_cast<double>(numbers.size());
-    const double distance =
-        (std::sqrt(-0.5 * std::log(0.5 * significance)) + 0.5 * normal_quantile(power)) / std::sqrt(count);
+    const double distance = kolmogorov_smirnov_detectable_distance(numbers.size(), significance, power);
     std::printf("  %s: Kolmogorov-Smirnov p = %.2g; finds a distribution that is off by %.3f %%\n",
                 what.c_str(), p_value, 100 * distance);
     record_smallest_error(distance);

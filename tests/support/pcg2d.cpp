@@ -61,4 +61,8 @@ RandomState state_before(std::array<double, 2> u) {
         {static_cast<uint32_t>(u[0] * resolution) << 8, static_cast<uint32_t>(u[1] * resolution) << 8});
 }
 
+RandomState state_before(uint64_t bits) {
+    return previous_state({static_cast<uint32_t>(bits >> 32), static_cast<uint32_t>(bits)});
+}
+
 }  // namespace lab

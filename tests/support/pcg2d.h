@@ -20,5 +20,7 @@ RandomState pixel_and_sample(RandomState start_state, RandomState key);
 std::array<double, 2> numbers_of_state(RandomState state);
 // A state after which the next two numbers are the multiples of 2^-24 just below or at u in [0,1).
 RandomState state_before(std::array<double, 2> u);
+// A state after which the next 64 bits are this number.
+RandomState state_before(uint64_t bits);
 
 }  // namespace lab
