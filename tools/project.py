@@ -25,6 +25,11 @@ def chapter_named(name):
     return next(folder for folder in CHAPTERS.values() if folder[3:] == name)
 
 
+def description(folder):
+    """What a chapter says of itself."""
+    return read_json(ROOT / "chapters" / folder / "chapter.json")
+
+
 # ---------------------------------------------------------------------------------------------- command lines
 class Parser(argparse.ArgumentParser):
     """`name` is the command's, `description` the text above its options."""

@@ -58,7 +58,7 @@ class CheckTest(ProgramTest):
         program.chmod(0o755)
         seeds = []
         for seed in (0, 1):
-            self.check(3, "--runs", 2 + seed, "--samples", 1, "--backend", "compute", "--seed", seed,
+            self.check(3, "--runs", 2 + seed, "--samples", 1, "--backend", "compute", "--seed", seed, "--time-limit", 100,
                        environment={"LAB_BINARIES": str(program.parent)})
             notes = (self.folder / "notes").read_text()
             (self.folder / "notes").unlink()

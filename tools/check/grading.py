@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from project import BINARIES, CHAPTERS, ROOT, UserError, read_json, show_progress
+from project import BINARIES, CHAPTERS, ROOT, UserError, description, read_json, show_progress
 from references.images import find_references, read_reference, read_rgb
 from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
@@ -27,7 +27,9 @@ SCENES = {
     6: (16, [*ROOM, "check_glass_8"]),
 }
 # Roulette from the first bounce on and with a cap that matters: otherwise both hardly show.
-OPTIONS = {chapter: ["--roulette-start", "1", "--survival-cap", "0.35"] if chapter >= 5 else [] for chapter in SCENES}
+ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.35"]
+OPTIONS = {number: ROULETTE if "--roulette-start" in description(CHAPTERS[number]).get("options", []) else []
+           for number in SCENES if number in CHAPTERS}
 TILE = 16  # pixels
 FALSE_ALARMS = 0.001  # of all checks of correct shaders
 TOO_MUCH = 1.5  # times the error of a sample or its rays

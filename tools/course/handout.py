@@ -11,7 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, number, read_json, run_program, show_progress
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_program, show_progress
 
 HERE = Path(__file__).parent
 EXERCISES = read_json(HERE / "exercises.json")
@@ -64,7 +64,7 @@ def write_handout(chapter, folder):
     for name in included(later) - included(kept):
         (folder / "shaders" / name).unlink()
     # Splitting at every hit repeats the estimators of the chapters that have it.
-    if any("split_every_hit" in read_json(ROOT / "chapters" / name / "chapter.json") for n, name in CHAPTERS.items() if n >= chapter):
+    if any("split_every_hit" in description(name) for n, name in CHAPTERS.items() if n >= chapter):
         (folder / "shaders/path_trace_every_hit.glsl").unlink()
     for exercise in exercises(chapter):
         shader = folder / exercise["file"]

@@ -1,5 +1,6 @@
 """Reads .obj and .mtl files in Python, for tools that hand them to other renderers: see scenes.py."""
 import math
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -117,7 +118,7 @@ class ObjFile:
     def __init__(self, path, files):
         self.path, self.files = path, files
         self.materials = []  # of the triangles
-        self._available = {}
+        self._available, self._libraries, self._is_noted = {}, set(), False
         positions, texture_coordinates, normals, corners = [], [], [], []
         material = grey = None
         for number, line in enumerate(files.read_text(path).splitlines(), 1):
@@ -133,9 +134,9 @@ class ObjFile:
                 self._read_materials(name_after_keyword(line, where), where)
             elif keyword == "usemtl":
                 name = name_after_keyword(line, where)
-                if self._available and name not in self._available:
-                    raise UserError(f"{where}: there is no material '{name}' in the material files named so far")
                 material = self._available.get(name)
+                if material is None:
+                    self._note_missing(f"{where}: there is no material '{name}'")
             elif keyword == "f":
                 counts = (len(positions), len(texture_coordinates), len(normals))
                 face = [self._corner(word, counts, where) for word in words[1:]]
@@ -155,9 +156,17 @@ class ObjFile:
         folder = self.path.parent
         for name in [names.replace("\\", ""), *names.split()]:
             if (folder / name).is_file():
-                self._available = {**read_mtl(folder / name, folder, self.files), **self._available}
+                if folder / name not in self._libraries:
+                    self._libraries.add(folder / name)
+                    self._available = {**read_mtl(folder / name, folder, self.files), **self._available}
                 return
-        raise UserError(f"{where}: there is no file '{names}' in {folder}")
+        self._note_missing(f"{where}: there is no material file '{names}'")
+
+    def _note_missing(self, what):
+        """The first thing that is missing is named, as the chapters do."""
+        if not self._is_noted:
+            print(f"note: {what}: faces without a material are drawn in grey", file=sys.stderr)
+        self._is_noted = True
 
     @staticmethod
     def _corner(word, counts, where):
