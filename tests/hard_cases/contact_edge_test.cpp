@@ -70,7 +70,10 @@ TEST(ContactEdge, IsFlaggedByTheSlopeOfTheError) {
         RecordProperty(has_edge ? "slope_with_the_edge" : "slope_without", std::to_string(slope.value));
         const bool is_flagged = std::abs(slope.value + 0.5) > slope_tolerance;
         EXPECT_EQ(is_flagged, has_edge) << slope.value;
-        EXPECT_LT(slope.standard_error, largest_slope_error) << "the test is too weak, take larger images";
+        if (!has_edge) {
+            EXPECT_LT(slope.standard_error, largest_slope_error)
+                << "the test is too weak, take larger images";
+        }
     }
 }
 

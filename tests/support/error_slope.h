@@ -12,11 +12,10 @@ struct ErrorSlope {
     std::string variances;  // of a sample as 1, 4, 16, ... samples show it, for messages
 };
 
-// How far from -1/2 a slope may be, and how exact it has to be known for that: the tolerance is six standard
-// errors, so that a false alarm is less probable than in other expectations, and a slope that is off by 0.07
-// is found with probability 0.99.
-inline constexpr double slope_tolerance = 0.05;
-inline constexpr double largest_slope_error = slope_tolerance / 6;
+// How far from -1/2 a slope may be, and how exact it has to be known to be held to that: the tolerance is
+// nearly six standard errors, so that a false alarm is less probable than in other expectations, and a slope
+// that is off by 0.07 is found with probability 0.99.
+inline constexpr double slope_tolerance = 0.05, largest_slope_error = 0.0085;
 
 // Renders with 1, 4, 16, ... samples up to max_samples, twice each with seeds of their own that follow
 // settings.seed. The error is the root mean square over the pixels of a group, averaged over groups by its
