@@ -1,4 +1,6 @@
 // Looking inside the render: the live verdict, the path at a pixel and the views of tiles.
+#include <thread>
+
 #include "files/project_folder.h"
 #include "viewer_fixture.h"
 
@@ -166,6 +168,7 @@ TEST_F(InsideTest, AShaderThatCannotBeRecordedDoesNotSpeakForTheNext) {
     inspection.select({0, 0});
     inspection.update(session(), 0.01);
     ASSERT_TRUE(inspection.is_building());
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // until it has failed
     show(good);
     const auto start = Clock::now();
     while (!inspection.path() && Clock::now() - start < std::chrono::seconds(30))
