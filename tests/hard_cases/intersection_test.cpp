@@ -106,14 +106,15 @@ TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
         {"slender_only_in_the_mesh", scale(100, 1, 1), scale(0.01f, 1, 1)},
         {"slender_only_in_the_mesh_turned", turn(0.7f) * scale(1, 1e3f, 1), scale(1, 1e-3f, 1)},
     };
+    const uint32_t size = GetParam() == Backend::compute ? 320 : 160;  // drivers' trees of them are slow
     for (const auto& [name, object_to_world, before] : cases) {
-        std::vector<vec3> corners = Random(2).triangles(1000);
+        std::vector<vec3> corners = Random(2).triangles(200);
         for (vec3& corner : corners) corner = before * corner;
         const glm::dvec3 total = probe_total(triangle_scene(corners, object_to_world),
-                                             settings("reintersect", 320, runs_all_tests() ? 4 : 1));
+                                             settings("reintersect", size, runs_all_tests() ? 4 : 1));
         RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
-        EXPECT_GE(total.g, 1e5) << name;
+        EXPECT_GE(total.g, 0.9 * size * size) << name;
         EXPECT_EQ(total.r, 0) << name;
     }
 }

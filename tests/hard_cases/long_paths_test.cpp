@@ -71,6 +71,7 @@ TEST_P(PathCases, WhiteConvexObjectVanishesBeforeAWhiteSky) {
     for (const vec3& scale : {vec3(1), vec3(100, 1, 1), vec3(1000, 1, 0.5f)})
         for (const std::string& chapter : all_chapters) {
             if (chapter == all_chapters.front()) continue;
+            if (scale != vec3(1) && chapter != all_chapters[1]) continue;  // bounces are the same in all
             set_transform(scene, mat4x3(glm::scale(glm::mat4(1), scale)));
             RenderSettings settings = make_settings(GetParam(), chapter, 1000);
             settings.samples = 256;
