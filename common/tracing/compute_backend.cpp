@@ -13,36 +13,21 @@ Bvh build(const Device& device, const Scene& scene) {
     return build_bvh(world_triangles(scene));
 }
 
-class ComputeBackend : public AccelerationStructure {
+class ComputeBackend : public SceneTree<GpuBvh, make_compute_tracer> {
   public:
-    ComputeBackend(const Device& device, const GpuScene& scene)
-        : device_(&device), scene_(&scene), bvh_(device, build(device, scene.scene())) {}
+    using SceneTree::SceneTree;
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
-        ShaderSource source = shader_source("render.comp", ShaderStage::compute, *scene_, estimator);
-        for (const auto& define : bvh_.defines()) source.defines.push_back(define);
+        ShaderSource source = shader_source("render.comp", ShaderStage::compute, scene(), estimator);
+        for (const auto& define : tree().defines()) source.defines.push_back(define);
         return {source};
     }
-
-    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
-                                        std::span<const Binding> bindings) const override {
-        return make_compute_tracer(*device_, shaders(estimator).front(),
-                                   join({bindings, scene_->bindings(), bvh_.bindings()}));
-    }
-
-    size_t bytes() const override { return bvh_.bytes(); }
-    double build_seconds() const override { return bvh_.build_seconds(); }
-
-  private:
-    const Device* device_;
-    const GpuScene* scene_;
-    GpuBvh bvh_;
 };
 
 }  // namespace
 
 std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& device, const GpuScene& scene) {
-    return std::make_unique<ComputeBackend>(device, scene);
+    return std::make_unique<ComputeBackend>(device, scene, GpuBvh(device, build(device, scene.scene())));
 }
 
 }  // namespace lab

@@ -132,45 +132,35 @@ class PipelineTracer : public Tracer {
     vk::StridedDeviceAddressRegionKHR ray_generation_records_, miss_records_, hit_records_;
 };
 
-class PipelineBackend : public AccelerationStructure {
+class PipelineBackend : public SceneTree<HardwareBvh, make_pipeline_tracer> {
   public:
-    PipelineBackend(const Device& device, const GpuScene& scene)
-        : device_(&device), scene_(&scene), bvh_(device, scene) {}
+    using SceneTree::SceneTree;
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
         std::vector<ShaderSource> sources;
         const auto add = [&](const char* name, ShaderStage stage) {
-            sources.push_back(shader_source(name, stage, *scene_, estimator));
+            sources.push_back(shader_source(name, stage, scene(), estimator));
         };
         add("render.rgen", ShaderStage::ray_generation);
         add("trace_ray/miss.rmiss", ShaderStage::miss);
         add("trace_ray/shadow_miss.rmiss", ShaderStage::miss);
-        for (const uint32_t material_class : material_classes(scene_->scene())) {
+        for (const uint32_t material_class : material_classes(scene().scene())) {
             add("trace_ray/closest_hit.rchit", ShaderStage::closest_hit);
             sources.back().defines.push_back("MATERIAL_CLASS " + std::to_string(material_class) + "u");
         }
         return sources;
     }
-
-    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
-                                        std::span<const Binding> bindings) const override {
-        return std::make_unique<PipelineTracer>(*device_, shaders(estimator),
-                                                join({bindings, scene_->bindings(), bvh_.bindings()}));
-    }
-
-    size_t bytes() const override { return bvh_.bytes(); }
-    double build_seconds() const override { return bvh_.build_seconds(); }
-
-  private:
-    const Device* device_;
-    const GpuScene* scene_;
-    HardwareBvh bvh_;
 };
 
 }  // namespace
 
+std::unique_ptr<Tracer> make_pipeline_tracer(const Device& device, const std::vector<ShaderSource>& shaders,
+                                             const std::vector<Binding>& bindings) {
+    return std::make_unique<PipelineTracer>(device, shaders, bindings);
+}
+
 std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene) {
-    return std::make_unique<PipelineBackend>(device, scene);
+    return std::make_unique<PipelineBackend>(device, scene, HardwareBvh(device, scene));
 }
 
 }  // namespace lab

@@ -5,36 +5,21 @@
 namespace lab {
 namespace {
 
-class QueryBackend : public AccelerationStructure {
+class QueryBackend : public SceneTree<HardwareBvh, make_compute_tracer> {
   public:
-    QueryBackend(const Device& device, const GpuScene& scene)
-        : device_(&device), scene_(&scene), bvh_(device, scene) {}
+    using SceneTree::SceneTree;
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
-        ShaderSource source = shader_source("render.comp", ShaderStage::compute, *scene_, estimator);
+        ShaderSource source = shader_source("render.comp", ShaderStage::compute, scene(), estimator);
         source.defines.emplace_back("BACKEND_QUERY");
         return {source};
     }
-
-    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
-                                        std::span<const Binding> bindings) const override {
-        return make_compute_tracer(*device_, shaders(estimator).front(),
-                                   join({bindings, scene_->bindings(), bvh_.bindings()}));
-    }
-
-    size_t bytes() const override { return bvh_.bytes(); }
-    double build_seconds() const override { return bvh_.build_seconds(); }
-
-  private:
-    const Device* device_;
-    const GpuScene* scene_;
-    HardwareBvh bvh_;
 };
 
 }  // namespace
 
 std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device, const GpuScene& scene) {
-    return std::make_unique<QueryBackend>(device, scene);
+    return std::make_unique<QueryBackend>(device, scene, HardwareBvh(device, scene));
 }
 
 }  // namespace lab

@@ -73,15 +73,9 @@ uint64_t estimator_hash(const Estimator& estimator) {
     return hash;
 }
 
-std::vector<Binding> join(std::initializer_list<std::span<const Binding>> lists) {
-    std::vector<Binding> all;
-    for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
-    return all;
-}
-
-std::unique_ptr<Tracer> make_compute_tracer(const Device& device, const ShaderSource& source,
-                                            std::span<const Binding> bindings) {
-    return std::make_unique<ComputeTracer>(device, source, bindings);
+std::unique_ptr<Tracer> make_compute_tracer(const Device& device, const std::vector<ShaderSource>& shaders,
+                                            const std::vector<Binding>& bindings) {
+    return std::make_unique<ComputeTracer>(device, shaders.front(), bindings);
 }
 
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,

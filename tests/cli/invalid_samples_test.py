@@ -61,10 +61,10 @@ class Poison(RenderTest):
 
     def test_resuming_and_merging_keep_the_count(self):
         self.render_to("part", program=self.poisoned, samples=6)
-        resumed, text = self.render_to("resumed", "--resume=part.exr")
+        resumed, text = self.render_to("resumed", "--resume=part.exr", program=self.poisoned)
         self.assertEqual(resumed.text("invalid_samples"), "1")
         self.assertRegex(text, r"(?m)^invalid +1 of")
-        self.render_to("rest", "--first-sample=6", samples=3)
+        self.render_to("rest", "--first-sample=6", program=self.poisoned, samples=3)
         self.render("part.exr", "rest.exr", "-o", "merged.exr", program=MERGE)
         merged = Exr(self.folder / "merged.exr")
         self.assertEqual((merged.text("invalid_samples"), merged.text("samples")), ("1", "9"))
