@@ -13,6 +13,7 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Lock
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
@@ -103,7 +104,7 @@ def confusion(workshop):
         record["other_scenes"] = {"levels": levels, "signatures": signatures}
         write_json(RECORD, record)
     record = json.loads(json.dumps(record))  # numbers of chapters as keys become text, as in a record that was read
-    others, known = record["other_scenes"], read_json(SIGNATURES)
+    others, known, lock = record["other_scenes"], read_json(SIGNATURES), Lock()  # jobs share the record
 
     def try_naming(item):
         key, (chapter, name, text) = item
@@ -111,8 +112,9 @@ def confusion(workshop):
         candidates = read_signatures((others["signatures"] if place else known)[str(chapter)])
         result = workshop.judge(chapter, text, TRYING, *place)
         names = [] if result["verdict"] == "correct" else rank(signature(result), candidates)
-        record["trials"][key] = {"mistake": name, "verdict": result["verdict"], "named": names[:3]}
-        write_json(RECORD, record)
+        with lock:
+            record["trials"][key] = {"mistake": name, "verdict": result["verdict"], "named": names[:3]}
+            write_json(RECORD, record)
 
     workshop.map("naming", try_naming, [item for item in open_trials.items() if item[0] not in record["trials"]])
     del record["other_scenes"]  # no more use
