@@ -38,6 +38,10 @@ class LikelyMistakeTest(unittest.TestCase):
             for name, entry in entries.items():
                 self.assertIn(entry["slide"], titles, name)
 
+    def test_the_confusion_matrix_was_measured_with_the_settings_of_the_code(self):
+        record = json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
+        self.assertEqual(record["settings"], learn.settings(), "stale: measure anew with tests/mistakes/learn.py confusion")
+
     def test_the_confusion_matrix_has_every_trial_and_four_fifths_are_named_right(self):
         record = json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
         self.assertEqual(set(record["trials"]), set(trials()), "tests/mistakes/learn.py confusion")
