@@ -10,7 +10,6 @@
 #include <fstream>
 
 #include "error.h"
-#include "image/image.h"
 
 namespace lab {
 namespace {

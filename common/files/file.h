@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lab {
 
@@ -19,6 +20,10 @@ constexpr uint64_t memory_limit(uint64_t file_size) { return 16 * file_size + (u
 // Writes a temporary file in the same folder and renames it. UserError, leaving an older file untouched, if
 // any step fails (no such folder, no permission, disk full).
 void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+// Throws a UserError if a file with this name cannot be written later or has none of the endings; creates the
+// folders on the way. An existing file keeps its contents.
+void check_writable(const std::filesystem::path& file, const std::vector<std::string>& endings);
 
 // Text from a file, fit for a terminal: with '?' in place of control characters.
 std::string printable(std::string_view text);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "files/file.h"
+
 namespace lab {
 
 // Linear RGB, row by row from the top; pixels has 3 * width * height numbers.
@@ -53,10 +55,8 @@ void write_jpg(const std::filesystem::path& file, const Texture& image);
 // The endings of image files that can be written.
 inline const std::vector<std::string> image_endings{".exr", ".hdr", ".png", ".jpg"};
 
-// Throws a UserError if a file with this name cannot be written later or has none of the endings; creates the
-// folders on the way. An existing file keeps its contents.
-void check_writable(const std::filesystem::path& file,
-                    const std::vector<std::string>& endings = image_endings);
+// check_writable() of files/file.h for an image.
+inline void check_writable(const std::filesystem::path& file) { check_writable(file, image_endings); }
 
 // The sRGB transfer function (IEC 61966-2-1) from linear [0,1] to encoded [0,1] and back; clamps.
 float linear_to_srgb(float linear);
