@@ -65,6 +65,7 @@ struct Material {
     vec3 specular_albedo;     // Ks: zero unless the scene asks for `specular`
     float refractive_index;   // Ni of a smooth dielectric (d < 1), or 0 for an opaque surface
     vec3 absorption;          // sigma = -ln Tf per unit of world length inside a dielectric
+    float light_density;      // with respect to area, of a light sample on it; set by build_light_table()
 };
 
 // One placement of a mesh in the world.

@@ -5,6 +5,7 @@ struct LightPoint {
     vec3 position_in_front;  // y, moved off the light to its front by a bound of the rounding errors
     vec3 normal;             // of the triangle, unit length, on the front
     vec3 emission;           // L_e towards the front
+    float light_density;     // of y with respect to area; with it weights are computed, see ShadingData
 };
 
 #ifdef FEATURE_LIGHT_SAMPLING
@@ -28,14 +29,22 @@ LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
     hit.triangle = light.triangle;
     hit.barycentrics = barycentrics;
     SurfacePoint point = get_surface_point(hit);
+    Material material = materials[triangle_materials[light.triangle]];
     return LightPoint(point.position, point.position + point.offset * point.geometric_normal, point.geometric_normal,
-                      materials[triangle_materials[light.triangle]].emission);
+                      material.emission, material.light_density);
 }
 #else
 // Nothing emits, or --light-sampling off: the estimators leave out what these would be called for.
 const bool LIGHT_SAMPLING = false;
 LightTriangle choose_light_triangle(inout uvec2 seed) { return LightTriangle(0u, 0u, 0u, 0u, 0.0); }
 LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
-    return LightPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    return LightPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 }
+#endif
+
+// Whether light that a bounce finds counts, where light samples could have found it: not so with --strategy light.
+#ifdef ONLY_LIGHT_SAMPLES
+const bool BOUNCES_FIND_LIGHTS = false;
+#else
+const bool BOUNCES_FIND_LIGHTS = true;
 #endif

@@ -6,6 +6,7 @@ struct ShadingData {
     vec3 geometric_normal;  // of the triangle, unit length, on the side that the ray came from
     float offset;           // how far rays must start off the surface in order not to hit it again, in world units
     vec3 emission;          // L_e(x_k, -ω_{k-1})
+    float light_density;    // of light sampling at x_k with respect to area, where it emits; the same number as y's
     vec3 diffuse_albedo;    // in [0,1]
 #ifdef FEATURE_SPECULAR
     vec3 specular_albedo;  // in [0,1]
@@ -129,6 +130,10 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
 #endif
     // Emitters emit from the front; surfaces reflect on both sides, so from here on both normals face the ray's origin.
     s.emission = is_front ? material.emission : vec3(0.0);
+    s.light_density = 0.0;
+#ifdef FEATURE_LIGHT_SAMPLING
+    if (is_front) s.light_density = material.light_density;
+#endif
     if (!is_front) {
         s.geometric_normal = -s.geometric_normal;
         s.normal = -s.normal;

@@ -15,7 +15,8 @@ void record_device(RenderJob& job, const std::string& device, const std::string&
 
 BuildStage first_difference(const Options& before, const Options& options) {
     if (before.scene != options.scene) return BuildStage::scene;
-    if (before.estimator.light_sampling != options.estimator.light_sampling) return BuildStage::gpu_scene;
+    const auto samples_lights = [](const Options& o) { return o.estimator.strategy != Strategy::brdf; };
+    if (samples_lights(before) != samples_lights(options)) return BuildStage::gpu_scene;
     if (before.estimator != options.estimator || before.image != options.image) return BuildStage::renderer;
     return BuildStage::nothing;
 }
@@ -35,7 +36,8 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     // Before the scene takes time and memory.
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
-        const bool samples_lights = chapter.light_sampling && wanted.options.estimator.light_sampling;
+        const bool samples_lights =
+            chapter.light_sampling && wanted.options.estimator.strategy != Strategy::brdf;
         build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene,
                                                      samples_lights ? LightSampling::on : LightSampling::off);
         build.backend =

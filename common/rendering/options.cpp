@@ -113,12 +113,27 @@ void add_device_options(CLI::App& app, Options& options) {
 
 // What only some chapters have.
 void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options) {
+    CLI::Option* light_sampling = nullptr;
     if (chapter.light_sampling)
+        light_sampling = app.add_option_function<std::string>(
+                                "--light-sampling",
+                                [&](const std::string& value) {
+                                    options.estimator.strategy =
+                                        value == "on" ? Strategy::both : Strategy::brdf;
+                                },
+                                "on: sample points on lights; off: count emission where paths find it")
+                             ->check(CLI::IsMember({"on", "off"}));
+    if (chapter.strategies)
         app.add_option_function<std::string>(
-               "--light-sampling",
-               [&](const std::string& value) { options.estimator.light_sampling = value == "on"; },
-               "on: sample points on lights; off: count emission where paths find it")
-            ->check(CLI::IsMember({"on", "off"}));
+               "--strategy",
+               [&](const std::string& value) {
+                   options.estimator.strategy = value == "light"  ? Strategy::light
+                                                : value == "brdf" ? Strategy::brdf
+                                                                  : Strategy::both;
+               },
+               "What finds light: light samples, bounces (as with --light-sampling off) or both")
+            ->check(CLI::IsMember({"both", "light", "brdf"}))
+            ->excludes(light_sampling);
     if (chapter.split_every_hit)
         app.add_flag("--split-every-hit", options.estimator.split_every_hit,
                      "Split at every hit, not only at the first");

@@ -31,9 +31,13 @@ struct SceneOptions {
     bool operator==(const SceneOptions&) const = default;
 };
 
+// What finds light on emissive triangles: light samples and bounces as the chapter has them, or one of the
+// two.
+enum class Strategy { both, light, brdf };
+
 // What the chapter's estimator is compiled as.
 struct EstimatorOptions {
-    bool light_sampling = true;
+    Strategy strategy = Strategy::both;  // brdf is --light-sampling off
     bool split_every_hit = false;
     bool operator==(const EstimatorOptions&) const = default;
 };

@@ -115,7 +115,8 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     if (parameters.only_path_length >= 0) text << " --only-path-length " << parameters.only_path_length;
     for (size_t i = 0; i < chapter.options.size(); ++i)
         text << ' ' << chapter.options[i].name << ' ' << value_of(chapter, i, options);
-    if (!options.estimator.light_sampling) text << " --light-sampling off";
+    if (options.estimator.strategy == Strategy::brdf) text << " --light-sampling off";
+    if (options.estimator.strategy == Strategy::light) text << " --strategy light";
     if (options.estimator.split_every_hit) text << " --split-every-hit";
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
@@ -130,7 +131,10 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
     if (options.image.view) return {shared / "view.glsl", {options.image.view->define}};
     if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};
-    return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
+    Estimator estimator{project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
+    if (chapter.strategies && options.estimator.strategy == Strategy::light)
+        estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    return estimator;
 }
 
 std::string safety_limit_text(const Scene& scene) {

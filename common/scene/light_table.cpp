@@ -1,6 +1,7 @@
 #include "scene/light_table.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "error.h"
@@ -41,7 +42,7 @@ void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& ligh
 
 }  // namespace
 
-std::vector<LightTriangle> build_light_table(const Scene& scene) {
+LightTable build_light_table(const Scene& scene) {
     const auto luminance_of = [&](uint32_t triangle) {
         return get_luminance(scene.materials[scene.triangle_materials[triangle]].emission);
     };
@@ -58,25 +59,29 @@ std::vector<LightTriangle> build_light_table(const Scene& scene) {
             scene.file.string() + ": its instances have " + std::to_string(count) +
             " emissive triangles together, more than 2^24: remove instances or use simpler lights");
 
-    std::vector<LightTriangle> lights;
+    LightTable table{.triangles = {}, .materials = scene.materials};
+    std::vector<LightTriangle>& lights = table.triangles;
     lights.reserve(count);
     for (uint32_t instance = 0; instance < scene.instances.size(); ++instance)
         for (const uint32_t triangle : emissive_triangles[scene.instance_meshes[instance]])
             lights.push_back({instance, triangle, 0, 0, 0});
     keep_one_in_each_place(scene, lights);
-    if (lights.empty()) return {};
+    if (lights.empty()) return table;
     std::vector<double> areas, weights;
     for (const LightTriangle& light : lights) {
         areas.push_back(get_world_area(scene, light.instance, scene.triangles[light.triangle]));
         weights.push_back(areas.back() * luminance_of(light.triangle));
     }
-    const AliasTable table = build_alias_table(weights);
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (Material& material : table.materials)
+        material.light_density = static_cast<float>(get_luminance(material.emission) / sum);
+    const AliasTable alias_table = build_alias_table(weights);
     for (size_t i = 0; i < lights.size(); ++i) {
-        lights[i].threshold = table.entries[i].threshold;
-        lights[i].alias = table.entries[i].alias;
-        lights[i].inverse_density = static_cast<float>(areas[i] / table.probabilities[i]);
+        lights[i].threshold = alias_table.entries[i].threshold;
+        lights[i].alias = alias_table.entries[i].alias;
+        lights[i].inverse_density = static_cast<float>(areas[i] / alias_table.probabilities[i]);
     }
-    return lights;
+    return table;
 }
 
 }  // namespace lab

@@ -6,8 +6,15 @@
 
 namespace lab {
 
-// Chosen with probability proportional to area times luminance of the emission. Empty if nothing emits.
+struct LightTable {
+    // Chosen with probability proportional to area times luminance of the emission. Empty if nothing emits.
+    std::vector<LightTriangle> triangles;
+    // The scene's, with their light_density: luminance over the sum of all areas times luminances. Whoever
+    // finds a light knows the density of its light samples without a search through the table.
+    std::vector<Material> materials;
+};
+
 // Throws UserError if the instances have more than 2^24 emissive triangles together.
-std::vector<LightTriangle> build_light_table(const Scene& scene);
+LightTable build_light_table(const Scene& scene);
 
 }  // namespace lab

@@ -15,6 +15,9 @@ namespace {
 
 using glm::dvec3;
 
+// Narrower lobes than this exponent makes are narrower than what directions of 32 bits are exact to.
+constexpr float largest_exponent = 1e8f;
+
 struct CornerHash {
     size_t operator()(const ObjCorner& corner) const {
         uint64_t hash = corner.position;
@@ -135,6 +138,12 @@ class Assembly {
             }
             material.specular_albedo = vec3(0);
             material.specular_exponent = 0;
+        }
+        if (material.specular_exponent > largest_exponent) {
+            scene_.warnings.push_back(
+                obj.file + ": material " + in_quotes(source.name) +
+                ": Ns above 1e8 makes a lobe that 32 bits cannot tell from a mirror's: it becomes 1e8");
+            material.specular_exponent = largest_exponent;
         }
         limit_reflectance(obj, source.name, material);
         if (!source.albedo_texture.empty()) material.albedo_texture = add_texture(source.albedo_texture);

@@ -134,6 +134,7 @@ std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file,
             .specular_albedo = to_vec3(source.specular),
             .refractive_index = 0,
             .absorption = vec3(0),
+            .light_density = 0,
         };
         std::filesystem::path texture;
         if (!source.diffuse_texname.empty()) {

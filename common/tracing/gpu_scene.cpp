@@ -37,7 +37,13 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
     add("positions", BINDING_POSITIONS, scene.positions, build_input);
     add("triangles", BINDING_TRIANGLES, scene.triangles, build_input);
     add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
-    add("materials", BINDING_MATERIALS, scene.materials);
+    LightTable lights{.triangles = {}, .materials = scene.materials};
+    if (features.area_lights && light_sampling == LightSampling::on) {
+        lights = build_light_table(scene);
+        add("light triangles", BINDING_LIGHT_TRIANGLES, lights.triangles);
+        defines_.emplace_back("FEATURE_LIGHT_SAMPLING");
+    }
+    add("materials", BINDING_MATERIALS, lights.materials);
     if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);
     if (features.textures) add("texture coordinates", BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
     if (features.transforms) add("instances", BINDING_INSTANCES, scene.instances);
@@ -50,12 +56,6 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
             other_sides[sides.y] = sides.x;
         }
         add("other sides of triangles", BINDING_OTHER_SIDES, other_sides);
-    }
-    std::vector<LightTriangle> lights;
-    if (features.area_lights && light_sampling == LightSampling::on) {
-        lights = build_light_table(scene);
-        add("light triangles", BINDING_LIGHT_TRIANGLES, lights);
-        defines_.emplace_back("FEATURE_LIGHT_SAMPLING");
     }
 
     std::vector<MemoryNeed> needs;

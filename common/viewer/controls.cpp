@@ -167,6 +167,18 @@ void Controls::draw_scene(Session& session, Options& options) {
     ImGui::Checkbox("specular lobes (Ks)", &options.scene.specular);
 }
 
+void Controls::draw_strategy(const Chapter& chapter, EstimatorOptions& estimator) {
+    int strategy = static_cast<int>(estimator.strategy);
+    if (chapter.strategies) {
+        ImGui::Combo("light is found by", &strategy, "both\0light samples\0bounces\0");
+        estimator.strategy = static_cast<Strategy>(strategy);
+    } else if (chapter.light_sampling) {
+        bool light_sampling = estimator.strategy == Strategy::both;
+        if (ImGui::Checkbox("light sampling", &light_sampling))
+            estimator.strategy = light_sampling ? Strategy::both : Strategy::brdf;
+    }
+}
+
 void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options) {
     ImGui::Separator();
     optional_slider("max path length", options.light.max_path_length, parameters.max_path_length,
@@ -175,7 +187,7 @@ void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parame
     if (options.light.max_path_length && options.light.only_path_length)
         options.light.max_path_length =
             std::max(*options.light.max_path_length, *options.light.only_path_length);
-    if (chapter.light_sampling) ImGui::Checkbox("light sampling", &options.estimator.light_sampling);
+    draw_strategy(chapter, options.estimator);
     if (chapter.split_every_hit) ImGui::Checkbox("split at every hit", &options.estimator.split_every_hit);
     options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i)

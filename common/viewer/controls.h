@@ -24,6 +24,7 @@ class Controls {
     void draw_progress(Session& session, double frames_per_second);
     void draw_actions(Session& session);
     void draw_scene(Session& session, Options& options);
+    void draw_strategy(const Chapter& chapter, EstimatorOptions& estimator);
     void draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options);
     void draw_picture(const Session& session, Options& options);
     void draw_camera(Session& session, CameraControl& camera_control);

@@ -16,6 +16,7 @@ struct Subject {
     std::string file;  // in chapters/
     uint32_t splitting_factor;
     uint32_t roulette_start = 1;
+    std::vector<std::string> defines = {};
 };
 
 // Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
@@ -28,12 +29,16 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
                             uint32_t roulette_start = 1) {
         return Subject{name + ", s = " + std::to_string(s), file, s, roulette_start};
     };
-    const std::string every_hit = "../shaders/path_trace_every_hit.glsl";
+    const std::string multiple_importance_sampling = "07_multiple_importance_sampling/path_trace.glsl",
+                      every_hit = "../shaders/path_trace_every_hit.glsl";
     const uint32_t s = length == 1 ? 1 : length == 2 ? 5 : 3;
-    std::vector<Pair> pairs{{Subject{"3", "03_next_event_estimation/path_trace.glsl", 1},
-                             subject("4", "04_splitting/path_trace.glsl", s)},
-                            {subject("5", "05_russian_roulette/path_trace.glsl", 6 - s),
-                             subject("6", "06_dielectrics/path_trace.glsl", s == 5 ? 1 : 2)}};
+    std::vector<Pair> pairs{
+        {Subject{"3", "03_next_event_estimation/path_trace.glsl", 1},
+         subject("4", "04_splitting/path_trace.glsl", s)},
+        {subject("5", "05_russian_roulette/path_trace.glsl", 6 - s),
+         subject("6", "06_dielectrics/path_trace.glsl", s == 5 ? 1 : 2)},
+        {Subject{"7", multiple_importance_sampling, 1},
+         Subject{"7 by light samples", multiple_importance_sampling, 1, 1, {"ONLY_LIGHT_SAMPLES"}}}};
     // At length 1 there is but one hit to split at.
     if (length > 1)
         pairs.push_back({subject("4 at every hit", every_hit, length == 2 ? 3 : 2, no_roulette),
@@ -72,7 +77,7 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
                             .seed = seed,
                             .splitting_factor = subject.splitting_factor,
                             .roulette_start = subject.roulette_start};
-    settings.estimator = {project_folder() / "chapters" / subject.file};
+    settings.estimator = {project_folder() / "chapters" / subject.file, subject.defines};
     return render_batches(scene, settings, batch_count);
 }
 

@@ -21,8 +21,7 @@ using glm::mat4;
 using std::numbers::pi;
 using Corners = std::vector<dvec3>;
 
-const std::vector<std::string> light_sampling_chapters{"03_next_event_estimation", "04_splitting",
-                                                       "05_russian_roulette", "06_dielectrics"};
+const std::vector<std::string> light_sampling_chapters = chapters_from(3);
 const vec3 albedo(0.8f, 0.5f, 0.2f), colour(1, 2, 0.5f);
 
 void add_triangle(Scene& scene, const Corners& corners, uint32_t material) {

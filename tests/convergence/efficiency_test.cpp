@@ -77,5 +77,14 @@ TEST(Efficiency, RussianRoulettePaysForLongPaths) {
                 measure_chapter("cornell_box", 5, 8, 1000, 2));
 }
 
+// Where many small lights are near, bounces find what light samples rarely do well; on glossy surfaces light
+// samples miss the lobe.
+TEST(Efficiency, MultipleImportanceSamplingPays) {
+    expect_gain("multiple importance sampling against dielectrics, heart",
+                measure_chapter("heart_light", 6, 16, 4), measure_chapter("heart_light", 7, 16, 4));
+    expect_gain("multiple importance sampling against dielectrics, glossy",
+                measure_chapter("glossy", 6, 16, 4), measure_chapter("glossy", 7, 16, 4));
+}
+
 }  // namespace
 }  // namespace lab

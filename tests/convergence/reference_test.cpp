@@ -48,6 +48,8 @@ const std::vector<ReferenceCase> reference_cases{
     {"textured_4", 2, 10, 0.01},
     {"instances_4", 3, 2, 0.003},
     {"glass_8", 6, 15, 0.005, 0.9, Run::always, Tail::heavy},
+    {"heart_light_4", 7, 13, 0.003},
+    {"glossy_5", 7, 40, 0.003},
     {"textured_4", 1, 16, 0.01, 0.9, Run::with_all},
     {"torus_5", 3, 26, 0.003, 0.5, Run::with_all},
     {"torus_5", 4, 22, 0.003, 0.5, Run::with_all},

@@ -35,8 +35,7 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
 }
 
 class Roulette : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::Values("05_russian_roulette", "06_dielectrics"),
-                         chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_from(5)), chapter_name);
 
 // With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So
 // E[X] = m = 1/(1-a), E[X²] = (1 + 2am)/(1 - a²/p), and it has 1/(1-p) rays.
@@ -79,7 +78,11 @@ TEST_P(Roulette, SurvivalIsTheLargestComponentOfTheThroughput) {
     expect_no_difference("rays", relative_difference(batches.rays, 1 / (1 - 0.6)), 0.01, 2);
 }
 
-TEST_P(Roulette, IgnoresTheSplitting) {
+class SplitRoulette : public Roulette {};
+INSTANTIATE_TEST_SUITE_P(Chapters, SplitRoulette, testing::Values("05_russian_roulette", "06_dielectrics"),
+                         chapter_name);
+
+TEST_P(SplitRoulette, IgnoresTheSplitting) {
     // Each of s branches has p/(1-p) rays, and the variance of one is divided by s: were the factor 1/s part
     // of the throughput, more of them would end.
     const double a = 0.5, m = 2, variance = (1 + 2 * a * m) / (1 - a) - m * m;

@@ -14,8 +14,7 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-const std::vector<std::string> light_sampling_chapters{"03_next_event_estimation", "04_splitting",
-                                                       "05_russian_roulette", "06_dielectrics"};
+const std::vector<std::string> light_sampling_chapters = chapters_from(3);
 constexpr float albedo = 0.8f;
 
 class Lights : public OnEachBackend {

@@ -25,7 +25,7 @@ std::vector<std::string> chapters_for(Backend backend, std::vector<std::string> 
 
 double light_probability_sum(const Scene& scene) {
     double sum = 0;
-    for (const LightTriangle& light : build_light_table(scene)) {
+    for (const LightTriangle& light : build_light_table(scene).triangles) {
         const uvec3 corners = scene.triangles[light.triangle];
         const auto position = [&](int k) { return glm::dvec3(scene.positions[corners[k]]); };
         const double area =

@@ -8,6 +8,7 @@
 #include "support/device_arithmetic.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
+#include "support/render.h"
 
 namespace lab {
 namespace {
@@ -143,6 +144,65 @@ TEST(Brdf, IsIntegratedByTheEstimatorUnderObliqueLight) {
         for (const Bounce& bounce : sample_bounces("01_uniform_sampling", surface, 4'000'000, run))
             weights.push_back(bounce.weight);
     expect_mean("reflected radiance", estimate_mean(weights), albedo, 0.005);
+}
+
+// Directions of chapter 7's bounces that follow the whole BRDF, on materials between all diffuse and all
+// mirror.
+struct SampledLobe {
+    float exponent;
+    double degrees;  // of the light that leaves
+};
+
+class BrdfSampling : public testing::TestWithParam<std::string> {
+  protected:
+    // Where the directions go in the frame of the mirror image: cells of equal probability of the lobe alone.
+    static Surface surface(const SampledLobe& lobe, const vec3& diffuse, const vec3& specular) {
+        Material material = white_material();
+        material.diffuse_albedo = diffuse;
+        material.specular_albedo = specular;
+        material.specular_exponent = lobe.exponent;
+        return {{0, 0, 1}, direction(lobe.degrees * pi / 180, 0.7), material};
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_from(7)), chapter_name);
+
+TEST_P(BrdfSampling, FollowsTheLobe) {
+    // 1 - cos α grows from 0 with the probability 1 - (cos α)^(n+1), and the azimuth about the mirror image
+    // is uniform. Light that leaves along the normal has its whole lobe above the surface.
+    uint32_t run = 300;
+    for (const float exponent : {0.0f, 1.0f, 20.0f, 1e3f, 1e6f, 1e8f}) {
+        constexpr size_t rows = 16, columns = 8;
+        std::vector<uint64_t> counts(rows * columns);
+        for (const Bounce& bounce :
+             sample_bounces(GetParam(), surface({exponent, 0}, vec3(0), vec3(1)), 1'000'000, ++run)) {
+            ASSERT_EQ(bounce.ray_count, 2u);
+            const dvec3 omega(bounce.direction);
+            const double sine_square = omega.x * omega.x + omega.y * omega.y;
+            const double below = -std::expm1((exponent + 1.0) / 2 * std::log1p(-std::min(sine_square, 1.0)));
+            const double around = std::atan2(omega.y, omega.x) / (2 * pi) + 0.5;
+            ++counts[std::min(static_cast<size_t>(below * rows), rows - 1) * columns +
+                     std::min(static_cast<size_t>(around * columns), columns - 1)];
+        }
+        expect_distribution("exponent " + std::to_string(exponent), counts,
+                            std::vector<double>(rows * columns, 1.0 / (rows * columns)), 0.02);
+    }
+}
+
+TEST_P(BrdfSampling, ReflectsWhatTheBrdfSays) {
+    // The lobe reflects k_s cos θ where all of it is above the surface: ∫ (n+2)/(2π) cos^n α cos θ dω.
+    uint32_t run = 400;
+    for (const SampledLobe lobe : {SampledLobe{200, 50}, {1e4f, 75}, {1e6f, 80}, {1e8f, 60}, {1e4f, 0}})
+        for (const float share : {0.0f, 0.3f, 0.9f, 1.0f}) {
+            std::vector<double> weights;
+            const Surface at = surface(lobe, vec3((1 - share) * 0.8f), vec3(share * 0.8f));
+            for (const Bounce& bounce : sample_bounces(GetParam(), at, 800'000, ++run))
+                weights.push_back(bounce.weight);
+            const double cosine = std::cos(lobe.degrees * pi / 180);
+            char name[80];
+            std::snprintf(name, sizeof name, "exponent %g, %g degrees, specular share %g",
+                          double{lobe.exponent}, lobe.degrees, double{share});
+            expect_mean(name, estimate_mean(weights), 0.8 * (1 - share + share * cosine), 0.01, 20);
+        }
 }
 
 }  // namespace

@@ -16,8 +16,7 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-const std::vector<std::string> chapters{"02_cosine_sampling", "03_next_event_estimation", "04_splitting",
-                                        "05_russian_roulette", "06_dielectrics"};
+const std::vector<std::string> chapters = chapters_from(2);
 const std::string& chapter_2 = chapters.front();
 
 std::vector<Bounce> sample(const std::string& chapter, const dvec3& normal, size_t count, uint32_t run) {

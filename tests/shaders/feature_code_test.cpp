@@ -39,7 +39,10 @@ const std::map<std::string, Needs>& needs_of_features() {
           .functions = {"get_light_probe_radiance"},
           .parameter_members = {"background", "probe_rotation"},
           .samples_images = true}},
-        {"area lights", {.bindings = {BINDING_LIGHT_TRIANGLES}, .functions = {"choose_light_triangle"}}},
+        {"area lights",
+         {.bindings = {BINDING_LIGHT_TRIANGLES},
+          .functions = {"choose_light_triangle"},
+          .material_members = {"light_density"}}},
         {"Phong lobe", {.material_members = {"specular_albedo", "specular_exponent"}}},
         {"dielectrics", dielectric},
         {"absorption",
@@ -54,6 +57,7 @@ Scene bare_scene() { return closed_box(diffuse_material(vec3(0.5f))); }
 class FeatureCode : public testing::TestWithParam<std::string> {
   protected:
     bool samples_lights() const { return chapter_number(GetParam()) >= 3; }
+    bool weights_lights() const { return chapter_number(GetParam()) >= 7; }
     bool knows_dielectrics() const { return chapter_number(GetParam()) >= 6; }
 
     Footprint footprint(const Scene& scene, Backend backend) const {
@@ -113,6 +117,7 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
         if (!needs.functions.empty() && needs.functions.contains("sample_dielectric") && !knows_dielectrics())
             continue;
         if (feature.name == "area lights" && !samples_lights()) needs = {};
+        if (feature.name == "area lights" && !weights_lights()) needs.material_members = {};
         Scene scene = bare_scene();
         feature.add(scene);
         const Footprint actual = footprint(scene, backend);

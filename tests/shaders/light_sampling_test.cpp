@@ -132,6 +132,7 @@ std::vector<LightAnswer> sample_light(const std::string& chapter, const std::arr
     inputs.corners = corners;
     inputs.light_material = white_material();
     inputs.light_material.emission = vec3(emission);
+    inputs.light_material.light_density = 1 / inverse_density;
     inputs.light = {
         .instance = 0, .triangle = 1, .threshold = 0, .alias = 0, .inverse_density = inverse_density};
     TestShader shader{.name = "direct_light.comp"};
@@ -153,10 +154,7 @@ dvec2 barycentrics_of(const dvec3& point) {
 }
 
 class LightPoints : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Chapters, LightPoints,
-                         testing::Values("03_next_event_estimation", "04_splitting", "05_russian_roulette",
-                                         "06_dielectrics"),
-                         chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, LightPoints, testing::ValuesIn(chapters_from(3)), chapter_name);
 
 TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
     // Cells of equal area: rows between the lines of equal w_0, in each the two kinds of triangles of a
@@ -191,14 +189,19 @@ TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
 }
 
 TEST_P(LightPoints, WeightIsThatOfTheArea) {
-    // L_e ρ cos θ cos θ' / r² A/P, for every sample.
+    // L_e ρ cos θ cos θ' / r² A/P, for every sample. From chapter 7 on times p_l / (p_l + p_b), the balance
+    // heuristic with the densities p_l = r² / cos θ' P/A of this sample and p_b = cos θ / π of the bounce.
+    const bool is_weighted = chapter_number(GetParam()) >= 7;
     const dvec3 normal = glm::normalize(glm::cross(dvec3(light_corners[1]) - dvec3(light_corners[0]),
                                                    dvec3(light_corners[2]) - dvec3(light_corners[0])));
     double worst = 0;
     for (const LightAnswer& sample : sample_light(GetParam(), light_corners, 100'000)) {
         const dvec3 to_light(sample.to_light), omega = glm::normalize(to_light);
-        const double expected = emission * albedo / pi * glm::dot(dvec3(surface_normal), omega) *
-                                glm::dot(normal, -omega) / glm::dot(to_light, to_light) * inverse_density;
+        const double cos_theta = glm::dot(dvec3(surface_normal), omega);
+        const double inverse_light_density =
+            glm::dot(normal, -omega) / glm::dot(to_light, to_light) * inverse_density;
+        const double weight = is_weighted ? 1 / (1 + cos_theta / pi * inverse_light_density) : 1.0;
+        const double expected = emission * albedo / pi * cos_theta * inverse_light_density * weight;
         worst = std::max(worst, std::abs(sample.radiance / expected - 1));
     }
     std::printf("  largest relative error of a weight %.2g\n", worst);

@@ -137,6 +137,19 @@ uint32_t chapter_number(const std::string& chapter) {
     return static_cast<uint32_t>(std::stoul(chapter.substr(0, 2)));
 }
 
+std::vector<std::string> chapters_from(uint32_t first) {
+    std::vector<std::string> chapters;
+    for (const std::string& chapter : all_chapters)
+        if (chapter_number(chapter) >= first) chapters.push_back(chapter);
+    return chapters;
+}
+
+bool splits_paths(const std::string& chapter) {
+    const auto options = load_chapter(chapter).options;
+    return std::any_of(options.begin(), options.end(),
+                       [](const ChapterOption& option) { return option.name == "--splitting-factor"; });
+}
+
 std::string backend_name(const testing::TestParamInfo<Backend>& info) { return to_string(info.param); }
 
 std::string chapter_name(const testing::TestParamInfo<std::string>& info) { return "chapter_" + info.param; }

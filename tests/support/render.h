@@ -5,15 +5,20 @@
 #include <array>
 #include <string>
 
+#include "rendering/chapter.h"
 #include "rendering/renderer.h"
 #include "scene/scene.h"
 
 namespace lab {
 
-// The chapters whose estimators are tested.
-inline const std::vector<std::string> all_chapters{"01_uniform_sampling",      "02_cosine_sampling",
-                                                   "03_next_event_estimation", "04_splitting",
-                                                   "05_russian_roulette",      "06_dielectrics"};
+// The chapters whose estimators are tested: all folders of chapters/, in order.
+inline const std::vector<std::string> all_chapters = chapter_folders();
+
+// Those that use what chapter number `first` teaches, and all after it.
+std::vector<std::string> chapters_from(uint32_t first);
+
+// Whether its paths split: whether it has --splitting-factor.
+bool splits_paths(const std::string& chapter);
 
 Estimator chapter_estimator(const std::string& chapter);
 Estimator every_hit_estimator();  // --split-every-hit

@@ -138,7 +138,7 @@ TEST(LightTable, ChoosesByAreaTimesLuminance) {
         make_lights({1, 3, 1, 2, 0.5f}, {{1, 1, 1}, {0, 0, 0}, {0, 2, 0}, {4, 0, 1}, {0, 0, 1e-6f}});
     Scene scene = lights_of_one_mesh;
     add_instance(scene, mat4x3(1));
-    const auto lights = build_light_table(scene);
+    const auto lights = build_light_table(scene).triangles;
     ASSERT_EQ(lights.size(), 4u);  // without the one that does not emit
     const std::vector<uint32_t> triangles{0, 2, 3, 4};
     const std::vector<double> areas{1, 1, 2, 0.5},
@@ -162,7 +162,7 @@ TEST(LightTable, HasTheAreasOfInstancesInTheWorld) {
     add_instance(scene, mat4x3(glm::scale(turned, vec3(-2, 0.5f, 7))));
     add_instance(scene, mat4x3(glm::scale(mat4(1), vec3(1e-6f))));
     const double scales[] = {1, 9, 1, 1e-12};
-    const auto lights = build_light_table(scene);
+    const auto lights = build_light_table(scene).triangles;
     ASSERT_EQ(lights.size(), 8u);
     const auto probabilities = probabilities_of(lights);
     for (uint32_t i = 0; i < lights.size(); ++i) {
@@ -178,7 +178,7 @@ TEST(LightTable, HasTheAreasOfInstancesInTheWorld) {
 TEST(LightTable, NeverChoosesDegenerateTriangles) {
     Scene scene = make_lights({0, 1, 0}, {vec3(1e6f), vec3(1), vec3(1)});
     add_instance(scene, mat4x3(1));
-    const auto lights = build_light_table(scene);
+    const auto lights = build_light_table(scene).triangles;
     const auto probabilities = probabilities_of(lights);
     for (size_t i = 0; i < lights.size(); ++i)
         EXPECT_EQ(probabilities[i], lights[i].triangle == 1 ? 1 : 0) << "light " << i;
@@ -192,7 +192,7 @@ TEST(LightTable, CountsOneOfSeveralInTheSamePlace) {
     add_instance(scene, mat4x3(1));
     add_instance(scene, mat4x3(glm::translate(glm::mat4(1), vec3(0, 0, 1))));
     add_instance(scene, mat4x3(1));
-    const auto lights = build_light_table(scene);
+    const auto lights = build_light_table(scene).triangles;
     ASSERT_EQ(lights.size(), 4u);
     for (uint32_t i = 0; i < 4; ++i) {
         EXPECT_EQ(lights[i].instance, i / 2);
@@ -203,7 +203,7 @@ TEST(LightTable, CountsOneOfSeveralInTheSamePlace) {
 TEST(LightTable, IsEmptyWithoutLights) {
     Scene scene = make_lights({1, 1}, {vec3(0), vec3(0)});
     add_instance(scene, mat4x3(1));
-    EXPECT_TRUE(build_light_table(scene).empty());
+    EXPECT_TRUE(build_light_table(scene).triangles.empty());
 }
 
 // Their number, before anything is allocated for them.
@@ -223,7 +223,7 @@ TEST(LightTable, HoldsVeryDifferentPowers) {
     }
     Scene scene = make_lights(sizes, emissions);
     add_instance(scene, mat4x3(1));
-    const auto lights = build_light_table(scene);
+    const auto lights = build_light_table(scene).triangles;
     ASSERT_EQ(lights.size(), sizes.size());
     const auto probabilities = probabilities_of(lights);
     for (size_t i = 0; i < lights.size(); ++i) {

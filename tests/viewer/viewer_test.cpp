@@ -140,10 +140,10 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     EXPECT_EQ(parameters().only_path_length, 2);
     EXPECT_LT(one, all);
     change([](Options& options) { options.light.only_path_length.reset(); });
-    change([](Options& options) { options.estimator.light_sampling = false; });
+    change([](Options& options) { options.estimator.strategy = Strategy::brdf; });
     EXPECT_NE(session().build().job.record.settings.find("--light-sampling off"), std::string::npos);
     change([](Options& options) {
-        options.estimator.light_sampling = true, options.estimator.split_every_hit = true;
+        options.estimator.strategy = Strategy::both, options.estimator.split_every_hit = true;
     });
     EXPECT_NE(session().build().job.record.settings.find("--split-every-hit"), std::string::npos);
     change(

@@ -242,3 +242,34 @@ def glass():
                 [mesh("room"), mesh("clear_torus", scale=0.36, rotation=turn([1, -0.3, -0.3], 64),
                                     translation=[-0.36, 0.495, -0.2]),
                  mesh("teal_ball", scale=0.33, translation=[0.42, 0.34, 0.25])], ROOM_CAMERA)
+
+
+def plates():
+    """After Veach's test of multiple importance sampling: four lights of falling size and equal power above four plates
+    of falling gloss. Each plate is turned so that its middle mirrors the lights into the camera."""
+    position, height, radii, exponents = (0, 1.6, 9), 1.9, (0.6, 0.2, 0.066, 0.022), (60000, 4000, 500, 60)
+    materials = {"grey": {"Kd": "0.42 0.42 0.44"}}
+    floor = quad("grey", [(-9, -2.2, 6), (9, -2.2, 6), (9, -2.2, -2.5), (-9, -2.2, -2.5)])
+    wall = quad("grey", [(-9, -2.2, -2.5), (9, -2.2, -2.5), (9, 6, -2.5), (-9, 6, -2.5)])
+    parts = [floor, wall]
+    for i, exponent in enumerate(exponents):
+        name = f"plate_{i}"
+        materials[name] = {"Kd": "0.06 0.065 0.07", "Ks": "0.55 0.55 0.55", "Ns": str(exponent)}
+        centre = (0, -0.5 - 0.46 * i, -0.7 + 0.95 * i)
+        to_light, to_camera = (normalize(subtract(p, centre)) for p in ((0, height, 0), position))
+        normal = normalize(add(to_light, to_camera))
+        along = scale(0.42, normalize(cross(normal, (1, 0, 0))))  # towards the camera
+        side = (2.9 - 0.14 * i, 0, 0)
+        parts.append(quad(name, [subtract(add(centre, along), side), add(add(centre, along), side),
+                                 add(subtract(centre, along), side), subtract(subtract(centre, along), side)]))
+    colours = (0.35, 0.75, 1), (0.6, 1, 0.55), (1, 0.85, 0.4), (1, 0.5, 0.4)
+    for i, (radius, colour) in enumerate(zip(radii, colours)):
+        name = f"light_{i}"
+        materials[name] = {"Kd": "0 0 0", "Ke": numbers(scale(0.9 / radius**2, colour))}
+        light = globe(name, 24, 12, lambda s, t: direction(math.pi * s, 2 * math.pi * t))
+        light.texture_coordinates, light.texture_triangles = [], []
+        light.positions = [add((-2.25 + 1.5 * i, height, 0), scale(radius, p)) for p in light.positions]
+        parts.append(light)
+    write_mesh("plates", parts, materials)
+    write_scene("plates", "Four lights of falling size and equal power above four plates of falling gloss, after Veach",
+                [mesh("plates")], camera(list(position), [0, -0.15, 0], 38), specular=True, width=768, height=512)
