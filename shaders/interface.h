@@ -14,8 +14,10 @@ using glm::vec2;
 using glm::vec3;
 using uint = glm::uint;
 #define SHARED_CONSTANT inline constexpr uint
+#define SHARED_NUMBER inline constexpr float
 #else
 #define SHARED_CONSTANT const uint
+#define SHARED_NUMBER const float
 #endif
 
 // Descriptor set 0. Bindings whose scene feature is absent are neither declared nor allocated.
@@ -40,6 +42,7 @@ SHARED_CONSTANT BINDING_PICTURE = 17u;
 SHARED_CONSTANT BINDING_LARGEST_VALUE = 18u;
 SHARED_CONSTANT BINDING_SAMPLES = 19u;
 SHARED_CONSTANT BINDING_OTHER_SIDES = 20u;
+SHARED_CONSTANT BINDING_PROBE_CELLS = 21u;
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -82,6 +85,21 @@ struct LightTriangle {
     uint alias;             // index into the table
     float inverse_density;  // A/P: area in the world over the probability of being chosen
 };
+
+// A cell of the light probe in the alias table of all of them, see common/scene/probe_table.h.
+struct ProbeCell {
+    uint threshold;  // as in LightTriangle
+    uint alias;
+    float density;  // of the cell's directions with respect to solid angle
+};
+
+// Where a scene has both, this part of the light samples goes to the probe and the rest to light triangles.
+// Chosen by a measurement, see docs/results.md.
+SHARED_NUMBER LIGHT_PROBE_PROBABILITY = 0.5f;
+
+// The most cells of a light probe: larger ones have cells of several texels.
+SHARED_CONSTANT MAX_PROBE_CELL_COLUMNS = 4096u;
+SHARED_CONSTANT MAX_PROBE_CELL_ROWS = 2048u;
 
 // A pinhole camera: the ray through image position (s, t) in [-1,1]^2 (t down) is forward + s right - t up.
 struct Camera {

@@ -4,6 +4,7 @@
 #include "frame.glsl"
 #include "camera.glsl"
 #include "textures.glsl"
+#include "light_probe.glsl"
 #include "background.glsl"
 #include "shading_data.glsl"
 #include "materials.glsl"

@@ -33,6 +33,9 @@ layout(scalar, set = 0, binding = BINDING_LIGHT_TRIANGLES) readonly buffer Light
     LightTriangle light_triangles[];
 };
 #endif
+#ifdef FEATURE_LIGHT_PROBE_SAMPLING
+layout(scalar, set = 0, binding = BINDING_PROBE_CELLS) readonly buffer ProbeCells { ProbeCell probe_cells[]; };
+#endif
 #ifdef FEATURE_LIGHT_PROBE
 layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform sampler2D light_probe;
 #endif

@@ -47,18 +47,3 @@ vec3 get_texture_colour(int index, vec2 uv) {
                       fetch_colour(index, t.lower_right), t.weights);
 }
 #endif
-
-#ifdef FEATURE_LIGHT_PROBE
-// Radiance of the light probe in a unit direction. Equirectangular: +Y up, image centre towards -Z before the rotation.
-vec3 get_light_probe_radiance(vec3 direction) {
-    // Straight up and down the azimuth is undefined, and so is atan().
-    bool is_pole = direction.x == 0.0 && direction.z == 0.0;
-    float azimuth = is_pole ? 0.0 : atan(direction.x, -direction.z);
-    vec2 uv = vec2(0.5 + (azimuth + parameters.probe_rotation) / (2.0 * PI), acos(clamp(direction.y, -1.0, 1.0)) / PI);
-    TexelNeighbours t = get_texel_neighbours(uv, textureSize(light_probe, 0), false);
-    return mix_texels(texelFetch(light_probe, t.upper_left, 0),
-                      texelFetch(light_probe, ivec2(t.lower_right.x, t.upper_left.y), 0),
-                      texelFetch(light_probe, ivec2(t.upper_left.x, t.lower_right.y), 0),
-                      texelFetch(light_probe, t.lower_right, 0), t.weights);
-}
-#endif

@@ -15,8 +15,20 @@ float to_solid_angle(float area_density, float distance, float cos_light) {
     return area_density * distance * distance / cos_light;
 }
 
+// The part of what a bounce finds that counts: p_b / (p_l + p_b), or all of it where light samples find nothing.
+float get_bounce_part(float light_density, float bounce_density) {
+    return light_density > 0.0 ? bounce_density / (light_density + bounce_density) : 1.0;
+}
+
+// The factor of what a light sample finds: ρ n·ω / p_l · p_l / (p_l + p_b) = ρ n·ω / (p_l + p_b). It stays finite where a
+// light comes close to x_k, while chapter 3's 1/r² does not.
+vec3 get_light_sample_weight(ShadingData s, vec3 omega, vec3 out_direction, float light_density) {
+    float bounce_density = BOUNCES_FIND_LIGHTS ? get_brdf_density(s, omega, out_direction) : 0.0;
+    return get_pi_brdf(s, omega, out_direction) * (dot(s.normal, omega) / PI / (light_density + bounce_density));
+}
+
 // The direct light that x_k reflects into a direction, as far as it is left to one point y on the lights.
-vec3 sample_direct_light(ShadingData s, vec3 out_direction, inout uvec2 seed) {
+vec3 sample_light_triangle(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     // A uniform point on a triangle that is chosen with probability P: density P/A with respect to area.
     LightTriangle light = choose_light_triangle(seed);
     vec2 u = get_random_numbers(seed);
@@ -32,12 +44,10 @@ vec3 sample_direct_light(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     // V: a shadow ray that ends just short of the light.
     if (is_occluded(get_ray_to_point(s, y.position_in_front), 1.0)) return vec3(0.0);
 
-    // ρ n·ω / p_l · p_l / (p_l + p_b) = ρ n·ω / (p_l + p_b). This stays finite where y comes close to x_k, while
-    // chapter 3's 1/r² does not. The last factor is 1, but for the rounding of P in the alias table.
+    // The last factor is 1, but for the rounding of P in the alias table.
     float light_density = to_solid_angle(y.light_density, distance, cos_light);
-    float bounce_density = BOUNCES_FIND_LIGHTS ? get_brdf_density(s, omega, out_direction) : 0.0;
-    return get_pi_brdf(s, omega, out_direction) * (dot(s.normal, omega) / PI / (light_density + bounce_density)) *
-           y.emission * (light.inverse_density * y.light_density);
+    return get_light_sample_weight(s, omega, out_direction, light_density) * y.emission *
+           (light.inverse_density * y.light_density);
 }
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
@@ -55,20 +65,20 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
             break;
         }
 
-        // The emitted radiance L_{e,k}, with p_b / (p_l + p_b) where x_{k-1} might have sampled it.
+        // The emitted radiance L_{e,k}, or the part of it that x_{k-1}'s light sample leaves to this bounce.
         ShadingData s = get_shading_data(hit, ray.direction);
         vec3 out_direction = -ray.direction;
         throughput *= s.transmittance;
         float cos_light = dot(s.geometric_normal, out_direction);
         float light_density = is_light_sampled ? to_solid_angle(s.light_density, hit.distance, cos_light) : 0.0;
-        float weight = light_density > 0.0 ? bounce_density / (light_density + bounce_density) : 1.0;
-        if (is_counted(path_length)) radiance += radiance_scale * throughput * weight * s.emission;
+        if (is_counted(path_length))
+            radiance += radiance_scale * throughput * get_bounce_part(light_density, bounce_density) * s.emission;
         if (path_length == parameters.max_path_length || !is_above_surface(s, out_direction)) break;
 
         // The direct light at x_k arrives after one bounce more. No light sample meets a dielectric's directions.
         is_light_sampled = LIGHT_SAMPLING && !s.is_dielectric;
         if (is_light_sampled) {
-            vec3 direct_light = sample_direct_light(s, out_direction, seed);
+            vec3 direct_light = sample_light_triangle(s, out_direction, seed);
             if (is_counted(path_length + 1u)) radiance += radiance_scale * throughput * direct_light;
         }
 
@@ -82,7 +92,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         } else {
             omega = sample_brdf(s, out_direction, seed);
             if (!is_above_surface(s, omega)) break;
-            throughput *= get_bounce_weight(s, omega, out_direction);
+            throughput *= get_brdf_weight(s, omega, out_direction);
             bounce_density = BOUNCES_FIND_LIGHTS ? get_brdf_density(s, omega, out_direction) : 0.0;
         }
 

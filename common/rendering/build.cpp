@@ -36,10 +36,10 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     // Before the scene takes time and memory.
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
-        const bool samples_lights =
-            chapter.light_sampling && wanted.options.estimator.strategy != Strategy::brdf;
-        build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene,
-                                                     samples_lights ? LightSampling::on : LightSampling::off);
+        LightSampling light_sampling = LightSampling::off;
+        if (chapter.light_sampling && wanted.options.estimator.strategy != Strategy::brdf)
+            light_sampling = chapter.light_probe_sampling ? LightSampling::with_probe : LightSampling::on;
+        build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene, light_sampling);
         build.backend =
             choose_backend(wanted.options, device, *build.gpu_scene, wanted.estimator, wanted.parameters);
         build.acceleration_structure = build_acceleration_structure(build.backend, device, *build.gpu_scene);

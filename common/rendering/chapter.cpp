@@ -68,13 +68,14 @@ Chapter load_chapter(const std::string& name) {
     const auto file = project_folder() / "chapters" / name / "chapter.json";
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(content, file.string(), "the chapter",
-                          {"title", "default_scene", "light_sampling", "strategies", "split_every_hit",
-                           "unlimited_path_length", "dielectrics", "options"});
+                          {"title", "default_scene", "light_sampling", "light_probe_sampling", "strategies",
+                           "split_every_hit", "unlimited_path_length", "dielectrics", "options"});
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),
             .default_scene = root.text("default_scene").value_or(defaults.default_scene),
             .light_sampling = root.boolean("light_sampling").value_or(false),
+            .light_probe_sampling = root.boolean("light_probe_sampling").value_or(false),
             .strategies = root.boolean("strategies").value_or(false),
             .split_every_hit = root.boolean("split_every_hit").value_or(false),
             .unlimited_path_length = root.boolean("unlimited_path_length").value_or(false),

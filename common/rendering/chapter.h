@@ -25,6 +25,7 @@ struct Chapter {
     std::string title;                          // shown by --help
     std::string default_scene = "cornell_box";  // in assets/scenes
     bool light_sampling = false;                // has --light-sampling
+    bool light_probe_sampling = false;          // light samples go to a probe, too
     bool strategies = false;                    // has --strategy, with light_sampling
     bool split_every_hit = false;               // has --split-every-hit
     bool unlimited_path_length = false;         // whatever the scene says; --max-path-length still limits it

@@ -9,12 +9,12 @@
 #include "scene/coincident_lights.h"
 
 namespace lab {
+
+double get_luminance(const vec3& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
+
 namespace {
 
 constexpr uint64_t max_light_triangles = 1u << 24;
-
-// Of linear sRGB (ITU-R BT.709).
-double get_luminance(const vec3& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
 double get_world_area(const Scene& scene, uint32_t instance, const uvec3& corners) {
     const glm::dmat3 linear{mat3(scene.instances[instance].object_to_world)};
@@ -42,7 +42,7 @@ void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& ligh
 
 }  // namespace
 
-LightTable build_light_table(const Scene& scene) {
+LightTable build_light_table(const Scene& scene, double probability) {
     const auto luminance_of = [&](uint32_t triangle) {
         return get_luminance(scene.materials[scene.triangle_materials[triangle]].emission);
     };
@@ -74,12 +74,13 @@ LightTable build_light_table(const Scene& scene) {
     }
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
     for (Material& material : table.materials)
-        material.light_density = static_cast<float>(get_luminance(material.emission) / sum);
+        material.light_density = static_cast<float>(probability * get_luminance(material.emission) / sum);
     const AliasTable alias_table = build_alias_table(weights);
     for (size_t i = 0; i < lights.size(); ++i) {
         lights[i].threshold = alias_table.entries[i].threshold;
         lights[i].alias = alias_table.entries[i].alias;
-        lights[i].inverse_density = static_cast<float>(areas[i] / alias_table.probabilities[i]);
+        lights[i].inverse_density =
+            static_cast<float>(areas[i] / (probability * alias_table.probabilities[i]));
     }
     return table;
 }

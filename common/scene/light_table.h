@@ -6,6 +6,9 @@
 
 namespace lab {
 
+// Of linear sRGB (ITU-R BT.709).
+double get_luminance(const vec3& colour);
+
 struct LightTable {
     // Chosen with probability proportional to area times luminance of the emission. Empty if nothing emits.
     std::vector<LightTriangle> triangles;
@@ -14,7 +17,8 @@ struct LightTable {
     std::vector<Material> materials;
 };
 
+// `probability`: that a light sample goes to the triangles at all; the densities hold it.
 // Throws UserError if the instances have more than 2^24 emissive triangles together.
-LightTable build_light_table(const Scene& scene);
+LightTable build_light_table(const Scene& scene, double probability = 1);
 
 }  // namespace lab

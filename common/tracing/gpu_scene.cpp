@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "scene/light_table.h"
+#include "scene/probe_table.h"
 
 namespace lab {
 
@@ -38,10 +39,19 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
     add("triangles", BINDING_TRIANGLES, scene.triangles, build_input);
     add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
     LightTable lights{.triangles = {}, .materials = scene.materials};
-    if (features.area_lights && light_sampling == LightSampling::on) {
-        lights = build_light_table(scene);
+    const bool samples_probe = features.light_probe && light_sampling == LightSampling::with_probe;
+    const bool samples_triangles = features.area_lights && light_sampling != LightSampling::off;
+    const float probe_probability = !samples_probe ? 0 : !samples_triangles ? 1 : LIGHT_PROBE_PROBABILITY;
+    if (samples_triangles) {
+        lights = build_light_table(scene, 1 - probe_probability);
         add("light triangles", BINDING_LIGHT_TRIANGLES, lights.triangles);
         defines_.emplace_back("FEATURE_LIGHT_SAMPLING");
+    }
+    std::vector<ProbeCell> probe_cells;
+    if (samples_probe) {
+        probe_cells = build_probe_table(*scene.light_probe, probe_probability);
+        add("cells of the light probe", BINDING_PROBE_CELLS, probe_cells);
+        defines_.emplace_back("FEATURE_LIGHT_PROBE_SAMPLING");
     }
     add("materials", BINDING_MATERIALS, lights.materials);
     if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);

@@ -8,8 +8,9 @@
 
 namespace lab {
 
-// Whether estimators sample the emissive triangles, which takes a table of them.
-enum class LightSampling { off, on };
+// What estimators choose light samples from, which takes tables: nothing, emissive triangles, or the light
+// probe, too.
+enum class LightSampling { off, on, with_probe };
 
 class GpuScene {
   public:

@@ -18,6 +18,7 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
         const std::string shader = file_bytes(project_folder() / "chapters" / name / "path_trace.glsl");
         const auto mentions = [&](const std::string& word) { return shader.find(word) != std::string::npos; };
         EXPECT_EQ(chapter.light_sampling, mentions("LIGHT_SAMPLING")) << name;
+        EXPECT_EQ(chapter.light_probe_sampling, mentions("LIGHT_PROBE_SAMPLING")) << name;
         EXPECT_EQ(chapter.strategies, mentions("BOUNCES_FIND_LIGHTS")) << name;
         EXPECT_EQ(chapter.dielectrics, mentions("is_dielectric")) << name;
         for (const ChapterOption& option : all.options) {

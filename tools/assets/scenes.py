@@ -273,3 +273,52 @@ def plates():
     write_mesh("plates", parts, materials)
     write_scene("plates", "Four lights of falling size and equal power above four plates of falling gloss, after Veach",
                 [mesh("plates")], camera(list(position), [0, -0.15, 0], 38), specular=True, width=768, height=512)
+
+
+def clear_sky(d):
+    """A clear sky with a small sun, 10^5 times as bright: its few texels bring half of the light."""
+    up = max(0, d[1])**0.5
+    above = tuple((1 - up) * horizon + up * zenith for horizon, zenith in zip((0.5, 0.6, 0.72), (0.08, 0.2, 0.55)))
+    below = (0.2, 0.18, 0.15)
+    blend = 1 / (1 + math.exp(-80 * d[1]))  # a soft horizon
+    sky_radiance = add(scale(blend, above), scale(1 - blend, below))
+    sun = normalize((-0.6, 0.55, 0.35))
+    return add(sky_radiance, scale(2.2e4, (1, 0.9, 0.74))) if dot(sun, d) > math.cos(math.radians(0.75)) else sky_radiance
+
+
+def sunny():
+    write_light_probe("clear_sky", 512, 256, clear_sky)
+    write_scene("sunny", "A torus, a ball and a pumpkin on a wooden floor under a clear sky with a small sun",
+                [mesh("wooden_floor"), mesh("sphere", scale=0.45, translation=[0.72, 0.44, 0.3]),
+                 mesh("torus", scale=0.34, rotation=turn([1, 0, -0.25], 68), translation=[-0.62, 0.47, 0]),
+                 mesh("orange_pumpkin", scale=0.6, rotation=turn([0, 1, 0], 30), translation=[0.12, 0.42, -1])],
+                camera([0.25, 1.3, 4.2], [0.02, 0.44, 0], 32),
+                background={"light_probe": "../light_probes/clear_sky.hdr", "intensity": 0.6})
+
+
+def softboxes(d):
+    """A dark studio: a large softbox above on the left, a narrow one on the right, and a faint grey everywhere."""
+    def softbox(centre, across, width, height):
+        toward, right = normalize(centre), normalize(across)
+        distance = dot(d, toward)
+        if distance <= 0:
+            return False
+        point = scale(1 / distance, d)
+        return abs(dot(point, right)) < width and abs(dot(point, cross(toward, right))) < height
+
+    if softbox((-0.8, 0.75, 0.4), (0.4, 0, 0.8), 0.45, 0.3):
+        return (14, 13.4, 12.6)
+    if softbox((1, 0.35, 0.3), (0.3, 0, -1), 0.09, 0.5):
+        return (17, 18.5, 21)
+    return (0.03, 0.03, 0.032)
+
+
+def studio():
+    write_light_probe("softboxes", 256, 128, softboxes)
+    write_mesh("grey_floor", [quad("floor", [(-6, 0, 6), (6, 0, 6), (6, 0, -6), (-6, 0, -6)])],
+               {"floor": {"Kd": "0.3 0.3 0.31", "Ks": "0.25 0.25 0.25", "Ns": "300"}})
+    write_scene("studio", "A golden ball and a lacquered torus in a studio with two softboxes",
+                [mesh("grey_floor"), mesh("gold_ball", scale=0.5, translation=[-0.5, 0.49, -0.2]),
+                 mesh("lacquer_torus", scale=0.34, rotation=turn([1, 0, 0.2], 70), translation=[0.55, 0.46, 0.3])],
+                camera([0, 1.15, 4], [0.02, 0.42, 0], 32), specular=True,
+                background={"light_probe": "../light_probes/softboxes.hdr"})
