@@ -72,10 +72,10 @@ def define_bsdfs():
 
         def sample(self, ctx, si, sample1, sample2, active=True):
             _, _, probability = self.lobe_albedos(si, active)
-            cos_alpha = dr.power(1 - sample2.x, 1 / (self.exponent + 1))
-            sin_alpha = dr.safe_sqrt(1 - dr.square(cos_alpha))
+            # cos^(n+1) alpha is uniform. By the square t of tan(alpha / 2): nothing cancels where alpha is small.
+            t = dr.tanh(-0.5 * dr.log(1 - sample2.x) / (self.exponent + 1))
             phi = 2 * dr.pi * sample2.y
-            lobe = mi.Vector3f(sin_alpha * dr.cos(phi), sin_alpha * dr.sin(phi), cos_alpha)
+            lobe = mi.Vector3f(2 * dr.sqrt(t) * dr.cos(phi), 2 * dr.sqrt(t) * dr.sin(phi), 1 - t) / (1 + t)
             is_glossy = sample1 < probability
             sample = dr.zeros(mi.BSDFSample3f)
             sample.wo = dr.select(is_glossy, mi.Frame3f(mi.reflect(si.wi)).to_world(lobe),
@@ -88,8 +88,10 @@ def define_bsdfs():
         def eval_pdf(self, ctx, si, wo, active=True):
             active &= (si.wi.z > 0) & (wo.z > 0)
             diffuse, specular, probability = self.lobe_albedos(si, active)
-            cos_alpha = dr.clip(dr.dot(mi.reflect(si.wi), wo), 0, 1)
-            lobe = dr.select(cos_alpha > 0, dr.power(cos_alpha, self.exponent), 0) / (2 * dr.pi)
+            # cos^n alpha, where 1 - cos alpha keeps its digits.
+            one_minus_cos = 0.5 * dr.squared_norm(mi.reflect(si.wi) - wo)
+            power = dr.exp(-2 * self.exponent * dr.atanh(one_minus_cos / (2 - one_minus_cos)))
+            lobe = dr.select(one_minus_cos < 1, power, 0) / (2 * dr.pi)
             value = (diffuse / dr.pi + specular * (self.exponent + 2) * lobe) * wo.z
             pdf = (1 - probability) * wo.z / dr.pi + probability * (self.exponent + 1) * lobe
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
