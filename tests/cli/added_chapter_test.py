@@ -10,7 +10,7 @@ import unittest
 from image_files import Exr
 from program import BINARIES, PROJECT, ProgramTest
 
-SOURCE, COPY = "03_next_event_estimation", "07_light_choice"
+SOURCE, COPY = "03_next_event_estimation", "20_light_choice"
 # What the copy's estimator is replaced by: a colour that no other chapter shows.
 PURPLE = "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.5, 0.0, 1.0); }\n"
 
@@ -62,8 +62,8 @@ class AddedChapterTest(ProgramTest):
         self.assert_refused(["--output=refused.exr"], r"chapter\.json", '"light"', "light_sampling", program=program)
 
     def test_is_known_to_the_commands_and_pages(self):
-        self.assertRegex(self.run_in_tree("./lab", "run"), r"\n +7  \w+")
-        self.assertIn(f"+ chapters/{COPY}/path_trace.glsl", self.run_in_tree("./lab", "diff", 7))
+        self.assertRegex(self.run_in_tree("./lab", "run"), r"\n +20  \w+")
+        self.assertIn(f"+ chapters/{COPY}/path_trace.glsl", self.run_in_tree("./lab", "diff", 20))
         names = self.run_in_tree(sys.executable, "-B", "-c",
                                  "import sys; sys.path.append('tools'); from docs import tables; print(tables.PAGES)")
         self.assertIn(COPY, names)

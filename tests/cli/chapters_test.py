@@ -1,30 +1,33 @@
 """What the chapters have beyond the common command line: options of their own, scenes that they refuse."""
 
+import json
 import unittest
 
+from image_files import Exr
 from program import BINARIES, PROJECT, ProgramTest, RenderTest
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").iterdir() if path.is_dir())
-COURSE = CHAPTERS[:6]  # others may be added, with whatever options
 TINY = ["--width=16", "--height=16", "--samples=2", "--backend=compute"]
+
+
+def description(chapter):
+    return json.loads((PROJECT / "chapters" / chapter / "chapter.json").read_text(encoding="utf-8"))
 
 
 def options_of(chapter):
     """Those of its own."""
-    number = int(chapter[:2])
-    options = ["--light-sampling"] if number >= 3 else []
-    options += ["--splitting-factor"] if number >= 4 else []
-    options += ["--split-every-hit"] if number in (4, 5) else []
-    return options + (["--survival-cap", "--roulette-start"] if number >= 5 else [])
+    switches = {"light_sampling": "--light-sampling", "strategies": "--strategy", "split_every_hit": "--split-every-hit"}
+    says = description(chapter)
+    return [option for key, option in switches.items() if says.get(key)] + says.get("options", [])
 
 
 class EveryChapter(ProgramTest):
     def test_has_its_own_options_and_no_others(self):
-        every = ["--light-sampling", "--splitting-factor", "--split-every-hit", "--survival-cap", "--roulette-start"]
-        for chapter in COURSE:
+        every = {option for chapter in CHAPTERS for option in options_of(chapter)}
+        for chapter in CHAPTERS:
             with self.subTest(chapter=chapter):
                 out = self.render("--help", program=BINARIES / chapter)
-                self.assertEqual([option for option in every if option in out], options_of(chapter))
+                self.assertEqual({option for option in every if f"  {option} " in out}, set(options_of(chapter)))
 
     def test_renders_its_default_scene(self):
         for chapter in CHAPTERS:
@@ -33,8 +36,8 @@ class EveryChapter(ProgramTest):
                 self.assertIn("validation     no complaints", out)
                 self.assertIn(f"output/{chapter}.png", out)
 
-    def test_refuses_glass_before_chapter_6(self):
-        for chapter in CHAPTERS[:5]:
+    def test_refuses_glass_if_it_knows_no_dielectrics(self):
+        for chapter in (chapter for chapter in CHAPTERS if not description(chapter).get("dielectrics")):
             with self.subTest(chapter=chapter):
                 self.assert_refused(["glass"], "dielectric", "chapter 6", program=BINARIES / chapter)
 
@@ -63,6 +66,13 @@ class ChapterOptions(ProgramTest):
         for value in ("maybe", "", "2"):
             with self.subTest(value=value):
                 self.refuse(3, f"--light-sampling={value}")
+
+    def test_strategy(self):
+        for value in ("none", "", "2"):
+            with self.subTest(value=value):
+                self.refuse(7, f"--strategy={value}")
+        self.refuse(7, "--strategy=light", "--light-sampling=on")
+        self.refuse(6, "--strategy=light")
 
     def test_splitting_at_every_hit_is_bounded(self):
         self.refuse(4, "--split-every-hit", "--max-path-length=9")
@@ -94,6 +104,13 @@ class ChapterRenders(RenderTest):
                 arguments = ["--samples=4", "--max-path-length=8", f"--resume={first}", change]
                 program = BINARIES / CHAPTERS[3]
                 self.assert_refused(self.command(*arguments), "settings|estimator", program=program)
+
+    def test_strategies(self):
+        options = "--strategy=both", "--strategy=light", "--strategy=brdf", "--light-sampling=off"
+        both, light, brdf, off = (Exr(self.picture_of(7, f"picture_{i}", "--samples=4", option)) for i, option in enumerate(options))
+        self.assertEqual(brdf.pixels(), off.pixels())
+        self.assertEqual(len({str(picture.pixels()) for picture in (both, light, brdf)}), 3)
+        self.assertEqual(len({picture.text("settings") for picture in (both, light, brdf)}), 3)
 
     def test_light_sampling_changes_the_noise(self):
         on = self.picture_of(3, "on", "--samples=4")

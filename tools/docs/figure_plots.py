@@ -74,6 +74,11 @@ def effects(folder, images, reports):
     sheet(folder / "effects.jpg", [[(label, encode_srgb(radiance)) for label, radiance in zip(labels, images.values())]])
 
 
+def strategies(folder, images, reports):
+    labels = ("light samples", "bounces", "both")
+    sheet(folder / "strategies.jpg", [[(label, encode_srgb(radiance)) for label, radiance in zip(labels, images.values())]])
+
+
 def bvh_steps(folder, images, reports):
     """White is the largest number of nodes and triangles that a ray of the picture has visited."""
     tiles = [(f"{name.removeprefix('steps_')}: at most {steps.max():.0f} a ray", encode_srgb(steps / steps.max())) for name, steps in images.items()]

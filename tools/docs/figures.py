@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from docs import figure_plots, tables
-from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, last_line, load_records, read_json, run_program,
-                     show_progress)
+from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, description, last_line, load_records, read_json,
+                     run_program, show_progress)
 from references.images import read_rgb
 from report.measurement import digest_of_sources
 from report.numbers import last_rows, mean_of
@@ -28,9 +28,10 @@ class Render:
     name: str
     chapter: str
     scene: str
-    size: int
+    size: int  # width, and height unless that is given
     options: tuple
     rays_per_pixel: int = 0  # instead of --samples, if not 0
+    height: int = 0
 
     def file(self, folder):
         """Of the image. Its name changes with whatever is rendered."""
@@ -45,7 +46,7 @@ class Render:
             if self.rays_per_pixel:
                 options = (*options, "--samples", self.samples_for_rays(folder))
             unfinished = file.with_suffix(".unfinished.exr")
-            command = [BINARIES / self.chapter, self.scene, "--width", self.size, "--height", self.size, *options,
+            command = [BINARIES / self.chapter, self.scene, "--width", self.size, "--height", self.height or self.size, *options,
                        "--backend", "compute", "--quiet", "--output", unfinished, "--report", report]
             process = run_program(command)
             if process.returncode != 0:
@@ -60,8 +61,16 @@ class Render:
 
 
 def renders_of_chapters():
-    glass = chapter_named("dielectrics")
-    return [Render(name, name, "glass" if name == glass else "cornell_box", 320, (), RAYS_PER_PIXEL) for name in CHAPTERS.values()]
+    """All but those whose strategies are compared in a figure of their own."""
+    return [Render(name, name, description(name).get("default_scene", "cornell_box"), 320, (), RAYS_PER_PIXEL)
+            for name in CHAPTERS.values() if not description(name).get("strategies")]
+
+
+def renders_of_strategies():
+    """Light that is reflected once, so that nothing but the strategies makes a difference."""
+    chapter = chapter_named("multiple_importance_sampling")
+    return [Render(f"strategy_{strategy}", chapter, "plates", 384, ("--samples", 16, "--max-path-length", 1, "--strategy", strategy),
+                   height=256) for strategy in ("light", "brdf", "both")]
 
 
 def renders_of_path_lengths():
@@ -80,7 +89,7 @@ def renders_at_equal_time():
     """As many samples as take the same time by the first record of docs/records/chapters, whatever else runs now."""
     renders, size = [], 160
     for case in load_records("chapters")[0]["cases"]:
-        if tables.kind_of(case) == "chapter" and not case["scene"].startswith("torus"):
+        if tables.kind_of(case) == "chapter" and case["scene"].startswith(("cornell_box", "heart_light")):
             seconds = mean_of(last_rows(case["runs"]), "device_seconds") / (case["samples"] * case["width"] * case["height"])
             scene = Path(case["scene_file"]).stem
             options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
@@ -91,9 +100,10 @@ def renders_at_equal_time():
 def renders_of_convergence():
     """Four runs of each chapter but that of glass, whose errors are averaged; a sample of splitting is several paths."""
     reference = ("--reference", "assets/references/cornell_box_6.exr", "--max-path-length", 6)
-    splitting, glass = chapter_named("splitting"), chapter_named("dielectrics")
+    glass = chapter_named("dielectrics")
     return [Render(f"run_{number}_{seed}", name, "cornell_box", 128,
-                   ("--samples", 64 if name >= splitting else 256, "--seed", seed, *reference))
+                   ("--samples", 64 if "--splitting-factor" in description(name).get("options", []) else 256, "--seed", seed,
+                    *reference))
             for number, name in CHAPTERS.items() if name != glass for seed in range(1, 5)]
 
 
@@ -104,6 +114,7 @@ def renders_of_bvh_steps():
 # Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
 FIGURES = {
     "chapters": (renders_of_chapters, figure_plots.chapters),
+    "strategies": (renders_of_strategies, figure_plots.strategies),
     "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
     "effects": (renders_of_effects, figure_plots.effects),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),

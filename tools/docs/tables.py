@@ -49,15 +49,12 @@ quotient the range of the runs is in brackets. What limits each backend is in [b
 """
 
 
-KINDS = ("chapter", "splitting factor", "roulette start", "light sampling", "splitting at every hit")
+KINDS = ("chapter", "splitting factor", "roulette start", "light sampling", "strategy", "splitting at every hit")
 
 
 def kind_of(case):
     """Cases of a kind and a scene stand in a table: those between which one thing is varied."""
-    kind = case["case"].rstrip("0123456789 ")
-    if case["case"].startswith("light sampling"):
-        return "light sampling"
-    return "splitting at every hit" if kind == "the same with roulette" else kind
+    return next((kind for kind in KINDS if case["case"].startswith(kind)), "splitting at every hit")
 
 
 def kind_tables(record):
@@ -98,14 +95,17 @@ def chapter_tables(record):
 
 
 def page_table(name, record):
-    """What a page shows of one device: a kind of cases, or of kind "chapter" one and that before it."""
+    """What a page shows of one device: a kind of cases, or of kind "chapter" one and the row before it."""
     kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
     if kind not in KINDS:
         raise UserError(f"there is no table '{name}': {', '.join(KINDS)}")
     rows = []
     for (other, scene), cases in kind_tables(record).items():
         if other == kind:
-            chosen = [row for row in cases if not number or int(row[0].split()[1]) in (int(number) - 1, int(number))]
+            chosen = cases
+            if number:
+                places = [i for i, row in enumerate(cases) if row[0] == name]
+                chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
             if number and chosen:  # the first row is the one to compare with
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
             rows += [[f"`{scene.rstrip('_0123456789')}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]

@@ -8,6 +8,7 @@ from difflib import SequenceMatcher
 from project import CHAPTERS, ROOT, Parser
 
 CONTEXT = 3  # unchanged lines around a change
+BEFORE = dict(zip(list(CHAPTERS)[1:], CHAPTERS))  # number of a chapter: that of the one that it is compared with
 FUNCTION = 4  # so many equal lines in a row are taken for the same function, not for two that happen to be alike
 STYLES = {"-": "\033[31m", "+": "\033[32m", "@": "\033[36m", " ": ""}  # ANSI: red, green, cyan
 STRONG, RESET = "\033[7m", "\033[0m"
@@ -89,7 +90,7 @@ def visible(rows):
 
 
 def summary(number, counts, moved):
-    text = (f"Chapter {number - 1} to {number}: {counts['code']} lines of code changed ({counts['words']} words) "
+    text = (f"Chapter {BEFORE[number]} to {number}: {counts['code']} lines of code changed ({counts['words']} words) "
             f"and {counts['comments']} of comments")
     return text + "".join(f"; {count} lines moved to {file}" for count, file in moved if count)
 
@@ -98,15 +99,14 @@ def main():
     parser = Parser("./lab diff", __doc__)
     parser.add_argument("chapter", metavar="N", help="number of a chapter from 2, or 'all' for the counts of every step")
     word = parser.parse_args().chapter
-    known = [number for number in CHAPTERS if number - 1 in CHAPTERS]
-    if word != "all" and (not word.isdigit() or int(word) not in known):
-        sys.exit(f"error: there is no chapter before '{word}' to compare with: N is one of {', '.join(map(str, known))} or all")
+    if word != "all" and (not word.isdigit() or int(word) not in BEFORE):
+        sys.exit(f"error: there is no chapter before '{word}' to compare with: N is one of {', '.join(map(str, BEFORE))} or all")
     colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
-    for number in known if word == "all" else [int(word)]:
-        before, after = map(shader_lines, (number - 1, number))
+    for number in BEFORE if word == "all" else [int(word)]:
+        before, after = map(shader_lines, (BEFORE[number], number))
         rows, counts, moved = compare(before, after)
         if word != "all":
-            names = [f"chapters/{CHAPTERS[n]}/path_trace.glsl" for n in (number - 1, number)]
+            names = [f"chapters/{CHAPTERS[n]}/path_trace.glsl" for n in (BEFORE[number], number)]
             print("\n".join(paint(mark, name, None, colour) for mark, name in zip("-+", names)))
             for row in visible(rows):
                 rule = "." * min(shutil.get_terminal_size().columns, 120)
