@@ -21,8 +21,7 @@ class HeadlessRender {
         : job_(build.job),
           options_(job_.options.run),
           renderer_(*build.renderer),
-          acceleration_(build.acceleration()),
-          last_save_(start_) {
+          acceleration_(build.acceleration()) {
         if (!options_.reference.empty()) {
             reference_ = read_reference(options_.reference);
             const Image& image = reference_->mean;
@@ -38,9 +37,9 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
+        start_ = last_save_ = std::chrono::steady_clock::now();
         try {
             sample();
-            take_snapshot();
         } catch (const std::exception& error) {
             // What was last read from the device is all there is.
             keep_after(error, snapshot_, [&] { write_outputs(); });
@@ -69,14 +68,18 @@ class HeadlessRender {
                 progress.update(renderer_.samples(), renderer_.rays());
                 save_if_due();
             }
-            if (more) return;
+            if (more) {
+                take_snapshot();
+                return;
+            }
             done = next;
             add_row(done);
             if (is_accurate()) return;
         }
     }
 
-    double seconds() const { return job_.record.seconds + seconds_since(start_); }
+    // That a user waits for while it renders, earlier runs included.
+    double seconds() const { return job_.record.seconds + seconds_since(start_) - measuring_seconds_; }
 
     bool is_time_over() const {
         return options_.time_limit && renderer_.samples() > 0 &&
@@ -106,22 +109,24 @@ class HeadlessRender {
 
     // What is left if the device is lost, with what it has cost.
     void take_snapshot() {
+        const double seconds_so_far = seconds();
         snapshot_ = renderer_.film().read();
         record_ = job_.record;
-        record_.seconds = seconds();
+        record_.seconds = seconds_so_far;
         record_.rays += renderer_.rays();
     }
 
     void add_row(uint32_t samples) {
         if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
-        ReportRow row{.samples = samples,
-                      .seconds = seconds(),
-                      .device_seconds = renderer_.device_seconds(),
-                      .rays = job_.record.rays + renderer_.rays(),
-                      .error = std::nullopt};
+        const auto start = std::chrono::steady_clock::now();
         take_snapshot();
         const FilmImage& film = snapshot_;
-        row.mean = film.mean_radiance();
+        ReportRow row{.samples = samples,
+                      .seconds = record_.seconds,
+                      .device_seconds = renderer_.device_seconds(),
+                      .rays = record_.rays,
+                      .mean = film.mean_radiance(),
+                      .error = std::nullopt};
         if (reference_) {
             row.error = compare(film.mean(), *reference_);
         } else if (const uint32_t before = last_row_film_.min_samples();
@@ -130,6 +135,7 @@ class HeadlessRender {
         }
         rows_.push_back(row);
         last_row_film_ = film;
+        measuring_seconds_ += seconds_since(start);
     }
 
     void write_outputs() {
@@ -157,7 +163,7 @@ class HeadlessRender {
 
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
-        const double new_seconds = seconds() - job_.record.seconds;
+        const double new_seconds = record_.seconds - job_.record.seconds;
         std::printf("mean radiance  %.5g %.5g %.5g (red, green, blue)\n", mean[0], mean[1], mean[2]);
         std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(),
                     short_number(paths()).c_str(),
@@ -187,8 +193,9 @@ class HeadlessRender {
     FilmRecord record_;        // of that film
     FilmImage last_row_film_;  // at the last row of the report
     std::vector<ReportRow> rows_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();  // of rendering
     std::chrono::steady_clock::time_point last_save_;
+    double measuring_seconds_ = 0;  // for the rows of the report
 };
 
 }  // namespace

@@ -2,7 +2,20 @@
 
 #include <algorithm>
 
+#include "parallel.h"
+
 namespace lab {
+
+namespace {
+
+constexpr size_t pixels_per_piece = 1 << 16;  // that a thread works on at a time
+
+glm::dvec3 mean_of(const FilmPixel& pixel) {
+    return (glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation)) /
+           static_cast<double>(std::max(pixel.sample_count, 1u));
+}
+
+}  // namespace
 
 uint32_t FilmImage::min_samples() const {
     const auto fewest = std::min_element(
@@ -18,44 +31,45 @@ bool FilmImage::has_equal_sample_counts() const {
 }
 
 uint64_t FilmImage::invalid_samples() const {
-    uint64_t count = 0;
-    for (const auto& pixel : pixels) count += pixel.invalid_count;
-    return count;
+    return sum_in_parallel<uint64_t>(pixels.size(), [&](size_t begin, size_t end) {
+        uint64_t count = 0;
+        for (size_t i = begin; i < end; ++i) count += pixels[i].invalid_count;
+        return count;
+    });
 }
 
 Image FilmImage::mean() const {
-    Image image{width, height, {}};
-    image.pixels.reserve(3 * pixels.size());
-    for (const auto& pixel : pixels)
-        for (int channel = 0; channel < 3; ++channel) {
-            const double sum = double{pixel.sum[channel]} + double{pixel.compensation[channel]};
-            image.pixels.push_back(static_cast<float>(sum / std::max(pixel.sample_count, 1u)));
+    Image image{width, height, std::vector<float>(3 * pixels.size())};
+    in_parallel(pixels.size(), pixels_per_piece, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const vec3 mean(mean_of(pixels[i]));
+            for (int channel = 0; channel < 3; ++channel) image.pixels[3 * i + channel] = mean[channel];
         }
+    });
     return image;
 }
 
 std::array<double, 3> FilmImage::mean_radiance() const {
-    std::array<double, 3> mean{};
-    for (const auto& pixel : pixels)
-        for (int channel = 0; channel < 3; ++channel) {
-            const double sum = double{pixel.sum[channel]} + double{pixel.compensation[channel]};
-            mean[static_cast<size_t>(channel)] += sum / std::max(pixel.sample_count, 1u);
-        }
-    for (double& channel : mean) channel /= static_cast<double>(std::max<size_t>(pixels.size(), 1));
-    return mean;
+    const auto sum = sum_in_parallel<glm::dvec3>(pixels.size(), [&](size_t begin, size_t end) {
+        glm::dvec3 sum_of_means(0);
+        for (size_t i = begin; i < end; ++i) sum_of_means += mean_of(pixels[i]);
+        return sum_of_means;
+    });
+    const glm::dvec3 mean = sum / static_cast<double>(std::max<size_t>(pixels.size(), 1));
+    return {mean.r, mean.g, mean.b};
 }
 
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole) {
     FilmImage rest = whole;
-    for (size_t i = 0; i < rest.pixels.size(); ++i) {
-        FilmPixel& pixel = rest.pixels[i];
-        const FilmPixel& before = first.pixels[i];
-        for (int channel = 0; channel < 3; ++channel) {
-            pixel.sum[channel] -= before.sum[channel];
-            pixel.compensation[channel] -= before.compensation[channel];
+    in_parallel(rest.pixels.size(), pixels_per_piece, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            FilmPixel& pixel = rest.pixels[i];
+            const FilmPixel& before = first.pixels[i];
+            pixel.sum -= before.sum;
+            pixel.compensation -= before.compensation;
+            pixel.sample_count -= before.sample_count;
         }
-        pixel.sample_count -= before.sample_count;
-    }
+    });
     return rest;
 }
 

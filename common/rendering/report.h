@@ -11,7 +11,7 @@ namespace lab {
 
 struct ReportRow {
     uint32_t samples = 0;       // a pixel
-    double seconds = 0;         // of rendering, by the clock
+    double seconds = 0;         // that a user waits for while it renders, without those of making rows
     double device_seconds = 0;  // that the device was busy in this run
     uint64_t rays = 0;
     std::array<double, 3> mean{};  // radiance of the image

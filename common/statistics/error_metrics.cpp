@@ -2,36 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "error.h"
+#include "parallel.h"
 
 namespace lab {
 namespace {
 
 // `squared_error(i)` and `variance(i)` of number i of the image, relative to the values of `scale`.
-ErrorMetrics metrics(const Image& scale, const std::function<double(size_t)>& squared_error,
-                     const std::function<double(size_t)>& variance) {
+template <typename SquaredError, typename Variance>
+ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, const Variance& variance) {
     const size_t size = scale.pixels.size();
-    double mean = 0;
-    for (const float value : scale.pixels) mean += value;
-    mean /= static_cast<double>(size);
-    ErrorMetrics sums;
-    for (size_t i = 0; i < size; ++i) {
-        const double r = scale.pixels[i];
-        // A black reference has no scale: its relative error is the absolute one.
-        const double weight = mean > 0 ? 1 / (r * r + 0.01 * mean * mean) : 1;
-        sums.mse_uncorrected += squared_error(i);
-        sums.rel_mse_uncorrected += weight * squared_error(i);
-        sums.mse -= variance(i);
-        sums.rel_mse -= weight * variance(i);
-    }
     const double count = static_cast<double>(size);
+    const double mean = sum_in_parallel<double>(size,
+                                                [&](size_t begin, size_t end) {
+                                                    double sum = 0;
+                                                    for (size_t i = begin; i < end; ++i)
+                                                        sum += scale.pixels[i];
+                                                    return sum;
+                                                }) /
+                        count;
+    // Of errors and variances, each also relative.
+    const auto sums = sum_in_parallel<glm::dvec4>(size, [&](size_t begin, size_t end) {
+        glm::dvec4 sum(0);
+        for (size_t i = begin; i < end; ++i) {
+            const double r = scale.pixels[i];
+            // A black reference has no scale: its relative error is the absolute one.
+            const double weight = mean > 0 ? 1 / (r * r + 0.01 * mean * mean) : 1;
+            const double error = squared_error(i), uncertainty = variance(i);
+            sum += glm::dvec4(error, weight * error, uncertainty, weight * uncertainty);
+        }
+        return sum;
+    });
     ErrorMetrics result;
-    result.mse_uncorrected = sums.mse_uncorrected / count;
-    result.rel_mse_uncorrected = sums.rel_mse_uncorrected / count;
-    result.mse = std::max(result.mse_uncorrected + sums.mse / count, 0.0);
-    result.rel_mse = std::max(result.rel_mse_uncorrected + sums.rel_mse / count, 0.0);
+    result.mse_uncorrected = sums[0] / count;
+    result.rel_mse_uncorrected = sums[1] / count;
+    result.mse = std::max(result.mse_uncorrected - sums[2] / count, 0.0);
+    result.rel_mse = std::max(result.rel_mse_uncorrected - sums[3] / count, 0.0);
     result.rel_rmse = std::sqrt(result.mse) / (mean > 0 ? mean : 1);
     return result;
 }
@@ -40,21 +47,20 @@ ErrorMetrics metrics(const Image& scale, const std::function<double(size_t)>& sq
 Image block_means(const Image& image) {
     constexpr uint32_t size = 8;
     Image result = image;
-    for (uint32_t top = 0; top < image.height; top += size)
-        for (uint32_t left = 0; left < image.width; left += size)
-            for (uint32_t channel = 0; channel < 3; ++channel) {
-                const uint32_t bottom = std::min(top + size, image.height),
-                               right = std::min(left + size, image.width);
-                const auto index = [&](uint32_t x, uint32_t y) {
-                    return 3 * (size_t{y} * image.width + x) + channel;
-                };
+    in_parallel(image.height, size, [&](size_t top, size_t bottom) {
+        for (size_t left = 0; left < image.width; left += size)
+            for (size_t channel = 0; channel < 3; ++channel) {
+                const size_t right = std::min<size_t>(left + size, image.width);
+                const auto index = [&](size_t x, size_t y) { return 3 * (y * image.width + x) + channel; };
                 double sum = 0;
-                for (uint32_t y = top; y < bottom; ++y)
-                    for (uint32_t x = left; x < right; ++x) sum += image.pixels[index(x, y)];
-                const auto mean = static_cast<float>(sum / ((bottom - top) * (right - left)));
-                for (uint32_t y = top; y < bottom; ++y)
-                    for (uint32_t x = left; x < right; ++x) result.pixels[index(x, y)] = mean;
+                for (size_t y = top; y < bottom; ++y)
+                    for (size_t x = left; x < right; ++x) sum += image.pixels[index(x, y)];
+                const auto mean =
+                    static_cast<float>(sum / static_cast<double>((bottom - top) * (right - left)));
+                for (size_t y = top; y < bottom; ++y)
+                    for (size_t x = left; x < right; ++x) result.pixels[index(x, y)] = mean;
             }
+    });
     return result;
 }
 

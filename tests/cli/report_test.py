@@ -8,7 +8,7 @@ import unittest
 from image_files import Exr, relative_mse
 from program import RenderTest
 
-FIELDS = ["samples", "seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
+FIELDS = ["samples", "seconds", "device_seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
 
 
 class Report(RenderTest):
@@ -28,13 +28,22 @@ class Report(RenderTest):
     def test_rows_at_powers_of_two(self):
         report = self.report("--samples=24")
         self.assertEqual([row["samples"] for row in report["rows"]], [1, 2, 4, 8, 16, 24])
-        for name in ("seconds", "rays"):
+        for name in ("seconds", "device_seconds", "rays"):
             numbers = [row[name] for row in report["rows"]]
             self.assertEqual(numbers, sorted(numbers))
             self.assertGreater(numbers[0], 0)
         # At least one ray a path, and at most one more than the default maximal path length 8.
         paths = 24 * 20 * 24
         self.assertTrue(paths <= report["rows"][-1]["rays"] <= 9 * paths)
+
+    def test_seconds_do_not_contain_the_work_of_measuring(self):
+        """There is little to render and much to measure, above all for a device that renders fast."""
+        arguments, size = ["--samples=4", "--max-path-length=0"], (1000, 1000)
+        plain = float(self.picture("plain", *arguments, size=size).text("seconds"))
+        measured = float(self.picture("measured", *arguments, "--report=report.json", size=size).text("seconds"))
+        row = json.loads((self.folder / "report.json").read_text())["rows"][-1]
+        self.assertEqual(row["seconds"], measured)
+        self.assertTrue(1 / 3 < measured / plain < 3, f"{measured} against {plain}")
 
     def test_mean_is_that_of_the_image(self):
         row = self.report("--samples=8")["rows"][-1]

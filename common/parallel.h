@@ -1,0 +1,55 @@
+// Work on all threads of the processor that the program may use.
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace lab {
+
+// Calls work(begin, end) for pieces of `piece` numbers that cover 0, 1, ..., count - 1; the last one may be
+// shorter. The pieces do not depend on the number of threads. Throws again what a call has thrown first.
+template <typename Work>
+void in_parallel(size_t count, size_t piece, const Work& work) {
+    const size_t piece_count = (count + piece - 1) / piece;
+    std::atomic<size_t> next = 0;
+    std::exception_ptr failure;
+    std::mutex mutex;
+    const auto take_pieces = [&] {
+        try {
+            for (size_t i = next++; i < piece_count; i = next++)
+                work(i * piece, std::min(count, (i + 1) * piece));
+        } catch (...) {
+            const std::scoped_lock lock(mutex);
+            if (!failure) failure = std::current_exception();
+            next = piece_count;
+        }
+    };
+    {
+        std::vector<std::jthread> helpers;
+        const size_t thread_count = std::min<size_t>(piece_count, std::thread::hardware_concurrency());
+        try {
+            while (helpers.size() + 1 < thread_count) helpers.emplace_back(take_pieces);
+        } catch (const std::system_error&) {  // no more threads are to be had: those that run do the work
+        }
+        take_pieces();
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+
+// The sum of work(begin, end) over such pieces, added in their order: the same to the bit with any number of
+// threads.
+template <typename Sum, typename Work>
+Sum sum_in_parallel(size_t count, const Work& work) {
+    constexpr size_t piece = 1 << 16;
+    std::vector<Sum> sums((count + piece - 1) / piece, Sum(0));
+    in_parallel(count, piece, [&](size_t begin, size_t end) { sums[begin / piece] = work(begin, end); });
+    Sum all(0);
+    for (const Sum& sum : sums) all += sum;
+    return all;
+}
+
+}  // namespace lab
