@@ -34,7 +34,7 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
     return {difference_from(numbers, expected).relative_to(expected)};
 }
 
-class Roulette : public testing::TestWithParam<std::string> {};
+class Roulette : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::Values("05_russian_roulette", "06_dielectrics"),
                          chapter_name);
 
