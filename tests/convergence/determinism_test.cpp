@@ -20,7 +20,7 @@ Scene lit_box() {
     return scene;
 }
 
-class Determinism : public testing::TestWithParam<std::string> {
+class Determinism : public OnEachChapter {
   protected:
     RenderSettings settings() const {
         RenderSettings settings{.width = 53, .height = 37, .samples = 24, .max_path_length = 5};

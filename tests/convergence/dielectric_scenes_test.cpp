@@ -67,9 +67,14 @@ TEST(DielectricScene, WithoutGlassIsChapterFive) {
     Scene glossy = scene;
     glossy.materials[0].specular_albedo = vec3(0.2f);
     glossy.materials[0].specular_exponent = 20;
-    for (const Scene* room : {&scene, &glossy}) {
+    Scene open = scene;
+    open.background = {0.2f, 0.3f, 0.5f};
+    for (const auto& [room, light_sampling] :
+         {std::pair(&scene, LightSampling::on), std::pair(&scene, LightSampling::off),
+          std::pair(&glossy, LightSampling::on), std::pair(&open, LightSampling::on)}) {
         RenderSettings settings = room_settings(8, 7);
         settings.splitting_factor = 2;
+        settings.light_sampling = light_sampling;
         const FilmImage sixth = render(*room, settings);
         settings.estimator = chapter_estimator("05_russian_roulette");
         const FilmImage fifth = render(*room, settings);

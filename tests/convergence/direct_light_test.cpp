@@ -21,7 +21,6 @@ using glm::mat4;
 using std::numbers::pi;
 using Corners = std::vector<dvec3>;
 
-const std::vector<std::string> light_sampling_chapters = chapters_from(3);
 const vec3 albedo(0.8f, 0.5f, 0.2f), colour(1, 2, 0.5f);
 
 void add_triangle(Scene& scene, const Corners& corners, uint32_t material) {
@@ -236,8 +235,8 @@ TEST(LambertPolygon, IsTheIntegralOverTheLight) {
     }
 }
 
-class DirectLight : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(light_sampling_chapters), chapter_name);
+class DirectLight : public OnEachChapter {};
+INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(light_sampling_chapters()), chapter_name);
 
 TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
     uint32_t seed = 100;
@@ -280,7 +279,7 @@ TEST_P(DirectLight, OfManyTrianglesIsThatOfTheirUnion) {
             for (size_t k = 0; k < column.size(); ++k)
                 irradiance[k] += column[k] * std::exp2(static_cast<double>(i % 8) - 4);
         }
-        const Batches batches = render_batches(scene, settings_of(GetParam(), 64, n), light_batches);
+        const Batches batches = render_batches(scene, settings_of(GetParam(), 24, n), light_batches);
         expect_direct_light(std::to_string(2 * n * n) + " triangles", batches, irradiance, {0.02, 0.5}, 2);
     }
 }
@@ -363,7 +362,7 @@ TEST_P(DirectLight, AddsToTheLightOfTheSky) {
     expect_direct_light("light and sky", batches, receiver.irradiance(light), {0.02, 0.5}, 1, sky);
 }
 
-class AllChapters : public testing::TestWithParam<std::string> {};
+class AllChapters : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(DirectLight, AllChapters, testing::ValuesIn(all_chapters), chapter_name);
 
 TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {
@@ -374,7 +373,7 @@ TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {
         const Receiver receiver(normal);
         Scene scene = receiver.scene();
         add_triangle(scene, receiver.place(light), 1);
-        RenderSettings settings = settings_of(GetParam(), 320, ++seed);
+        RenderSettings settings = settings_of(GetParam(), 200, ++seed);
         settings.light_sampling = LightSampling::off;
         expect_direct_light(name, render_batches(scene, settings, light_batches),
                             receiver.irradiance(receiver.place(light)), {0.05, 2}, 3);

@@ -20,10 +20,11 @@ Cost measure(const Scene& scene, RenderSettings settings) {
     constexpr uint32_t pairs = 16;
     const double paths = double{2} * settings.samples * settings.width * settings.height;
     Cost cost{.logarithms = {}, .error = 0, .rays = 0};
+    SceneRenderer renderer(scene, settings);
     for (uint32_t pair = 0; pair < pairs; ++pair) {
-        const Rendering first = render_and_count(scene, settings);
+        const Rendering first = renderer.render(settings);
         ++settings.seed;
-        const Rendering second = render_and_count(scene, settings);
+        const Rendering second = renderer.render(settings);
         ++settings.seed;
         const double error =
             2 * settings.samples * estimate_error(first.film.mean(), second.film.mean()).rel_mse;

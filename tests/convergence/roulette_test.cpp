@@ -34,7 +34,7 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
     return {difference_from(numbers, expected).relative_to(expected)};
 }
 
-class Roulette : public testing::TestWithParam<std::string> {};
+class Roulette : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_from(5)), chapter_name);
 
 // With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So

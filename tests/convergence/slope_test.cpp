@@ -24,7 +24,7 @@ void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings
     EXPECT_LT(slope.standard_error, largest_slope_error) << "the test is too weak, take larger images";
 }
 
-class Convergence : public testing::TestWithParam<std::string> {};
+class Convergence : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(all_chapters), chapter_name);
 
 TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {

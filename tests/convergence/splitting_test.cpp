@@ -82,7 +82,7 @@ SplittingFit fit_variances(const std::vector<std::vector<double>>& variances_of_
     return fit;
 }
 
-class Splitting : public testing::TestWithParam<std::string> {};
+class Splitting : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Splitting,
                          testing::Values("04_splitting", "05_russian_roulette", "06_dielectrics"),
                          chapter_name);
@@ -109,7 +109,7 @@ TEST_P(Splitting, BranchesAreIndependent) {
     scene.camera.vertical_fov = 1e-3f;
     std::vector<std::vector<double>> variances;
     for (const uint32_t s : splitting_factors)
-        variances.push_back(sample_variances(render_batches(scene, settings_of(GetParam(), s), 1024), 32));
+        variances.push_back(sample_variances(render_batches(scene, settings_of(GetParam(), s), 256), 16));
     const SplittingFit fit = fit_variances(variances);
     EXPECT_GT(fit.p_value, significance);
     expect_no_difference("correlation of branches", std::vector{fit.outer.relative_to(fit.inner)}, 0.1);

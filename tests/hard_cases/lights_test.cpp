@@ -14,12 +14,11 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-const std::vector<std::string> light_sampling_chapters = chapters_from(3);
 constexpr float albedo = 0.8f;
 
 class Lights : public OnEachBackend {
   protected:
-    static std::vector<std::string> chapters() { return chapters_for(GetParam(), light_sampling_chapters); }
+    static std::vector<std::string> chapters() { return chapters_for(GetParam(), light_sampling_chapters()); }
     RenderSettings settings(const std::string& chapter, uint32_t samples, uint32_t seed) const {
         RenderSettings settings{.width = 16,
                                 .height = 16,
@@ -79,7 +78,7 @@ TEST_P(Lights, OfExtremeSizesAndDistancesIlluminateAsLambertSays) {
             const MeanEstimate radiance =
                 estimate_mean(pixel_means(render(scene, settings(chapter, 16, ++seed)), 0));
             expect_mean(std::string(name) + ", " + chapter, radiance, expected, 0.1,
-                        std::size(cases) * light_sampling_chapters.size());
+                        std::size(cases) * light_sampling_chapters().size());
             RecordProperty(std::string("error_of_light_") + name, percent(radiance.mean / expected - 1));
         }
     }
@@ -101,8 +100,8 @@ TEST_P(Lights, AtGrazingAnglesErrByTheRoundingOfPositions) {
             Scene scene = floor_with({vec3(1)}, {quad});
             scene.camera.vertical_fov = 1e-5f;  // elsewhere on the floor the angle is another one
             const double expected = expected_radiance(scene);
-            const MeanEstimate radiance = estimate_mean(
-                pixel_means(render(scene, settings(light_sampling_chapters.front(), 64, 1)), 0));
+            const MeanEstimate radiance =
+                estimate_mean(pixel_means(render(scene, settings(chapters().front(), 64, 1)), 0));
             const double error = radiance.mean / expected - 1, noise = radiance.standard_error / expected;
             std::printf("  %s, %g degrees: off by %s +- %s\n", name, degrees, percent(error).c_str(),
                         percent(noise).c_str());
@@ -166,7 +165,7 @@ TEST_P(Lights, OfUnequalPowerAreChosenByIt) {
     const double expected = expected_radiance(scene);
     for (const std::string& chapter : chapters())
         expect_mean(chapter, estimate_mean(pixel_means(render(scene, settings(chapter, 16, 1)), 0)), expected,
-                    0.05, light_sampling_chapters.size());
+                    0.05, light_sampling_chapters().size());
 }
 
 }  // namespace

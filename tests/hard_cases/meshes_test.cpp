@@ -81,7 +81,8 @@ class BadMeshes : public OnEachBackend {
         const std::vector<double> expected = batches(equivalent, "02_cosine_sampling").means(0);
         const double mean = estimate_mean(expected).mean;
         std::vector<Difference> differences;
-        for (const std::string& chapter : chapters_for(GetParam(), {"06_dielectrics", "01_uniform_sampling"}))
+        for (const std::string& chapter :
+             chapters_for(GetParam(), {"05_russian_roulette", "01_uniform_sampling"}))
             differences.push_back(
                 difference_of(batches(scene, chapter).means(0), expected).relative_to(mean));
         expect_no_difference(what, differences, 0.06, 6);

@@ -12,8 +12,8 @@ Estimator probe(const std::string& name);
 // What the probe returned, added over all samples of all pixels.
 glm::dvec3 probe_total(const Scene& scene, const RenderSettings& settings);
 
-// All chapters for `compute`, the first for the other backends: what chapters do differently does not depend
-// on them.
+// All these chapters for `compute`, the first for the other backends: what chapters do differently does not
+// depend on them. For scenes without glass.
 std::vector<std::string> chapters_for(Backend backend, std::vector<std::string> all);
 
 // Of all emissive triangles, as the estimators divide by them; for scenes of untransformed instances.

@@ -51,11 +51,12 @@ TEST_P(SampleIndexCases, TheLastSamplesAreRenderedAsAnyOthers) {
     const Scene scene = load_shipped_scene("cornell_box.json");
     RenderSettings settings{.width = 24, .height = 20, .samples = count, .backend = GetParam()};
     settings.first_sample = last - count + 1;
-    const FilmImage whole = render(scene, settings);
+    SceneRenderer renderer(scene, settings);
+    const FilmImage whole = renderer.render(settings).film;
     settings.samples = 1;
     const auto render_sample = [&](uint32_t index) {
         settings.first_sample = index;
-        return render(scene, settings);
+        return renderer.render(settings).film;
     };
     std::vector<glm::dvec3> sums(whole.pixels.size());
     std::set<std::vector<double>> images;

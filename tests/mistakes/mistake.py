@@ -48,7 +48,7 @@ def run(program, test, tree):
     shutil.copy(BINARIES / binary.name, binary)
     report = tree / "report.json"
     report.unlink(missing_ok=True)
-    environment = {**os.environ, "XDG_CACHE_HOME": str(tree / "cache")}
+    environment = {**os.environ, "LAB_TEST_STOP_AT_VERDICT": "1"}
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     result = test_report.run(binary, report, f"--gtest_filter={test}", env=environment, **streams)
     if not report.exists():

@@ -29,12 +29,13 @@ ErrorSlope measure_error_slope(const Scene& scene, RenderSettings settings, uint
     // Least squares of the logarithms of the errors, each weighted by its own variance.
     double weights = 0, x_sum = 0, y_sum = 0, xx_sum = 0, xy_sum = 0;
     ErrorSlope slope{};
+    SceneRenderer renderer(scene, settings);
     for (uint32_t samples = 1; samples <= max_samples; samples *= 4) {
         settings.samples = samples;
         ++settings.seed;
-        const FilmImage first = render(scene, settings);
+        const FilmImage first = renderer.render(settings).film;
         ++settings.seed;
-        const MeanEstimate error = log_error(first, render(scene, settings));
+        const MeanEstimate error = log_error(first, renderer.render(settings).film);
         const double x = std::log(samples), y = 0.5 * error.mean;
         const double weight = 1 / std::pow(0.5 * error.standard_error, 2);
         weights += weight;

@@ -1,5 +1,7 @@
 // main() of the tests that use a device.
 #include <cstdio>
+#include <cstdlib>
+#include <string>
 
 #include "support/gpu_test.h"
 
@@ -30,11 +32,25 @@ class ValidationListener : public testing::EmptyTestEventListener {
     size_t driver_count_ = 0;
 };
 
+// Ends a test at its first verdict, where LAB_TEST_STOP_AT_VERDICT asks for that: who expects a test to be
+// red needs no more. Neither a test that finds itself too weak nor a misuse of Vulkan is one.
+class StoppingListener : public testing::EmptyTestEventListener {
+    void OnTestPartResult(const testing::TestPartResult& result) override {
+        const std::string message = result.message();
+        const bool is_verdict =
+            message.find("too weak") == message.npos && message.find("validation") == message.npos;
+        if (result.failed() && is_verdict) throw testing::AssertionException(result);
+    }
+};
+
 }  // namespace
 }  // namespace lab
 
 int main(int argument_count, char** arguments) {
     testing::InitGoogleTest(&argument_count, arguments);
-    testing::UnitTest::GetInstance()->listeners().Append(new lab::ValidationListener);
+    auto& listeners = testing::UnitTest::GetInstance()->listeners();
+    listeners.Append(new lab::ValidationListener);
+    if (std::getenv("LAB_TEST_STOP_AT_VERDICT"))
+        listeners.Append(new lab::StoppingListener);  // has to be the last
     return RUN_ALL_TESTS();
 }
