@@ -6,6 +6,8 @@
     tests/mistakes/learn.py confusion  plants each mistake again and lets it be named: with new seeds, in the differently
                                        written shaders of tests/variants, and on scenes that check does not use; writes
                                        docs/records/check/confusion.json, which goes on where it was interrupted
+
+With --chapter N either does so for chapter N alone, and what it wrote of the others stays.
 """
 import json
 import sys
@@ -20,7 +22,8 @@ import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
 from check.likely_mistake import SIGNATURES, rank, read_signatures, signature  # noqa: E402
 from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
-from project import RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
+from project import (RECORDS, Parser, UserError, add_device_options, commit, number, read_json, show_progress,  # noqa: E402
+                     write_json)
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
@@ -34,6 +37,19 @@ def settings():
     """What the record of trials depends on, as it stands there."""
     depends = TRYING | {"scenes": grading.SCENES, "options": grading.OPTIONS, "other_scenes": OTHER_SCENES}
     return json.loads(json.dumps(depends))
+
+
+def settings_of_others(all_settings, chapter):
+    """The same without those of a chapter."""
+    return {key: {number: value for number, value in values.items() if number != str(chapter)} if isinstance(values, dict) else values
+            for key, values in all_settings.items()}
+
+
+def kept_trials(record, chapter, names):
+    """Those of all chapters but the one that is tried anew."""
+    if settings_of_others(record["settings"], chapter) != settings_of_others(settings(), chapter):
+        raise UserError("the settings of other chapters have changed as well: try all of them, without --chapter")
+    return {key: trial for key, trial in record["trials"].items() if key in names}
 
 
 class Workshop:
@@ -95,12 +111,14 @@ def write_lines(file, knowledge):
     file.write_text("{\n" + ",\n".join(blocks) + "\n}\n", encoding="utf-8")
 
 
-def confusion(workshop):
+def confusion(workshop, chapter):
     record = read_json(RECORD) if RECORD.exists() else {"is_complete": True}
     open_trials = trials()
     if record["is_complete"] or record["settings"] != settings():
-        record = {"is_complete": False, "commit": commit(), "settings": settings(), "trials": {}}
-        levels, signatures = learn(workshop, OTHER_SCENES)
+        others = {name for name, trial in open_trials.items() if trial[0] != chapter}
+        kept = kept_trials(record, chapter, others) if chapter else {}
+        record = {"is_complete": False, "commit": commit(), "settings": settings(), "trials": kept}
+        levels, signatures = learn(workshop, {n: scenes for n, scenes in OTHER_SCENES.items() if chapter in (None, n)})
         record["other_scenes"] = {"levels": levels, "signatures": signatures}
         write_json(RECORD, record)
     record = json.loads(json.dumps(record))  # numbers of chapters as keys become text, as in a record that was read
@@ -125,15 +143,17 @@ def main():
     parser = Parser("tests/mistakes/learn.py", __doc__)
     parser.add_argument("action", choices=["learn", "confusion"])
     parser.add_argument("--jobs", type=number(int, 1), default=1, help="shaders that are rendered at a time; default: 1")
+    parser.add_argument("--chapter", type=int, choices=grading.SCENES, metavar="N", help="default: all")
     add_device_options(parser)
     options = parser.parse_args()
     workshop = Workshop(options)
     if options.action == "confusion":
-        confusion(workshop)
+        confusion(workshop, options.chapter)
         return
-    levels, signatures = learn(workshop, {chapter: scenes for chapter, (_, scenes) in grading.SCENES.items()})
-    write_lines(grading.LEVELS, levels)
-    write_lines(SIGNATURES, signatures)
+    learnt = learn(workshop, {n: scenes for n, (_, scenes) in grading.SCENES.items() if options.chapter in (None, n)})
+    for file, knowledge in zip((grading.LEVELS, SIGNATURES), learnt):
+        before = read_json(file) if options.chapter else {}
+        write_lines(file, before | {str(chapter): entry for chapter, entry in knowledge.items()})
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ layout(local_size_x = 128) in;
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= results.length()) return;
-    set_surface(vec3(0.0, 0.0, 1.0), Material(vec3(1.0), -1, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0)), 1u);
+    set_surface(vec3(0.0, 0.0, 1.0), Material(vec3(1.0), -1, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0), 1u);
     positions[3] = vec3(0.0, 0.0, 1.0);
     positions[4] = vec3(0.0, 1.0, 1.0);
     positions[5] = vec3(1.0, 0.0, 1.0);

@@ -27,7 +27,7 @@ LightPoint get_and_note_light_point(LightTriangle light, vec2 barycentrics) {
 
 // Runs the estimator at a white floor under a white sky.
 vec3 run_estimator(uvec2 seed) {
-    Material white = Material(vec3(1.0), -1, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0));
+    Material white = Material(vec3(1.0), -1, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     set_surface(vec3(0.0, 0.0, 1.0), white, max_path_length);
     // What lights.glsl looks up: a triangle above the floor that faces it.
     positions[3] = vec3(0.0, 0.0, 1.0);

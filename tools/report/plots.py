@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib import image, pyplot, ticker
 
 # Okabe and Ito's colours, which can be told apart by everybody; peers are grey.
-COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9"]
+COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#332288", "#999933"]  # as many as chapters
 PEER_COLOURS = ["#000000", "#666666", "#a0a0a0"]
-MARKERS = "osD^vP"
+MARKERS = "osD^vPX*"
 DIFFERENCE_FACTOR = 4  # of difference images: full red or blue is a difference of a quarter of the reference's mean
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
