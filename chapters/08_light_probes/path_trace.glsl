@@ -40,10 +40,12 @@ vec3 sample_light_probe_direction(inout uvec2 seed, out float density) {
 vec3 sample_light_probe(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     float sampled_density;
     vec3 omega = sample_light_probe_direction(seed, sampled_density);
-    if (!is_above_surface(s, omega) || is_occluded(get_ray_from_surface(s, omega), NO_LIMIT)) return vec3(0.0);
+    // Rarely the look-up rounds to a black cell beside the sampled one, where nothing shines.
+    float light_density = get_light_probe_density(omega);
+    if (!is_above_surface(s, omega) || light_density == 0.0) return vec3(0.0);
+    if (is_occluded(get_ray_from_surface(s, omega), NO_LIMIT)) return vec3(0.0);
 
     // The last factor is 1, but where the look-up rounds to another cell.
-    float light_density = get_light_probe_density(omega);
     return get_light_sample_weight(s, omega, out_direction, light_density) * get_background_radiance(omega) *
            (light_density / sampled_density);
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parallel.h"
+
 namespace lab {
 
 Texture to_display(const FilmImage& film, DisplayTransform transform, float exposure) {
@@ -13,20 +15,19 @@ Texture to_display(const FilmImage& film, DisplayTransform transform, float expo
         const float largest = *std::max_element(mean.pixels.begin(), mean.pixels.end());
         if (largest > 0) scale = 1 / largest;
     }
-    Texture result{film.width, film.height, {}};
-    result.pixels.reserve(4 * film.pixels.size());
-    for (size_t i = 0; i < film.pixels.size(); ++i) {
-        if (film.pixels[i].invalid_count > 0) {
-            result.pixels.insert(result.pixels.end(), {255, 0, 255, 255});
-            continue;
+    Texture result{film.width, film.height, std::vector<uint8_t>(4 * film.pixels.size())};
+    in_parallel(film.pixels.size(), 1 << 14, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            uint8_t* pixel = result.pixels.data() + 4 * i;
+            pixel[0] = pixel[2] = pixel[3] = 255;
+            if (film.pixels[i].invalid_count > 0) continue;
+            for (size_t channel = 0; channel < 3; ++channel) {
+                float value = std::clamp(scale * mean.pixels[3 * i + channel], 0.0f, 1.0f);
+                if (transform == DisplayTransform::exposure) value = linear_to_srgb(value);
+                pixel[channel] = static_cast<uint8_t>(std::lround(255 * value));
+            }
         }
-        for (size_t channel = 0; channel < 3; ++channel) {
-            float value = std::clamp(scale * mean.pixels[3 * i + channel], 0.0f, 1.0f);
-            if (transform == DisplayTransform::exposure) value = linear_to_srgb(value);
-            result.pixels.push_back(static_cast<uint8_t>(std::lround(255 * value)));
-        }
-        result.pixels.push_back(255);
-    }
+    });
     return result;
 }
 

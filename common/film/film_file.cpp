@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "parallel.h"
 
 namespace lab {
 namespace {
@@ -101,16 +102,19 @@ FilmFile read_film(const std::filesystem::path& file) {
     const auto further_samples = counts(exr, "further_samples", count, file);
     const auto invalid = counts(exr, "invalid_samples", count, file);
     film.image = {exr.image.width, exr.image.height, std::vector<FilmPixel>(count)};
-    for (size_t i = 0; i < count; ++i) {
-        FilmPixel& pixel = film.image.pixels[i];
-        pixel.sample_count = samples + further_samples[i];
-        pixel.invalid_count = invalid[i];
-        for (int channel = 0; channel < 3; ++channel) {
-            const double mean = exr.image.pixels[3 * i + static_cast<size_t>(channel)];
-            if (!std::isfinite(mean)) throw UserError(file.string() + ": has infinite pixels: render again");
-            set_sum(pixel, channel, mean * pixel.sample_count);
+    in_parallel(count, 1 << 16, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            FilmPixel& pixel = film.image.pixels[i];
+            pixel.sample_count = samples + further_samples[i];
+            pixel.invalid_count = invalid[i];
+            for (int channel = 0; channel < 3; ++channel) {
+                const double mean = exr.image.pixels[3 * i + static_cast<size_t>(channel)];
+                if (!std::isfinite(mean))
+                    throw UserError(file.string() + ": has infinite pixels: render again");
+                set_sum(pixel, channel, mean * pixel.sample_count);
+            }
         }
-    }
+    });
     return film;
 }
 
@@ -133,50 +137,59 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
     require("shader hash", a.record.estimator_hash, b.record.estimator_hash);
 }
 
-FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
-    struct Part {
-        std::string name;
-        FilmFile film;
-        uint64_t end;  // one past its last sample
-    };
-    std::vector<Part> parts;
-    for (const auto& file : files) {
-        parts.push_back({file.string(), read_film(file), 0});
-        auto& [name, film, end] = parts.back();
-        const uint32_t samples = film.image.min_samples();
-        if (!film.image.has_equal_sample_counts())
-            throw UserError(name + " is an unfinished render: finish it with --resume first");
-        end = uint64_t{film.record.first_sample} + samples;
-    }
-    if (parts.empty()) throw UserError("nothing to merge: name at least one .exr");
-    std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
-        return a.film.record.first_sample < b.film.record.first_sample;
+// Adds a film to the sum of others of the same render.
+static void add(FilmFile& sum, const FilmFile& part) {
+    in_parallel(sum.image.pixels.size(), 1 << 16, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            FilmPixel& pixel = sum.image.pixels[i];
+            const FilmPixel& added = part.image.pixels[i];
+            for (int channel = 0; channel < 3; ++channel)
+                set_sum(pixel, channel,
+                        double{pixel.sum[channel]} + double{pixel.compensation[channel]} +
+                            double{added.sum[channel]} + double{added.compensation[channel]});
+            pixel.sample_count += added.sample_count;
+            pixel.invalid_count += added.invalid_count;
+        }
     });
-    FilmFile merged = parts.front().film;
-    for (size_t i = 1; i < parts.size(); ++i) {
-        const auto& [name, film, end] = parts[i];
-        require_same_render(parts.front().film, film, parts.front().name, name);
-        if (film.record.first_sample != parts[i - 1].end)
-            throw UserError(parts[i - 1].name + " ends before sample " + std::to_string(parts[i - 1].end) +
-                            " and " + name + " starts at " + std::to_string(film.record.first_sample) +
+    sum.record.first_sample = std::min(sum.record.first_sample, part.record.first_sample);
+    sum.record.rays += part.record.rays;
+    sum.record.seconds += part.record.seconds;
+    if (sum.record.backend != part.record.backend) sum.record.backend = "several";
+    if (sum.record.device != part.record.device) sum.record.device = "several";
+}
+
+FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
+    if (files.empty()) throw UserError("nothing to merge: name at least one .exr");
+    struct Range {
+        uint64_t begin, end;
+        std::string name;
+    };
+    std::vector<Range> ranges;
+    FilmFile merged;
+    for (const auto& file : files) {  // one after the other: there may be many, and large ones
+        FilmFile part = read_film(file);
+        if (!part.image.has_equal_sample_counts())
+            throw UserError(file.string() + " is an unfinished render: finish it with --resume first");
+        const uint64_t begin = part.record.first_sample;
+        ranges.push_back({begin, begin + part.image.min_samples(), file.string()});
+        if (ranges.size() == 1) {
+            merged = std::move(part);
+        } else {
+            require_same_render(merged, part, files.front().string(), file.string());
+            add(merged, part);
+        }
+    }
+    std::ranges::sort(ranges, {}, &Range::begin);
+    for (size_t i = 1; i < ranges.size(); ++i) {
+        const auto& [begin, end, name] = ranges[i];
+        const Range& before = ranges[i - 1];
+        if (begin != before.end)
+            throw UserError(before.name + " ends before sample " + std::to_string(before.end) + " and " +
+                            name + " starts at " + std::to_string(begin) +
                             ": the ranges must join without overlap or gap");
-        if (end - parts.front().film.record.first_sample > UINT32_MAX)
+        if (end - ranges.front().begin > UINT32_MAX)
             throw UserError(name + " ends at sample " + std::to_string(end) +
                             ": a merged render has at most 2^32 - 1 samples");
-        for (size_t p = 0; p < merged.image.pixels.size(); ++p) {
-            FilmPixel& sum = merged.image.pixels[p];
-            const FilmPixel& added = film.image.pixels[p];
-            for (int channel = 0; channel < 3; ++channel)
-                set_sum(sum, channel,
-                        double{sum.sum[channel]} + double{sum.compensation[channel]} +
-                            double{added.sum[channel]} + double{added.compensation[channel]});
-            sum.sample_count += added.sample_count;
-            sum.invalid_count += added.invalid_count;
-        }
-        merged.record.rays += film.record.rays;
-        merged.record.seconds += film.record.seconds;
-        if (merged.record.backend != film.record.backend) merged.record.backend = "several";
-        if (merged.record.device != film.record.device) merged.record.device = "several";
     }
     return merged;
 }

@@ -112,14 +112,6 @@ Texture read_texture(const std::filesystem::path& file) {
     return texture;
 }
 
-void write_png(const std::filesystem::path& file, const Texture& image) {
-    std::string bytes;
-    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
-    check_written(stbi_write_png_to_func(append, &bytes, width, height, 4, image.pixels.data(), 4 * width),
-                  file);
-    write_file(file, bytes);
-}
-
 void write_jpg(const std::filesystem::path& file, const Texture& image) {
     constexpr int quality = 95;
     std::string bytes;

@@ -67,7 +67,10 @@ struct Bins {
     void add(std::span<const Primitive> primitives, const Binning& binning) {
         for (const auto& primitive : primitives) {
             const Int4 bins = binning.bins(primitive);
-            for (int axis = 0; axis < 3; ++axis) axes[axis][bins[axis]].add({primitive.box(), 1});
+            const Bin one{primitive.box(), 1};
+            axes[0][bins[0]].add(one);  // not in a loop, so that the compiler knows the lanes
+            axes[1][bins[1]].add(one);
+            axes[2][bins[2]].add(one);
         }
     }
     void add(const Bins& bins) {

@@ -1,4 +1,5 @@
 #include "error.h"
+#include "parallel.h"
 #include "tracing/bvh.h"
 
 namespace lab {
@@ -11,8 +12,8 @@ std::vector<BvhTriangle> world_triangles(const Scene& scene) {
     if (count > max_triangle_count)
         throw UserError(scene.file.string() + ": its instances have " + std::to_string(count) +
                         " triangles together, more than 2^28 - 1; remove instances or use another backend");
-    std::vector<BvhTriangle> triangles;
-    triangles.reserve(count);
+    std::vector<BvhTriangle> triangles(count);
+    size_t first = 0;  // of the instance
     for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
         const glm::dmat4x3 object_to_world(scene.instances[instance].object_to_world);
         const auto world = [&](uint32_t position) {
@@ -23,11 +24,16 @@ std::vector<BvhTriangle> world_triangles(const Scene& scene) {
             return result;
         };
         const Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
-        for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i) {
-            const uvec3 vertices = scene.triangles[i];
-            const mat3 rows = glm::transpose(mat3(world(vertices.x), world(vertices.y), world(vertices.z)));
-            triangles.push_back({rows[0], instance, rows[1], i, rows[2], 0});
-        }
+        in_parallel(mesh.triangle_count, 1 << 14, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const auto triangle = static_cast<uint32_t>(mesh.first_triangle + i);
+                const uvec3 vertices = scene.triangles[triangle];
+                const mat3 rows =
+                    glm::transpose(mat3(world(vertices.x), world(vertices.y), world(vertices.z)));
+                triangles[first + i] = {rows[0], instance, rows[1], triangle, rows[2], 0};
+            }
+        });
+        first += mesh.triangle_count;
     }
     return triangles;
 }

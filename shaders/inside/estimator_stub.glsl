@@ -18,6 +18,7 @@ uvec3 triangles[2] = {uvec3(0u, 1u, 2u), uvec3(3u, 4u, 5u)};  // the surface, an
 uint triangle_materials[2] = {0u, 1u};
 Material materials[2];
 
+#include "light_probe.glsl"
 #include "background.glsl"
 #include "shading_data.glsl"
 #include "materials.glsl"

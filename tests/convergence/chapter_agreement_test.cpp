@@ -40,7 +40,11 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
                      subject("4", "04_splitting/path_trace.glsl", s)});
     pairs.push_back({subject("5", "05_russian_roulette/path_trace.glsl", 6 - s),
                      subject("6", "06_dielectrics/path_trace.glsl", s == 5 ? 1 : 2)});
-    pairs.push_back({Subject{"7 by light samples", "07_multiple_importance_sampling/path_trace.glsl", 1, 1, {"ONLY_LIGHT_SAMPLES"}},
+    pairs.push_back({Subject{"7 by light samples",
+                             "07_multiple_importance_sampling/path_trace.glsl",
+                             1,
+                             1,
+                             {"ONLY_LIGHT_SAMPLES"}},
                      Subject{"8", "08_light_probes/path_trace.glsl", 1}});
     return pairs;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "rendering/options.h"
 #include "statistics/error_metrics.h"
 #include "support/expect_statistics.h"
 #include "support/render.h"
@@ -57,6 +58,17 @@ Cost measure_chapter(const std::string& scene_name, size_t number, uint32_t samp
     return measure(scene, settings);
 }
 
+// Chapter 7 with one of its two ways to find light.
+Cost measure_strategy(const std::string& scene_name, Strategy strategy, uint32_t samples, uint32_t length) {
+    RenderSettings settings{.width = 64, .height = 64, .samples = samples, .max_path_length = length};
+    settings.roulette_start = 2;
+    settings.seed = 7100;
+    settings.estimator = chapter_estimator(all_chapters.at(6));
+    if (strategy == Strategy::light) settings.estimator.defines = {"ONLY_LIGHT_SAMPLES"};
+    if (strategy == Strategy::brdf) settings.light_sampling = LightSampling::off;
+    return measure(load_shipped_scene(scene_name + ".json"), settings);
+}
+
 TEST(Efficiency, CosineSamplingAndNextEventEstimationPay) {
     const Cost uniform = measure_chapter("cornell_box", 1, 64, 4),
                cosine = measure_chapter("cornell_box", 2, 64, 4);
@@ -78,13 +90,21 @@ TEST(Efficiency, RussianRoulettePaysForLongPaths) {
                 measure_chapter("cornell_box", 5, 8, 1000, 2));
 }
 
-// Where many small lights are near, bounces find what light samples rarely do well; on glossy surfaces light
-// samples miss the lobe.
+// Where lights are near, light samples are noisy; where surfaces are glossy, they miss the lobe.
 TEST(Efficiency, MultipleImportanceSamplingPays) {
     expect_gain("multiple importance sampling against dielectrics, heart",
-                measure_chapter("heart_light", 6, 16, 4), measure_chapter("heart_light", 7, 16, 4));
-    expect_gain("multiple importance sampling against dielectrics, glossy",
-                measure_chapter("glossy", 6, 16, 4), measure_chapter("glossy", 7, 16, 4));
+                measure_chapter("heart_light", 6, 12, 4), measure_chapter("heart_light", 7, 12, 4));
+    const Cost both = measure_chapter("plates", 7, 16, 2);
+    expect_gain("both strategies against light samples", measure_strategy("plates", Strategy::light, 64, 2),
+                both);
+    expect_gain("both strategies against bounces", measure_strategy("plates", Strategy::brdf, 64, 2), both);
+}
+
+TEST(Efficiency, SamplingTheLightProbePays) {
+    expect_gain("light probes against multiple importance sampling, small sun",
+                measure_chapter("sunny", 7, 64, 2), measure_chapter("sunny", 8, 8, 2));
+    expect_gain("light probes against multiple importance sampling, wide sun",
+                measure_chapter("textured", 7, 16, 2), measure_chapter("textured", 8, 4, 2));
 }
 
 }  // namespace

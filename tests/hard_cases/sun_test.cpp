@@ -4,6 +4,7 @@
 
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
+#include "support/lambert_polygon.h"
 #include "support/render.h"
 #include "support/scenes.h"
 
@@ -14,35 +15,36 @@ using glm::dvec3;
 using std::numbers::pi;
 
 constexpr uint32_t width = 64, height = 32;
-constexpr uvec2 sun{40, 8};
+constexpr uvec2 ordinary_sun{40, 8};
 constexpr float sky_radiance = 0.1f, sun_radiance = 1e5f;
 
 // A white floor under the probe; the camera sees nothing but the floor.
-Scene sunny_floor() {
+Scene sunny_floor(uvec2 sun = ordinary_sun, float sky = sky_radiance) {
     Scene scene = make_scene({diffuse_material(vec3(1))}, {{{-1, 0, 1}, {2, 0, 0}, {0, 0, -2}}});
     scene.camera = {{0, 2, 0}, {0, 0, 0}, {0, 0, -1}, 30};
     scene.background = vec3(1);
-    scene.light_probe = Image{width, height, std::vector<float>(size_t{3} * width * height, sky_radiance)};
+    scene.light_probe = Image{width, height, std::vector<float>(size_t{3} * width * height, sky)};
     for (size_t channel = 0; channel < 3; ++channel)
         scene.light_probe->pixels[3 * (size_t{sun.y} * width + sun.x) + channel] = sun_radiance;
     return scene;
 }
 
 // Texel centres have the full radiance of a texel; between them it changes linearly.
-double radiance(double column, double row) {
-    const double near_x = std::max(0.0, 1 - std::abs(column - sun.x)),
-                 near_y = std::max(0.0, 1 - std::abs(row - sun.y));
-    return sky_radiance + double{sun_radiance - sky_radiance} * near_x * near_y;
+// The probe repeats from side to side, and ends at the poles.
+double radiance(double column, double row, uvec2 sun, double sky) {
+    const double away = std::abs(column - sun.x), near_x = std::max(0.0, 1 - std::min(away, width - away)),
+                 near_y = std::max(0.0, 1 - std::abs(std::max(row, 0.0) - sun.y));
+    return sky + (double{sun_radiance} - sky) * near_x * near_y;
 }
 
 // The radiance of the floor: ∫ L cos θ / π over the upper hemisphere, by the midpoint rule.
-double floor_radiance() {
+double floor_radiance(uvec2 sun = ordinary_sun, double sky = sky_radiance) {
     constexpr int steps = 64;  // a texel
     double sum = 0;
     for (int i = 0; i < static_cast<int>(height) / 2 * steps; ++i)
         for (int j = 0; j < static_cast<int>(width) * steps; ++j) {
             const double row = (i + 0.5) / steps, column = (j + 0.5) / steps, theta = pi * row / height;
-            sum += radiance(column - 0.5, row - 0.5) * std::cos(theta) * std::sin(theta);
+            sum += radiance(column - 0.5, row - 0.5, sun, sky) * std::cos(theta) * std::sin(theta);
         }
     return sum / pi * (pi / height) * (2 * pi / width) / (steps * steps);
 }
@@ -65,6 +67,7 @@ TEST_P(SunCases, LightsAFloorAsItsIntegralSays) {
 
 TEST_P(SunCases, IsSeenAtItsFullRadiance) {
     Scene scene = sunny_floor();
+    const uvec2 sun = ordinary_sun;
     const double azimuth = 2 * pi * (sun.x + 0.5 - width / 2.0) / width,
                  inclination = pi * (sun.y + 0.5) / height;
     scene.camera = {
@@ -75,6 +78,71 @@ TEST_P(SunCases, IsSeenAtItsFullRadiance) {
         .vertical_fov = 1e-3f};
     const FilmImage film = render(scene, {.width = 1, .height = 1, .samples = 1, .backend = GetParam()});
     EXPECT_NEAR(radiance_at(film, 0, 0).r / sun_radiance, 1, 1e-3);
+}
+
+// Light samples find the sun wherever it is, together with the bounces and alone.
+TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
+    const struct {
+        const char* name;
+        uvec2 sun;
+        float sky;
+    } cases[] = {{"ordinary", ordinary_sun, sky_radiance},
+                 {"at the pole", {40, 0}, sky_radiance},
+                 {"across the seam", {0, 8}, sky_radiance},
+                 {"across the other side of the seam", {width - 1, 12}, sky_radiance},
+                 {"at the horizon", {20, height / 2 - 1}, sky_radiance},
+                 {"in a black sky", {13, 5}, 0}};
+    uint32_t seed = 100 * (1 + static_cast<uint32_t>(GetParam()));
+    for (const auto& [name, sun, sky] : cases)
+        for (const bool only_light_samples : {false, true}) {
+            const bool is_first = sun == ordinary_sun && !only_light_samples;
+            RenderSettings settings{.samples = is_first ? 2048u : 128u,
+                                    .max_path_length = 1,
+                                    .seed = ++seed,
+                                    .backend = GetParam()};
+            settings.estimator = chapter_estimator("08_light_probes");
+            if (only_light_samples) settings.estimator.defines = {"ONLY_LIGHT_SAMPLES"};
+            const MeanEstimate mean = estimate_mean(pixel_means(render(sunny_floor(sun, sky), settings), 1));
+            const double expected = floor_radiance(sun, sky);
+            if (is_first)
+                record("mean_over_integral", "%.4f ± %.4f", mean.mean / expected,
+                       mean.standard_error / expected);
+            expect_mean(name + std::string(only_light_samples ? ", light samples alone" : ""), mean, expected,
+                        is_first ? 0.003 : 0.018, 2 * std::size(cases));
+        }
+}
+
+TEST_P(SunCases, LampAndSunAddUp) {
+    Scene scene = sunny_floor();
+    RenderSettings settings{.samples = 64,
+                            .max_path_length = 1,
+                            .seed = 77 + static_cast<uint32_t>(GetParam()),
+                            .backend = GetParam()};
+    settings.estimator = chapter_estimator("08_light_probes");
+    // A lamp so far to the side that it hides next to nothing of the sky, and not the sun.
+    const std::vector<dvec3> lamp{{9, 5, -9}, {9, 6, -9}, {10, 6, -8}, {10, 5, -8}};
+    Scene lit = make_scene({diffuse_material(vec3(1)), diffuse_material(vec3(0), vec3(1e5f))},
+                           {{{-1, 0, 1}, {2, 0, 0}, {0, 0, -2}},
+                            {vec3(lamp[0]), vec3(lamp[1] - lamp[0]), vec3(lamp[3] - lamp[0]), 1}});
+    scene.positions = lit.positions, scene.triangles = lit.triangles, scene.materials = lit.materials;
+    scene.triangle_materials = lit.triangle_materials, scene.meshes = lit.meshes;
+    scene.camera.vertical_fov = 0.5f;
+    const double of_lamp = 1e5 *
+                           (polygon_irradiance(lamp, dvec3(0), {0, 1, 0}) +
+                            polygon_irradiance({lamp.rbegin(), lamp.rend()}, dvec3(0), {0, 1, 0})) /
+                           pi;
+    const double of_sun = floor_radiance();
+    ASSERT_GT(of_lamp, 0.1 * of_sun);
+    expect_mean("lamp and sun", estimate_mean(pixel_means(render(scene, settings), 1)), of_lamp + of_sun,
+                0.02);
+}
+
+TEST_P(SunCases, BlackProbesGiveNothing) {
+    RenderSettings settings{.samples = 16, .max_path_length = 4, .backend = GetParam()};
+    settings.estimator = chapter_estimator("08_light_probes");
+    Scene scene = sunny_floor();
+    scene.light_probe->pixels.assign(scene.light_probe->pixels.size(), 0.0f);
+    for (const FilmPixel& pixel : render(scene, settings).pixels) ASSERT_EQ(pixel.sum, vec3(0));
 }
 
 }  // namespace

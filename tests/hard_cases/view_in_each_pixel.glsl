@@ -1,6 +1,6 @@
-// Chapter 3 with camera rays through the whole image instead of a pixel.
+// A chapter with camera rays through the whole image instead of a pixel.
 #define path_trace path_trace_along
-#include "../chapters/03_next_event_estimation/path_trace.glsl"
+#include "observed.glsl"
 #undef path_trace
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {

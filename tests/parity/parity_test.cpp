@@ -24,8 +24,8 @@ struct TracedImage {
 // A scene with the acceleration structure of a backend.
 class BackendScene {
   public:
-    BackendScene(Backend backend, const Scene& scene)
-        : gpu_scene_(test_device(), scene),
+    BackendScene(Backend backend, const Scene& scene, LightSampling light_sampling = LightSampling::on)
+        : gpu_scene_(test_device(), scene, light_sampling),
           structure_(build_acceleration_structure(backend, test_device(), gpu_scene_)) {}
 
     // One sample a pixel.
@@ -148,10 +148,19 @@ std::map<std::string, RenderSettings> chapter_estimators(const std::string& scen
 TEST_P(Parity, EveryChapterOnEveryScene) {
     for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes")) {
         const Scene scene = load_scene(file);
-        const BackendScene expected(Backend::compute, scene), actual(GetParam(), scene);
-        for (const auto& [name, settings] : chapter_estimators(file.stem().string()))
-            expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings),
-                          actual.render(settings), limits_of(scene));
+        const auto estimators = chapter_estimators(file.stem().string());
+        for (const LightSampling light_sampling : {LightSampling::on, LightSampling::with_probe}) {
+            const auto samples_so = [&](const auto& e) {
+                return light_sampling_of(e.second) == light_sampling;
+            };
+            if (std::none_of(estimators.begin(), estimators.end(), samples_so)) continue;
+            const BackendScene expected(Backend::compute, scene, light_sampling),
+                actual(GetParam(), scene, light_sampling);
+            for (const auto& [name, settings] : estimators)
+                if (samples_so(std::pair(name, settings)))
+                    expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings),
+                                  actual.render(settings), limits_of(scene));
+        }
     }
 }
 

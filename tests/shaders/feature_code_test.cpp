@@ -35,8 +35,8 @@ const std::map<std::string, Needs>& needs_of_features() {
           .samples_images = true}},
         {"sky", {.parameter_members = {"background"}}},
         {"light probe",
-         {.bindings = {BINDING_LIGHT_PROBE},
-          .functions = {"get_light_probe_radiance"},
+         {.bindings = {BINDING_LIGHT_PROBE, BINDING_PROBE_CELLS},
+          .functions = {"get_light_probe_radiance", "choose_probe_cell"},
           .parameter_members = {"background", "probe_rotation"},
           .samples_images = true}},
         {"area lights",
@@ -58,11 +58,14 @@ class FeatureCode : public testing::TestWithParam<std::string> {
   protected:
     bool samples_lights() const { return chapter_number(GetParam()) >= 3; }
     bool weights_lights() const { return chapter_number(GetParam()) >= 7; }
+    bool samples_probes() const { return chapter_number(GetParam()) >= 8; }
     bool knows_dielectrics() const { return chapter_number(GetParam()) >= 6; }
 
     Footprint footprint(const Scene& scene, Backend backend) const {
-        const GpuScene gpu_scene(test_device(), scene,
-                                 samples_lights() ? LightSampling::on : LightSampling::off);
+        const RenderSettings settings{
+            .light_sampling = samples_lights() ? LightSampling::on : LightSampling::off,
+            .estimator = chapter_estimator(GetParam())};
+        const GpuScene gpu_scene(test_device(), scene, light_sampling_of(settings));
         const auto structure = build_acceleration_structure(backend, test_device(), gpu_scene);
         std::set<std::string> functions;
         for (const auto& [name, needs] : needs_of_features())
@@ -118,6 +121,10 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
             continue;
         if (feature.name == "area lights" && !samples_lights()) needs = {};
         if (feature.name == "area lights" && !weights_lights()) needs.material_members = {};
+        if (feature.name == "light probe" && !samples_probes()) {
+            needs.bindings.erase(BINDING_PROBE_CELLS);
+            needs.functions.erase("choose_probe_cell");
+        }
         Scene scene = bare_scene();
         feature.add(scene);
         const Footprint actual = footprint(scene, backend);

@@ -1,0 +1,65 @@
+#include "image/compression.h"
+
+#include <zlib.h>
+
+#include <new>
+
+#include "image/byte_order.h"
+#include "parallel.h"
+
+namespace lab {
+namespace {
+
+constexpr int level = 4;  // what is noise hardly gets smaller by more work
+
+// All of a stream or a part of it: raw parts have neither header nor checksum, and end at a whole byte.
+std::string deflate_all(std::string_view bytes, int window_bits, int flush) {
+    z_stream stream{};
+    if (deflateInit2(&stream, level, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY) != Z_OK)
+        throw std::bad_alloc();
+    std::string result(deflateBound(&stream, bytes.size()) + 16, '\0');  // 16: more than a flush adds
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    stream.next_out = reinterpret_cast<Bytef*>(result.data());
+    stream.avail_out = static_cast<uInt>(result.size());
+    deflate(&stream, flush);
+    result.resize(stream.total_out);
+    deflateEnd(&stream);
+    return result;
+}
+
+const Bytef* to_bytes(std::string_view bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
+
+}  // namespace
+
+std::string compress(std::string_view bytes) { return deflate_all(bytes, MAX_WBITS, Z_FINISH); }
+
+std::string compress_in_parallel(std::string_view bytes) {
+    constexpr size_t piece_size = 1 << 18;
+    struct Piece {
+        std::string compressed;
+        uLong checksum;
+    };
+    std::vector<Piece> pieces((bytes.size() + piece_size - 1) / piece_size);
+    in_parallel(bytes.size(), piece_size, [&](size_t begin, size_t end) {
+        const std::string_view piece = bytes.substr(begin, end - begin);
+        const int flush = end == bytes.size() ? Z_FINISH : Z_SYNC_FLUSH;
+        pieces[begin / piece_size] = {
+            deflate_all(piece, -MAX_WBITS, flush),
+            adler32(adler32(0, nullptr, 0), to_bytes(piece), static_cast<uInt>(piece.size()))};
+    });
+    std::string stream = "\x78\x5e";  // deflate with a window of 32 KiB, at a fast level
+    uLong checksum = adler32(0, nullptr, 0);
+    for (size_t i = 0; i < pieces.size(); ++i) {
+        const size_t size = std::min(piece_size, bytes.size() - i * piece_size);
+        stream += pieces[i].compressed;
+        checksum = adler32_combine(checksum, pieces[i].checksum, static_cast<z_off_t>(size));
+    }
+    return stream + big_endian(static_cast<uint32_t>(checksum));
+}
+
+uint32_t crc(std::string_view bytes) {
+    return static_cast<uint32_t>(crc32_z(crc32_z(0, nullptr, 0), to_bytes(bytes), bytes.size()));
+}
+
+}  // namespace lab
