@@ -5,7 +5,12 @@ import os
 import re
 import unittest
 
-from program import PROJECT, QUAD_MTL, QUAD_OBJ, ProgramTest
+import numpy as np
+from image_files import Exr
+from program import BINARIES, PROJECT, QUAD_MTL, QUAD_OBJ, ProgramTest
+from references.exr import rgb_channels, write_exr
+
+SAMPLES_PROBES = BINARIES / "08_light_probes"
 
 
 class SceneFiles(ProgramTest):
@@ -158,6 +163,11 @@ class MeshFiles(ProgramTest):
             self.refuse("chapter 6", mtl=QUAD_MTL + line + "\nNi 1.5\n")
 
 
+def one_coloured_hdr(width, height):
+    """A light probe with a radiance of 1 everywhere, in rows that are not compressed."""
+    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width) + bytes([128, 128, 128, 129]) * (width * height)
+
+
 class ImageFiles(ProgramTest):
     def damaged(self):
         """Contents that no reader of images should take."""
@@ -181,12 +191,45 @@ class ImageFiles(ProgramTest):
             (self.folder / name).unlink()
             self.assert_refused(["quad.json"], name)
 
-    def test_light_probes(self):
+    def use_light_probe(self, name, contents=b""):
         scene = json.loads((self.folder / "quad.json").read_text())
+        scene["background"] = {"light_probe": name}
+        self.write("quad.json", json.dumps(scene))
+        return self.write(name, contents)
+
+    def test_light_probes(self):
         for name in ("bad.hdr", "bad.exr"):
-            scene["background"] = {"light_probe": name}
-            self.write("quad.json", json.dumps(scene))
+            self.use_light_probe(name)
             self.refuse("quad.json", names=[name])
+
+    def test_light_probes_with_impossible_radiance(self):
+        for number in (float("nan"), float("inf"), -0.5):
+            radiance = np.ones((2, 4, 3), np.float32)
+            radiance[1, 2, 0] = number
+            write_exr(self.use_light_probe("bad.exr"), rgb_channels(radiance), {})
+            with self.subTest(number=number):
+                self.assert_refused(["quad.json"], r"bad\.exr: pixel \(2, 1\) is negative, infinite or not a number",
+                                    program=SAMPLES_PROBES)
+
+    def test_light_probes_that_are_too_large(self):
+        for width, height in ((16385, 1), (1, 16385)):
+            self.use_light_probe("bad.hdr", one_coloured_hdr(width, height))
+            with self.subTest(width=width, height=height):
+                self.assert_refused(["quad.json"], rf"bad\.hdr: an image of {width} x {height} pixels", "16384",
+                                    program=SAMPLES_PROBES)
+
+    def test_light_probes_of_any_shape_cover_the_sphere(self):
+        options = ["--width=16", "--height=16", "--samples=256", "--max-path-length=1", "--backend=compute", "--quiet"]
+
+        def mean():
+            self.render("quad.json", *options, "--output=a.exr", program=SAMPLES_PROBES)
+            return Exr(self.folder / "a.exr").mean()[0]
+
+        sky = mean()
+        for width, height in ((1, 1), (5, 5), (3, 8), (16384, 1), (1, 16384)):
+            self.use_light_probe("odd.hdr", one_coloured_hdr(width, height))
+            with self.subTest(width=width, height=height):
+                self.assertAlmostEqual(mean() / sky, 1, delta=0.02)
 
     def test_references_and_checkpoints(self):
         self.refuse("quad.json", "--reference={}", names=["bad.exr"])

@@ -85,13 +85,22 @@ def bvh_steps(folder, images, reports):
     sheet(folder / "bvh_steps.jpg", [tiles])
 
 
-def equal_time(folder, images, reports):
+def by_scene(path, images, reports):
+    """A row of chapters for each scene; renders are named SCENE_CHAPTER."""
     rows = {}
     for name, radiance in images.items():
         scene, number = name.rsplit("_", 1)
         label = f"chapter {number}: {reports[name]['rows'][-1]['samples']:,} samples"
         rows.setdefault(scene, []).append((label, encode_srgb(radiance)))
-    sheet(folder / "equal_time.jpg", list(rows.values()))
+    sheet(path, list(rows.values()))
+
+
+def equal_time(folder, images, reports):
+    by_scene(folder / "equal_time.jpg", images, reports)
+
+
+def light_probes(folder, images, reports):
+    by_scene(folder / "light_probes.jpg", images, reports)
 
 
 def convergence(folder, images, reports):

@@ -73,6 +73,12 @@ def renders_of_strategies():
                    height=256) for strategy in ("light", "brdf", "both")]
 
 
+def renders_of_light_probes():
+    """Bounces beside light samples, for the same number of rays."""
+    return [Render(f"{scene}_{int(chapter[:2])}", chapter, scene, 320, (), RAYS_PER_PIXEL)
+            for scene in ("sunny", "studio") for chapter in map(chapter_named, ("multiple_importance_sampling", "light_probes"))]
+
+
 def renders_of_path_lengths():
     return [Render(f"only_{length}", chapter_named("next_event_estimation"), "cornell_box", 160,
                    ("--samples", 256, "--only-path-length", length, "--max-path-length", 9)) for length in range(10)]
@@ -98,13 +104,14 @@ def renders_at_equal_time():
 
 
 def renders_of_convergence():
-    """Four runs of each chapter but that of glass, whose errors are averaged; a sample of splitting is several paths."""
+    """Four runs of each chapter that differs in the Cornell box, whose errors are averaged; a sample of splitting is several
+    paths."""
     reference = ("--reference", "assets/references/cornell_box_6.exr", "--max-path-length", 6)
-    glass = chapter_named("dielectrics")
+    others = [chapter_named("dielectrics"), chapter_named("light_probes")]
     return [Render(f"run_{number}_{seed}", name, "cornell_box", 128,
                    ("--samples", 64 if "--splitting-factor" in description(name).get("options", []) else 256, "--seed", seed,
                     *reference))
-            for number, name in CHAPTERS.items() if name != glass for seed in range(1, 5)]
+            for number, name in CHAPTERS.items() if name not in others for seed in range(1, 5)]
 
 
 def renders_of_bvh_steps():
@@ -115,6 +122,7 @@ def renders_of_bvh_steps():
 FIGURES = {
     "chapters": (renders_of_chapters, figure_plots.chapters),
     "strategies": (renders_of_strategies, figure_plots.strategies),
+    "light_probes": (renders_of_light_probes, figure_plots.light_probes),
     "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
     "effects": (renders_of_effects, figure_plots.effects),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),

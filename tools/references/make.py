@@ -27,8 +27,9 @@ from references.scenes import read_scene
 GOES_ON = True
 # The references that the tests use: maximal path lengths for each scene.
 SHIPPED = {"cornell_box": (1, 6), "torus": (5,), "heart_light": (4,), "textured": (4,), "glossy": (5,), "instances": (4,),
-           "glass": (8,), "check_room": (2, 6), "check_glass": (8,), "plates": (3,)}
-SHIPPED_SIZES, SHIPPED_SAMPLES = {"plates": (144, 96)}, 65536  # others: 128 x 128
+           "glass": (8,), "check_room": (2, 6), "check_glass": (8,), "plates": (3,), "sunny": (4,), "studio": (4,)}
+SHIPPED_SIZES = {"plates": (144, 96)}  # others: 128 x 128
+SHIPPED_SAMPLES = {"sunny": 16384, "studio": 16384}  # others: 65536
 
 BATCHES = 64  # for the variance of the mean: known to 18 %
 MIN_BATCHES = 32  # of an interrupted render
@@ -106,4 +107,4 @@ def make(options):
         make_reference(options.scene, output, options.width, options.height, options.max_path_length, options.samples, options.seed)
     for name, length in ((name, length) for name, lengths in SHIPPED.items() for length in lengths if options.all):
         make_reference(ROOT / f"assets/scenes/{name}.json", FOLDERS[0] / f"{name}_{length}.exr",
-                       *SHIPPED_SIZES.get(name, (128, 128)), length, SHIPPED_SAMPLES, options.seed, keep=True)
+                       *SHIPPED_SIZES.get(name, (128, 128)), length, SHIPPED_SAMPLES.get(name, 65536), options.seed, keep=True)

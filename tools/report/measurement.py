@@ -65,8 +65,8 @@ def report_cases(scenes, chapters, variants):
 def study_cases():
     """What docs/results.md shows: neighbours are compared with each other."""
     cases = []
-    splitting, roulette, glass, weights = map(
-        chapter_named, ("splitting", "russian_roulette", "dielectrics", "multiple_importance_sampling"))
+    splitting, roulette, glass, weights, probes = map(
+        chapter_named, ("splitting", "russian_roulette", "dielectrics", "multiple_importance_sampling", "light_probes"))
 
     def add(scene, length, name, program, *options):
         reference = ROOT / f"assets/references/{scene}_{length}.exr" if length else None
@@ -74,13 +74,16 @@ def study_cases():
 
     for scene, length in (("cornell_box", 6), ("torus", 5), ("heart_light", 4)):
         for number, program in CHAPTERS.items():
-            if program != glass:  # where nothing is of glass, it is the chapter before
+            if program not in (glass, probes):  # without glass or a light probe, each is the chapter before
                 add(scene, length, f"chapter {number}", program)
     for scene, length in (("glossy", 5), ("plates", 3)):
         for program in (roulette, weights):
             add(scene, length, f"chapter {int(program[:2])}", program)
         for strategy in ("light", "brdf", "both"):
             add(scene, length, f"strategy {strategy}", weights, "--strategy", strategy)
+    for scene in ("sunny", "studio", "textured"):
+        for program in (weights, probes):
+            add(scene, 4, f"chapter {int(program[:2])}", program)
     for scene, length in (("cornell_box", 6), ("heart_light", 4)):
         for factor in (1, 2, 4, 8, 16):
             add(scene, length, f"splitting factor {factor}", splitting, "--splitting-factor", str(factor))
