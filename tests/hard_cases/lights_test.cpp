@@ -168,5 +168,26 @@ TEST_P(Lights, OfUnequalPowerAreChosenByIt) {
                     0.05, light_sampling_chapters().size());
 }
 
+// A light that fills the whole lobe, seen in the floor: k_s cos θ of its radiance. Light samples hardly ever
+// hit a lobe that is a ten thousandth of a radian wide, so bounces have to find the light with all of the
+// weight.
+TEST_P(Lights, AreMirroredByTheNarrowestLobes) {
+    for (const float exponent : {1e4f, 1e6f, 1e8f})
+        for (const std::string& chapter : chapters_for(GetParam(), chapters_from(7))) {
+            const vec3 mirrored = glm::normalize(vec3(0.1f, 0.6f, 0.4f)),
+                       across = glm::normalize(glm::cross(mirrored, vec3(1, 0, 0))),
+                       along = glm::cross(across, mirrored);
+            const Quad light{2.0f * mirrored - 0.3f * (across + along), 0.6f * along, 0.6f * across, 1};
+            Scene scene = floor_with({vec3(3)}, {light});
+            scene.materials[0].diffuse_albedo = vec3(0);
+            scene.materials[0].specular_albedo = vec3(albedo);
+            scene.materials[0].specular_exponent = exponent;
+            char name[80];
+            std::snprintf(name, sizeof name, "exponent %g, %s", double{exponent}, chapter.c_str());
+            expect_mean(name, estimate_mean(pixel_means(render(scene, settings(chapter, 64, 9)), 0)),
+                        3.0 * albedo * mirrored.z, 0.01, 6);
+        }
+}
+
 }  // namespace
 }  // namespace lab
