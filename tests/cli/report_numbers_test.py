@@ -29,8 +29,8 @@ def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exp
 
 def synthetic_case(name, count=5, first_dice=1, **truth):
     runs = [synthetic_run(dice, **truth) | {"seed": seed} for seed, dice in enumerate(range(first_dice, first_dice + count), 1)]
-    return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": "", "backend": "", "note": "", "refused": None,
-            "width": 16, "height": 16, "max_path_length": 3, "reference": REFERENCE, "runs": runs}
+    return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": "", "options": "", "backend": "", "note": "", "refused": None,
+            "width": 16, "height": 16, "scale": 1, "paths_per_sample": 1, "max_path_length": 3, "reference": REFERENCE, "runs": runs}
 
 
 def summary(*cases):
@@ -60,7 +60,7 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertEqual(first["efficiency"], [1.0, None, None])
         self.assertAlmostEqual(second["efficiency"][0], 8)
         self.assertAlmostEqual(second["device_efficiency"][0], 8)
-        self.assertAlmostEqual(second["rays_per_path"], 3)
+        self.assertAlmostEqual(second["rays_per_sample"], 3)
         self.assertAlmostEqual(second["rays_per_second"], 3 * PIXELS / 0.02)
         self.assertAlmostEqual(second["rays_per_device_second"], 3 * PIXELS / 0.01)
 
