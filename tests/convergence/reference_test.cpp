@@ -33,9 +33,9 @@ constexpr uint32_t tile = 8;
 constexpr double tile_floor = 5e-4;
 
 // Chapters 1 and 2, which find lights by bounces, are held to 1 % of the image's mean, the others to 0.3 %.
-// What takes longest on two cores does not run every time, and glass only less strictly: bounces find its
-// caustics by chance. Where chapters between these are missing, ChapterAgreement ties them to their
-// neighbours.
+// What takes longest on two cores does not run every time, or less strictly: glass, whose caustics bounces
+// find by chance, and the studio. Where chapters between these are missing, ChapterAgreement ties them to
+// their neighbours.
 const std::vector<ReferenceCase> reference_cases{
     {"cornell_box_1", 1, 32, 0.01},
     {"cornell_box_1", 2, 20, 0.01},
@@ -52,6 +52,8 @@ const std::vector<ReferenceCase> reference_cases{
     {"glossy_5", 7, 40, 0.003},
     {"plates_3", 7, 20, 0.07, 15.0},  // one pixel, the smallest light, has nearly all the noise
     {"glass_8", 7, 5, 0.01, 0.9, Run::always, Tail::heavy},
+    {"sunny_4", 8, 14, 0.003},
+    {"studio_4", 8, 12, 0.005},
     {"textured_4", 1, 16, 0.01, 0.9, Run::with_all},
     {"torus_5", 3, 26, 0.003, 0.5, Run::with_all},
     {"torus_5", 4, 22, 0.003, 0.5, Run::with_all},
