@@ -13,6 +13,7 @@ BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build/bin"))
 RECORDS = ROOT / "docs/records"
 CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9][0-9]_*"))}  # number -> folder
 VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba, the slowest first
+GPU_VARIANT = "cuda_ad_rgb"
 SAMPLERS = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]  # of Mitsuba
 BAR_WIDTH = 24
 

@@ -21,7 +21,7 @@ def among_chapters(record):
             scenes.setdefault((scene_of(case["scene"]), case["width"], case["height"]), []).append(case)
     for key, cases in scenes.items():
         first, best = errors(cases[0], "device_seconds"), min(cases, key=lambda case: errors(case, "device_seconds").mean)
-        yield key, [best["case"], with_interval(paired_ratio(first, errors(best, "device_seconds"))) if best is not cases[0] else "1"]
+        yield key, [best["case"], "1" if best is cases[0] else with_interval(paired_ratio(first, errors(best, "device_seconds")))]
 
 
 def against_peers(record):
@@ -48,6 +48,6 @@ def best_table():
         rows.append([f"`{scene}`" if scene != before else "", f"{width} x {height}", device,
                      *chapters.get(key, ["", ""]), *peers.get(key, ["", "", ""])])
         before = scene
-    head = ["scene", "pixels", "device", "best chapter", "times faster than the first", "best against Mitsuba", "Mitsuba at its best",
-            "times faster than that"]
+    head = ["scene", "pixels", "device", "best chapter", "times faster than the first", "best against Mitsuba",
+            "Mitsuba at its best", "times faster than that"]
     return table(head, rows, left=4)

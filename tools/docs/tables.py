@@ -3,8 +3,9 @@
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
---peer-sampler multijitter cornell_box heart_light glass clear_glass 3 5 6 7`, whose report.json belongs into docs/records/peers, `tests/mistakes/learn.py confusion`,
-`tests/measure.py` and `./lab device --output docs/records/devices/DEVICE.json`.
+--peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass 3 5 6 7`, whose report.json belongs into
+docs/records/peers, `tests/mistakes/learn.py confusion`, `tests/measure.py` and `./lab device --output
+docs/records/devices/DEVICE.json`.
 """
 import math
 import os

@@ -10,12 +10,13 @@ from pathlib import Path
 
 from references.mitsuba import MAX_BATCH_PATHS, dr, make_mitsuba_scene, mi, np, run_mitsuba  # isort: skip
 
-from project import SAMPLERS, VARIANTS, Parser, write_json
+from project import GPU_VARIANT, SAMPLERS, VARIANTS, Parser, write_json
 from references.exr import rgb_channels, write_exr
 from references.images import read_reference, rel_mse
 from references.scenes import read_scene
 
-CALLS = 8  # at least, for as many samples as are asked for: larger ones are faster
+CALLS = 8  # of independent samples, for a curve. Other samplers spread those of a call: the fewer calls, the less error.
+GPU_BATCH_PATHS = 1 << 26  # instead of MAX_BATCH_PATHS: they take about 4 GiB
 GROWTH = 8  # of the samples of a call, until a time is over
 
 
@@ -24,7 +25,7 @@ class Render:
 
     def __init__(self, scene, pixels, seed):
         self.scene, self.seed = scene, seed
-        self.largest = max(1, MAX_BATCH_PATHS // pixels)
+        self.largest = max(1, (GPU_BATCH_PATHS if mi.variant() == GPU_VARIANT else MAX_BATCH_PATHS) // pixels)
         self.compiled = set()  # numbers of samples
         self.calls = self.samples = self.seconds = self.sum = self.discarded_seconds = 0
 
@@ -66,7 +67,8 @@ def render(options):
     reference = read_reference(options.reference) if options.reference else None
     film = Render(mitsuba_scene, options.width * options.height, options.seed)
     if options.samples:
-        parts = itertools.repeat(math.ceil(options.samples / max(CALLS, math.ceil(options.samples / film.largest))))
+        calls = max(CALLS if options.sampler == SAMPLERS[0] else 1, math.ceil(options.samples / film.largest))
+        parts = itertools.repeat(math.ceil(options.samples / calls))
     else:
         parts = (GROWTH**power for power in itertools.count())
     rows = []

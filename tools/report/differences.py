@@ -10,7 +10,7 @@ DIFFERENCES = [
     "The variants LLVM and CUDA compile a kernel for the scene. They do so before the clock runs, and seconds from the command on "
     "have that in the start-up. The chapters' shaders are compiled before as well; both keep what they compiled.",
     "Most samplers of Mitsuba round the number of samples up, and the samples that were taken count. They spread the samples of a "
-    "call, of which there are eight or more; ours are independent random numbers.",
+    "call, and their error falls with the size of a call: they get calls as large as memory allows. Ours are independent.",
     "Random numbers are different ones, so runs with the same seed share nothing but the time at which they were made.",
     "Large pictures are compared with the reference after averaging blocks of pixels, so that their error is that of a small "
     "picture with as many samples in all.",

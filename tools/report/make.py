@@ -6,10 +6,9 @@ cores. Ctrl-C keeps what was measured; the same command then goes on.
 """
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, SAMPLERS, Parser, UserError, add_device_options, number
+from project import CHAPTERS, GPU_VARIANT, ROOT, SAMPLERS, Parser, UserError, add_device_options, number
 from references.images import find_references
-from report.measurement import (GPU_VARIANT, Measurement, driver_of, find_device, report_cases, study_cases,
-                                working_variants)
+from report.measurement import Measurement, driver_of, find_device, report_cases, study_cases, working_variants
 from report.page import write_report
 
 GOES_ON = True

@@ -21,7 +21,6 @@ PILOT_PART = 0.3  # of a run's seconds: tells how many samples a run takes
 START_UP_SECONDS = {False: 0.4, True: 2.0}  # of ours and a peer, for the first guess of how long all takes
 DEVICE_LOST = 3  # exit code
 LARGE = 1024  # pixels of a side at which GPUs are compared with peers as well: small pictures do not fill them
-GPU_VARIANT = "cuda_ad_rgb"
 
 
 class Refused(UserError):
