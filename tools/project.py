@@ -12,7 +12,9 @@ ROOT = Path(__file__).resolve().parents[1]
 BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build/bin"))
 RECORDS = ROOT / "docs/records"
 CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9][0-9]_*"))}  # number -> folder
-VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba
+VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba, the slowest first
+GPU_VARIANT = "cuda_ad_rgb"
+SAMPLERS = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]  # of Mitsuba
 BAR_WIDTH = 24
 
 
@@ -125,6 +127,11 @@ def write_json(file, content):
 def load_records(folder):
     """Those of docs/records/FOLDER, a device each."""
     return [read_json(path) for path in sorted((RECORDS / folder).glob("*.json"))]
+
+
+def scene_of(name):
+    """The scene's name in that of a reference, which ends with numbers."""
+    return name.rstrip("_0123456789")
 
 
 def table(head, rows, left=1):

@@ -29,8 +29,8 @@ def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exp
 
 def synthetic_case(name, count=5, first_dice=1, **truth):
     runs = [synthetic_run(dice, **truth) | {"seed": seed} for seed, dice in enumerate(range(first_dice, first_dice + count), 1)]
-    return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": "", "backend": "", "note": "", "refused": None,
-            "width": 16, "height": 16, "max_path_length": 3, "reference": REFERENCE, "runs": runs}
+    return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": "", "options": "", "backend": "", "note": "", "refused": None,
+            "width": 16, "height": 16, "scale": 1, "paths_per_sample": 1, "max_path_length": 3, "reference": REFERENCE, "runs": runs}
 
 
 def summary(*cases):
@@ -60,7 +60,7 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertEqual(first["efficiency"], [1.0, None, None])
         self.assertAlmostEqual(second["efficiency"][0], 8)
         self.assertAlmostEqual(second["device_efficiency"][0], 8)
-        self.assertAlmostEqual(second["rays_per_path"], 3)
+        self.assertAlmostEqual(second["rays_per_sample"], 3)
         self.assertAlmostEqual(second["rays_per_second"], 3 * PIXELS / 0.02)
         self.assertAlmostEqual(second["rays_per_device_second"], 3 * PIXELS / 0.01)
 
@@ -68,6 +68,7 @@ class ReportNumbersTest(unittest.TestCase):
         scene = summary(synthetic_case("a", error=0.8, seconds=0.01, noise=0.05),
                         synthetic_case("Mitsuba", error=0.8, seconds=0.03, noise=0.05, first_dice=100))
         self.assert_covers(scene["gains"][0]["gain"], 3)
+        self.assertEqual([gain["case"] for gain in scene["gains"]], ["a"])  # none of the peer over itself
         self.assert_covers(scene["cases"][0]["seconds_to_target"], 0.3 + 0.8 / 1e-4 * 0.01)
         self.assertAlmostEqual(scene["cases"][0]["start_up_seconds"][0], 0.3)
 
@@ -104,16 +105,19 @@ class ReportNumbersTest(unittest.TestCase):
 
     def test_intervals_hold_the_noise_of_the_reference(self):
         """Runs that all miss the truth alike, by what the reference says that it may add."""
-        trials, found = 400, {"error": 0, "efficiency": 0, "slope": 0}
+        trials, found = 400, {"error": 0, "efficiency": 0, "gain": 0, "slope": 0}
         for trial in range(trials):
             shift = 0.001 * random.Random(-trial).gauss(0, 1)
             cases = [synthetic_case(name, error=error, noise=0.01, first_dice=10 * trial + 1) for name, error in (("a", 1.0), ("b", 0.5))]
+            cases.append(synthetic_case("Mitsuba", error=2.0, noise=0.01, first_dice=-10 * trial - 9))
             for case in cases:
                 case["reference"] = REFERENCE | {"rel_mse_deviation": 0.001}
                 for row in (row for run in case["runs"] for row in run["rows"]):
                     row["rel_mse"] += shift
-            first, second = summary(*cases)["cases"]
-            for name, (_, low, high), truth in (("error", first["error"], 1 / 64), ("efficiency", second["efficiency"], 2),
+            scene = summary(*cases)
+            first, second, _ = scene["cases"]
+            gain = next(gain["gain"] for gain in scene["gains"] if gain["case"] == "b")
+            for name, (_, low, high), truth in (("error", first["error"], 1 / 64), ("efficiency", second["efficiency"], 2), ("gain", gain, 4),
                                                 ("slope", first["slope_samples"], -1)):
                 found[name] += low < truth < high
         for name in found:
@@ -131,6 +135,16 @@ class ReportNumbersTest(unittest.TestCase):
             results.append((weights * ((truth - reference.mean) ** 2 - reference.variance)).mean())
             stated.append(reference.rel_mse_deviation)
         self.assertAlmostEqual(np.std(results) / np.mean(stated), 1, delta=0.1)
+
+    def test_samples_paths_and_large_pictures_are_told_apart(self):
+        plain, branching = synthetic_case("a"), synthetic_case("b") | {"paths_per_sample": 4}
+        large = synthetic_case("c") | {"width": 128, "height": 128, "scale": 8}
+        plain, branching, large = summary(plain, branching, large)["cases"]
+        self.assertAlmostEqual(branching["samples_per_second"], plain["samples_per_second"])
+        self.assertAlmostEqual(branching["paths_per_second"], 4 * plain["paths_per_second"])
+        self.assertAlmostEqual(large["samples_per_second"], 64 * plain["samples_per_second"])
+        self.assertAlmostEqual(plain["error_of_one_sample"], 1)
+        self.assertAlmostEqual(large["error_of_one_sample"], 64)  # 64 samples in a pixel of the reference have that of one here
 
     def test_a_planted_bias_is_found_and_stated(self):
         for channel in summary(synthetic_case("a", bias=-0.14))["cases"][0]["bias"]:

@@ -7,7 +7,8 @@ import sys
 import time
 import unittest
 
-from program import BINARIES, PROJECT, TOOLS, ProgramTest
+from program import BINARIES, PROJECT, TOOLS, ProgramTest  # first: it finds the tools
+from report import measurement
 
 REFERENCE = PROJECT / "assets/references/cornell_box_1.exr"
 # The command, with a folder of the test's own where references are looked for.
@@ -30,6 +31,19 @@ project.run_tool(make)"""
 LOSES_DEVICE = """#!/bin/sh
 case " $* " in *" --seed 2 "*) if [ -e '{broken}' ]; then echo 'error: the device is gone' >&2; exit 3; fi ;; esac
 exec '{program}' "$@"
+"""
+# Stands for Mitsuba on a CPU: takes its arguments, and renders by chapter 3.
+MITSUBA = """#!{python}
+import subprocess, sys
+variant, scene, arguments = sys.argv[4], sys.argv[5], sys.argv[6:]
+if variant == "cuda_ad_rgb":
+    sys.exit("error: no such device")
+if "--sampler" in arguments:
+    place = arguments.index("--sampler")
+    del arguments[place : place + 2]
+if "--samples" not in arguments:
+    arguments += ["--samples", "1000000"]
+sys.exit(subprocess.call(["{program}", "--quiet", scene, *arguments]))
 """
 SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
 
@@ -168,6 +182,37 @@ class ReportCommandTest(ProgramTest):
         self.assert_report_refused(["cornell_box", "9"], "no chapter 9")
         self.assert_report_refused(["--seconds=0"], "seconds", "--help")
         self.assert_report_refused(["--record=record.json", "torus"], "record", "no scenes")
+        self.assert_report_refused(["torus", "--peer-sampler=multijitter"], "--peer mitsuba")
+
+    def test_a_peer_is_compared_with_as_each_sampler(self):
+        (self.folder / "bin").mkdir()
+        fake = MITSUBA.format(python=sys.executable, program=BINARIES / "03_next_event_estimation")
+        self.write("bin/python3", fake).chmod(0o755)
+        arguments = ["cornell_box_1", "1", "4", "--peer=mitsuba", "--peer-sampler=multijitter", "--repetitions=2", *SMALL]
+        self.report(*arguments, environment={"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"})
+        scene, *others = json.loads((self.folder / "report/report.json").read_text())["scenes"]
+        self.assertEqual(len(others), 0 if "CPU" in self.record()["environment"]["driver"] else 1)  # large pictures
+        cases = {case["case"]: case for case in scene["cases"]}
+        self.assertEqual({name: case["options"] for name, case in cases.items()}, {
+            "chapter 1": "", "chapter 4": "", "Mitsuba scalar": "--sampler independent",
+            "Mitsuba LLVM": "--sampler independent", "Mitsuba LLVM, multijitter": "--sampler multijitter"})
+        self.assertEqual([case["paths_per_sample"] for case in cases.values()], [1, 4, 1, 1, 1])
+        gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
+        self.assertEqual(len(gains), 5 * 3 - 3)
+        self.assertLess(gains["chapter 1", "Mitsuba LLVM"][0], 0.5)
+        page = (self.folder / "report/index.html").read_text()
+        for text in ("Mitsuba LLVM, multijitter", "What differs", "Russian roulette"):
+            self.assertIn(text, page)
+        self.assertEqual(len(list((self.folder / "report/pictures").iterdir())), 2 * 5)
+
+    def test_large_pictures_are_compared_with_small_references(self):
+        """As far from the reference as small ones with as many samples in all."""
+        pairs, settings, found = [(PROJECT / "assets/scenes/cornell_box.json", REFERENCE)], {"backend": "compute", "device": None}, []
+        for is_large, samples in ((False, 64), (True, 1)):
+            (case,) = measurement.report_cases(pairs, [3], is_large=is_large)
+            self.assertEqual((case["width"], case["scale"]), (1024, 8) if is_large else (128, 1))
+            found.append(measurement.run_case(case, settings, ["--samples", samples, "--seed", 1])["rows"][-1]["rel_mse"])
+        self.assertTrue(0.4 < found[1] / found[0] < 1.2, found)
 
     def test_without_mitsuba_it_says_how_to_get_it(self):
         (self.folder / "bin").mkdir()

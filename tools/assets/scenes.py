@@ -233,15 +233,16 @@ def glossy():
 
 
 def glass():
-    # Both stay 0.01 above the floor: glass that touches another surface is neither inside nor outside there.
+    # All stay 0.01 above the floor: glass that touches another surface is neither inside nor outside there.
     materials = {"clear": {"Kd": "0 0 0", "d": "0", "Ni": "1.5"},
                  "teal": {"Kd": "0 0 0", "d": "0", "Ni": "1.5", "Tf": "0.08 0.5 0.62"}}
     write_mesh("clear_torus", [torus("clear")], materials)
-    write_mesh("teal_ball", [sphere("teal")], materials)
-    write_scene("glass", "A clear torus and an absorbing ball of glass in the Cornell box",
-                [mesh("room"), mesh("clear_torus", scale=0.36, rotation=turn([1, -0.3, -0.3], 64),
-                                    translation=[-0.36, 0.495, -0.2]),
-                 mesh("teal_ball", scale=0.33, translation=[0.42, 0.34, 0.25])], ROOM_CAMERA)
+    for name, what, paint in (("glass", "an absorbing", "teal"), ("clear_glass", "a clear", "clear")):
+        write_mesh(f"{paint}_ball", [sphere(paint)], materials)
+        write_scene(name, f"A clear torus and {what} ball of glass in the Cornell box",
+                    [mesh("room"), mesh("clear_torus", scale=0.36, rotation=turn([1, -0.3, -0.3], 64),
+                                        translation=[-0.36, 0.495, -0.2]),
+                     mesh(f"{paint}_ball", scale=0.33, translation=[0.42, 0.34, 0.25])], ROOM_CAMERA)
 
 
 def plates():

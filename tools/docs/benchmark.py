@@ -16,7 +16,7 @@ from statistics import median
 
 from project import ROOT, Parser, add_device_options, chapter_named, number, table
 from references.images import find_references
-from report.measurement import Measurement, devices_text, driver_of, new_case, run_case
+from report.measurement import Measurement, devices_text, driver_of, find_device, new_case
 from report.numbers import seconds_to_target
 
 GOES_ON = True
@@ -50,12 +50,6 @@ def system_text():
     cpu = find("/proc/cpuinfo", r"^model name\s*: (.*)$") or platform.machine()
     memory = int(find("/proc/meminfo", r"^MemTotal: *(\d+)") or 0) / 2**20
     return f"{name}, {cpu}, {len(os.sched_getaffinity(0))} threads, {memory:.0f} GiB"
-
-
-def find_device(settings):
-    """Name of the device that renders."""
-    tiny = new_case(ROOT / "assets/scenes/cornell_box.json", None, "which device?", CHAPTER) | {"width": 8, "height": 8}
-    return run_case(tiny, settings | {"backend": "compute"}, ["--samples", 1])["device"]
 
 
 def backends_of(device):
@@ -114,7 +108,7 @@ def main():
     options = parse()
     settings = {"scenes": options.scenes, "backend": options.backend, "device": options.device, "repetitions": RUNS}
     scenes = find_references(options.scenes or SCENES)
-    device = find_device(settings)
+    device = find_device(CHAPTER, settings | {"backend": "compute"})
     backends = [options.backend] if options.backend != "auto" else backends_of(device)
     cases = benchmark_cases(scenes, backends, driver_of(CHAPTER, device).startswith("CPU"))
     settings["seconds"] = options.seconds / len(cases)

@@ -1,37 +1,82 @@
 """What docs/results.md shows of Mitsuba and us: the report.json of ./lab report --peer mitsuba."""
-from project import table
+import math
+
+from project import scene_of, table
+from report.differences import DIFFERENCES
 from report.numbers import TARGET_ERROR, short, with_interval
 
 HEADER = f"""
 ## Against Mitsuba
 
-The chapters and Mitsuba 3 render the same scenes on the same machine in turns (`./lab report --peer mitsuba cornell_box
-heart_light glass 3 5 6`; the record is its `report.json`). The error is that of the first section. "Times faster" is the quotient of
-the times to the same error, by the clock and for rendering alone; seconds to {100 * TARGET_ERROR:.0f} % error are those from the command to a
-picture whose relative root mean squared error is that, with start-up. In brackets: the 95 % confidence interval.
+The chapters and Mitsuba 3 render the same scenes on the same machine in turns: `./lab report --peer mitsuba --peer-sampler
+multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass 3 5 6 7`. The record is its `report.json`. The
+error is that of the chapters' section. "Times faster" is the quotient of the times to the same error, by the clock and for
+rendering alone. Seconds to
+{100 * TARGET_ERROR:.0f} % error are those from the command to a picture whose relative root mean squared error is that, with
+start-up. In brackets: the 95 % confidence interval, from the spread of the runs and from the noise of the reference.
 
-What limits: `heart_light` is lit from nearby, where light sampling alone is noisy; Mitsuba combines it with BSDF sampling
-(multiple importance sampling), which these chapters leave out, and so needs fewer samples. On the CPU its LLVM variant traces eight
+What limits: `heart_light` is lit from nearby, where light sampling alone is noisy. On the CPU Mitsuba's LLVM variant traces eight
 rays at a time with Embree. On a GPU our threads wait for the longest path of their group
 ([backends.md](backends.md#when-each-is-faster-and-what-limits-it)).
-"""
+
+What differs:
+
+""" + "".join(f"- {text}\n" for text in DIFFERENCES)
+
+
+def gains_of(scene):
+    """{(case, peer): times that the case is faster, with its interval}."""
+    return {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
+
+
+def samplers(scenes):
+    """{peer: times that it is faster than the same variant with independent samples, in the geometric mean over the scenes}."""
+    logarithms = {}
+    for scene in scenes:
+        for (case, peer), (value, _, _) in gains_of(scene).items():
+            if case.startswith(f"{peer}, ") and value:
+                logarithms.setdefault(case, []).append(math.log(value))
+    return {case: math.exp(sum(values) / len(values)) for case, values in logarithms.items()}
+
+
+def sampler_text(scenes):
+    """Which of the samplers that were tried is Mitsuba's best."""
+    found = samplers(scenes)
+    if not found:
+        return "\nMitsuba's sampler is `independent`.\n"
+    best = max(found, key=found.get)
+    tried = ", ".join(f"{value:.2f} ({name.split(', ')[1]})" for name, value in found.items())
+    name = best.split(", ")[1] if found[best] > 1 else "independent"
+    return f"\nMitsuba's best sampler here is `{name}`. Times faster than `independent`, in the mean over the scenes: {tried}.\n"
+
+
+def size_table(scenes):
+    """The Markdown table of scenes of one size. Columns are Mitsuba with independent samples, and with its best sampler."""
+    cases = [case["case"] for scene in scenes for case in scene["cases"] if case["is_peer"]]
+    found = samplers(scenes)
+    best = max(found, key=found.get, default=None)
+    peers = [case for case in dict.fromkeys(cases) if case not in found or case == best]
+    head = ["scene", "", "million samples/s", "million paths/s", "error of one sample",
+            *(f"times faster than {peer}" for peer in peers), f"seconds to {100 * TARGET_ERROR:.0f} % error", "of which start-up"]
+    rows = []
+    for scene in scenes:
+        gains = gains_of(scene)
+        for number, case in enumerate(scene["cases"]):
+            rows.append([f"`{scene_of(scene['scene'])}`" if number == 0 else "", case["case"],
+                         *(short(case[f"{what}_per_second"] / 1e6) for what in ("samples", "paths")),
+                         short(case["error_of_one_sample"], 2),
+                         *(with_interval(gains[case["case"], peer]) if (case["case"], peer) in gains else "" for peer in peers),
+                         with_interval(case["seconds_to_target"]), with_interval(case["start_up_seconds"])])
+    size = f"{scenes[0]['width']} x {scenes[0]['height']}"
+    return f"\n{size} pixels:\n{sampler_text(scenes)}\n" + table(head, rows, left=2)
 
 
 def peer_table(report):
-    """The Markdown table of one device."""
-    scenes = [scene for scene in report["scenes"] if scene["gains"]]
-    peers = list(dict.fromkeys(gain["peer"] for scene in scenes for gain in scene["gains"]))
-    head = ["scene", "", "million paths/s", "error of one sample", *(f"times faster than {peer}" for peer in peers),
-            f"seconds to {100 * TARGET_ERROR:.0f} % error", "of which start-up"]
-    rows = []
-    for scene in scenes:
-        gains = {(gain["case"], gain["peer"]): with_interval(gain["gain"]) for gain in scene["gains"]}
-        for number, case in enumerate(scene["cases"]):
-            rows.append([f"`{scene['scene'].rstrip('_0123456789')}`" if number == 0 else "", case["case"],
-                         f"{case['paths_per_second'] / 1e6:.3g}", short(case["error"][0] * case["samples"], 2),
-                         *(gains.get((case["case"], peer), "") for peer in peers),
-                         with_interval(case["seconds_to_target"]), with_interval(case["start_up_seconds"])])
-    environment, first = report["environment"], scenes[0]["cases"][0]
-    size = f"{scenes[0]['width']} x {scenes[0]['height']}"
-    return (f"\n### {environment['device']}, `{first['backend']}`\n\n{environment['peer']}, {size} pixels.\n\n"
-            + table(head, rows, left=2))
+    """The Markdown tables of one device."""
+    sizes = {}
+    for scene in report["scenes"]:
+        if scene["gains"]:
+            sizes.setdefault((scene["width"], scene["height"]), []).append(scene)
+    environment, first = report["environment"], next(iter(sizes.values()))[0]["cases"][0]
+    return (f"\n### {environment['device']}, `{first['backend']}`\n\n{environment['peer']}.\n"
+            + "".join(map(size_table, sizes.values())))

@@ -3,8 +3,9 @@
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
-cornell_box heart_light glass 3 5 6`, whose report.json belongs into docs/records/peers, `tests/mistakes/learn.py confusion`,
-`tests/measure.py` and `./lab device --output docs/records/devices/DEVICE.json`.
+--peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass 3 5 6 7`, whose report.json belongs into
+docs/records/peers, `tests/mistakes/learn.py confusion`, `tests/measure.py` and `./lab device --output
+docs/records/devices/DEVICE.json`.
 """
 import math
 import os
@@ -12,13 +13,15 @@ import re
 from pathlib import Path
 from statistics import median
 
+from docs.best_table import HEADER as BEST
+from docs.best_table import best_table
 from docs.confusion_table import HEADER as CHECK
 from docs.confusion_table import confusion_table
 from docs.cost_tables import FEATURES, GROWTH, feature_table, growth_tables, seconds_text
 from docs.numerics import case_table, device_tables
 from docs.peer_table import HEADER as PEERS
 from docs.peer_table import peer_table
-from project import ROOT, Parser, UserError, load_records, table
+from project import ROOT, Parser, UserError, load_records, scene_of, table
 from report.numbers import errors, last_rows, mean_of, paired_ratio, with_interval
 
 DOCS = ROOT / "docs"
@@ -108,7 +111,7 @@ def page_table(name, record):
                 chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
             if number and chosen:  # the first row is the one to compare with
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
-            rows += [[f"`{scene.rstrip('_0123456789')}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]
+            rows += [[f"`{scene_of(scene)}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]
     return table(["scene", "", *COLUMNS], rows, left=2)
 
 
@@ -175,7 +178,7 @@ def section(header, folder, text_of):
 
 def write_pages(is_check=False):
     """Writes all pages, or only looks whether they are up to date."""
-    texts = {DOCS / "results.md": HEADER + section(CHAPTERS, "chapters", chapter_tables) +
+    texts = {DOCS / "results.md": HEADER + BEST + best_table() + section(CHAPTERS, "chapters", chapter_tables) +
              section(BACKENDS, "backends", backend_table) + section(PEERS, "peers", peer_table) +
              section(FEATURES, "cost", feature_table) + section(GROWTH, "cost", growth_tables) +
              section(CHECK, "check", confusion_table)}

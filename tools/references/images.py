@@ -40,6 +40,12 @@ def read_rgb(path):
     return Exr(path).rgb()
 
 
+def averaged(image, scale):
+    """The image with a pixel for each scale x scale of its own."""
+    height, width, channels = image.shape
+    return image.reshape(height // scale, scale, width // scale, scale, channels).mean(axis=(1, 3))
+
+
 def read_reference(path):
     try:
         file = Exr(path)

@@ -27,7 +27,7 @@ from references.scenes import read_scene
 GOES_ON = True
 # The references that the tests use: maximal path lengths for each scene.
 SHIPPED = {"cornell_box": (1, 6), "torus": (5,), "heart_light": (4,), "textured": (4,), "glossy": (5,), "instances": (4,),
-           "glass": (8,), "check_room": (2, 6), "check_glass": (8,), "plates": (3,), "sunny": (4,), "studio": (4,)}
+           "glass": (8,), "clear_glass": (8,), "check_room": (2, 6), "check_glass": (8,), "plates": (3,), "sunny": (4,), "studio": (4,)}
 SHIPPED_SIZES = {"plates": (144, 96)}  # others: 128 x 128
 SHIPPED_SAMPLES = {"sunny": 16384, "studio": 16384}  # others: 65536
 

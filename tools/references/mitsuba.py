@@ -104,7 +104,7 @@ def make_light_probe(scene):
     return {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(fine)), "to_world": turn}
 
 
-def make_camera(scene, width, height, unit):
+def make_camera(scene, width, height, unit, sampler):
     position, target, up = unit * scene.camera["position"], unit * scene.camera["target"], scene.camera["up"]
     forward = (target - position) / np.linalg.norm(target - position)
     if np.linalg.norm(np.cross(forward, up)) <= 1e-6 * np.linalg.norm(up):  # leaves the roll open
@@ -113,19 +113,19 @@ def make_camera(scene, width, height, unit):
         "type": "perspective", "fov": float(scene.camera["vertical_fov"]), "fov_axis": "y",
         "near_clip": 1e-2, "far_clip": 1e8,
         "to_world": mi.ScalarTransform4f().look_at(list(position), list(target), list(up)),
-        "sampler": {"type": "independent"},
+        "sampler": {"type": sampler},
         "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
                  "component_format": "float32", "rfilter": {"type": "box"}},
     }
 
 
-def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False):
+def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False, sampler="independent"):
     """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself
     where nothing emits, and not at all on lights: nearly the same picture, without Python where it renders."""
     absorbs = any(surface.material.absorption.any() for surface in scene.surfaces)
     integrator = "volpath" if absorbs else "path"
     unit = unit_length(scene)
-    content = {"type": "scene", "sensor": make_camera(scene, width, height, unit),
+    content = {"type": "scene", "sensor": make_camera(scene, width, height, unit, sampler),
                "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30}}
     for i, surface in enumerate(scene.surfaces):
         content[f"surface_{i}"] = make_mesh(surface, unit, own_normals)

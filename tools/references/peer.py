@@ -1,31 +1,33 @@
 """Renders one of our scenes with Mitsuba 3 and reports error against samples and seconds as a chapter does.
 
 It has the command line of a chapter as far as `./lab report --peer mitsuba` needs it. The seconds of a row are those of
-Mitsuba's render calls alone; first calls with a few samples, which are discarded, compile its kernels.
+Mitsuba's render calls alone, and its kernels are compiled before.
 """
 import itertools
-import operator
+import math
 import time
 from pathlib import Path
 
 from references.mitsuba import MAX_BATCH_PATHS, dr, make_mitsuba_scene, mi, np, run_mitsuba  # isort: skip
 
-from project import VARIANTS, Parser, write_json
+from project import GPU_VARIANT, SAMPLERS, VARIANTS, Parser, write_json
 from references.exr import rgb_channels, write_exr
 from references.images import read_reference, rel_mse
 from references.scenes import read_scene
 
-STEPS = 3  # Rows stand at an eighth, a quarter, a half and all of the samples: small calls would slow it down.
+CALLS = 8  # of independent samples, for a curve. Other samplers spread those of a call: the fewer calls, the less error.
+GPU_BATCH_PATHS = 1 << 26  # instead of MAX_BATCH_PATHS: they take about 4 GiB
+GROWTH = 8  # of the samples of a call, until a time is over
 
 
 class Render:
     """A mean of samples that grows call by call."""
 
     def __init__(self, scene, pixels, seed):
-        self.scene, self.pixels, self.seed = scene, pixels, seed
-        self.calls = self.samples = self.seconds = self.sum = 0
-        for samples in (1, 3):  # powers of two have a kernel of their own
-            self.call(samples)
+        self.scene, self.seed = scene, seed
+        self.largest = max(1, (GPU_BATCH_PATHS if mi.variant() == GPU_VARIANT else MAX_BATCH_PATHS) // pixels)
+        self.compiled = set()  # numbers of samples
+        self.calls = self.samples = self.seconds = self.sum = self.discarded_seconds = 0
 
     def call(self, samples):
         """One render call: its image and seconds."""
@@ -38,12 +40,18 @@ class Render:
         return np.array(image, float), time.perf_counter() - started
 
     def add(self, samples):
-        largest = max(1, MAX_BATCH_PATHS // self.pixels)
-        while samples > 0:
-            part = min(samples, largest)
-            image, seconds = self.call(part)
-            self.sum, self.seconds = self.sum + part * image, self.seconds + seconds
-            self.samples, samples = self.samples + part, samples - part
+        """A call with about so many samples: most samplers round them up. Such samplers have a kernel for each number of
+        samples, which a first call compiles. That one is discarded."""
+        sampler = self.scene.sensors()[0].sampler()
+        sampler.set_sample_count(min(samples, self.largest))
+        count = sampler.sample_count()
+        is_first = count not in self.compiled
+        if is_first:
+            self.call(count)
+            self.compiled.add(count)
+        image, seconds = self.call(count)
+        self.discarded_seconds += is_first * seconds  # of rendering alone: compiling is part of starting up
+        self.sum, self.seconds, self.samples = self.sum + count * image, self.seconds + seconds, self.samples + count
 
     def row(self, reference):
         image = self.sum / self.samples
@@ -55,23 +63,28 @@ def render(options):
     """The report."""
     scene = read_scene(options.scene)
     mitsuba_scene, integrator = make_mitsuba_scene(scene, options.width, options.height, options.max_path_length,
-                                                   own_normals=True)
+                                                   own_normals=True, sampler=options.sampler)
     reference = read_reference(options.reference) if options.reference else None
     film = Render(mitsuba_scene, options.width * options.height, options.seed)
-    counts = itertools.accumulate(itertools.repeat(2), operator.mul, initial=1)
     if options.samples:
-        counts = sorted({max(1, options.samples >> step) for step in range(STEPS + 1)})
+        calls = max(CALLS if options.sampler == SAMPLERS[0] else 1, math.ceil(options.samples / film.largest))
+        parts = itertools.repeat(math.ceil(options.samples / calls))
+    else:
+        parts = (GROWTH**power for power in itertools.count())
     rows = []
-    for count in counts:
-        film.add(count - film.samples)
-        rows.append(film.row(reference))
-        if options.time_limit and film.seconds >= options.time_limit:
+    for number, part in enumerate(parts, 1):
+        film.add(part)
+        is_last = film.samples >= options.samples if options.samples else film.seconds >= options.time_limit
+        if is_last or number.bit_count() == 1:  # rows after 1, 2, 4, … calls
+            rows.append(film.row(reference))
+        if is_last:
             break
     if options.output:
         write_exr(options.output, rgb_channels(film.sum / film.samples), {})
     glossy = any(surface.material.specular.any() for surface in scene.surfaces)
     return {
         "scene_hash": scene.hash, "device": f"Mitsuba {mi.__version__}", "backend": integrator, "rows": rows,
+        "discarded_seconds": film.discarded_seconds,
         "note": "the Phong lobe is Python, which slows Mitsuba down" if glossy and mi.variant() == "scalar_rgb" else "",
     }
 
@@ -82,8 +95,10 @@ def main():
     parser.add_argument("--variant", choices=list(VARIANTS), required=True)
     for name in ("width", "height", "max-path-length", "seed"):
         parser.add_argument(f"--{name}", type=int, required=True)
-    parser.add_argument("--samples", type=int, help="a pixel")
-    parser.add_argument("--time-limit", type=float, help="without --samples: stop after 1, 2, 4, … of them and so many seconds")
+    parser.add_argument("--sampler", choices=SAMPLERS, default=SAMPLERS[0], help="of Mitsuba; default: independent")
+    length = parser.add_mutually_exclusive_group(required=True)
+    length.add_argument("--samples", type=int, help="a pixel, or as many more as the sampler needs")
+    length.add_argument("--time-limit", type=float, help="stop after so many seconds of rendering")
     for name in ("reference", "output", "report"):
         parser.add_argument(f"--{name}", type=Path)
     options = parser.parse_args()

@@ -6,9 +6,9 @@ cores. Ctrl-C keeps what was measured; the same command then goes on.
 """
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number
+from project import CHAPTERS, GPU_VARIANT, ROOT, SAMPLERS, Parser, UserError, add_device_options, number
 from references.images import find_references
-from report.measurement import Measurement, report_cases, study_cases, working_variants
+from report.measurement import Measurement, driver_of, find_device, report_cases, study_cases, working_variants
 from report.page import write_report
 
 GOES_ON = True
@@ -22,6 +22,8 @@ def parse():
                         help="of rendering for each chapter and scene, all repetitions together; default: 4")
     parser.add_argument("--repetitions", type=number(int, 1), default=5, help="runs with seeds 1, 2, …; default: 5")
     parser.add_argument("--peer", choices=["mitsuba"], help="render with Mitsuba 3 as well, where it is installed")
+    parser.add_argument("--peer-sampler", choices=SAMPLERS, action="append", default=[],
+                        help="of Mitsuba, besides independent; may be given several times")
     parser.add_argument("--output", type=Path, default=ROOT / "output/report", metavar="FOLDER", help="default: output/report")
     parser.add_argument("--record", type=Path, metavar="FILE.json",
                         help="write no page, but measure what docs/results.md shows, as docs/records/chapters/DEVICE.json")
@@ -33,12 +35,20 @@ def chosen_cases(options):
     for chapter in chapters - CHAPTERS.keys():
         raise UserError(f"there is no chapter {chapter}; ./lab run lists them")
     scenes = find_references([word for word in options.words if not word.isdigit()])
-    variants = working_variants() if options.peer else []
-    return report_cases(scenes, sorted(chapters) or CHAPTERS, variants)
+    chapters = sorted(chapters) or list(CHAPTERS)
+    if not options.peer:
+        return report_cases(scenes, chapters)
+    variants = working_variants()
+    cases = report_cases(scenes, chapters, variants, options.peer_sampler)
+    program = CHAPTERS[chapters[0]]
+    if driver_of(program, find_device(program, vars(options))).startswith("CPU"):
+        return cases
+    on_gpu = [variant for variant in variants if variant == GPU_VARIANT]
+    return cases + report_cases(scenes, chapters, on_gpu, options.peer_sampler if on_gpu else [], is_large=True)
 
 
 def make_record(options, settings):
-    if options.words or options.peer:
+    if options.words or options.peer or options.peer_sampler:
         raise UserError("--record measures a fixed list of cases: no scenes, chapters or peers go with it")
     measurement = Measurement(options.record, study_cases(), settings)
     measurement.measure()
@@ -64,7 +74,9 @@ def make_report(options, settings):
 
 def main():
     options = parse()
+    if options.peer_sampler and not options.peer:
+        raise UserError("--peer-sampler needs --peer mitsuba, whose samplers these are")
     settings = {"words": options.words, "backend": options.backend, "device": options.device, "seconds": options.seconds,
-                "repetitions": options.repetitions, "peer": options.peer}
+                "repetitions": options.repetitions, "peer": options.peer, "peer_samplers": options.peer_sampler}
     make = make_record if options.record else make_report
     make(options, settings)

@@ -13,13 +13,14 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import (BINARIES, CHAPTERS, ROOT, VARIANTS, UserError, chapter_named, commit, duration_text, last_line, read_json,
+from project import (BINARIES, CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, last_line, read_json,
                      run_program, show_progress, write_json)
-from references.images import read_reference
+from references.images import averaged, read_reference, read_rgb, rel_mse
 
 PILOT_PART = 0.3  # of a run's seconds: tells how many samples a run takes
 START_UP_SECONDS = {False: 0.4, True: 2.0}  # of ours and a peer, for the first guess of how long all takes
 DEVICE_LOST = 3  # exit code
+LARGE = 1024  # pixels of a side at which GPUs are compared with peers as well: small pictures do not fill them
 
 
 class Refused(UserError):
@@ -32,19 +33,23 @@ def relative(path):
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
 
 
-def new_case(scene_file, reference_file, name, program, options=(), is_peer=False):
-    """Something to be rendered repeatedly. Resolution and path length are the reference's, if there is one."""
+def new_case(scene_file, reference_file, name, program, options=(), is_peer=False, is_large=False):
+    """Something to be rendered repeatedly. Resolution and path length are the reference's, if there is one. A large picture
+    has `scale` times its resolution and is compared with it after averaging scale x scale pixels."""
     case = {
         "scene": reference_file.stem if reference_file else scene_file.stem, "scene_file": relative(scene_file),
-        "reference_file": None, "reference": None, "width": 128, "height": 128, "max_path_length": None, "case": name,
+        "reference_file": None, "reference": None, "width": 128, "height": 128, "max_path_length": None, "scale": 1, "case": name,
         "program": program, "options": " ".join(options), "is_peer": is_peer, "backend": None, "note": "",
-        "samples": None, "refused": None, "runs": [], "pictures": {},
+        "samples": None, "paths_per_sample": 1, "refused": None, "runs": [], "pictures": {},
     }
     if reference_file:
         reference = read_reference(reference_file)
         height, width, _ = reference.mean.shape
+        scale = max(LARGE // max(width, height), 1) if is_large else 1
+        if scale > 1:
+            case["scene"] += f"_{scale * width}"
         case |= {
-            "reference_file": relative(reference_file), "width": width, "height": height,
+            "reference_file": relative(reference_file), "width": scale * width, "height": scale * height, "scale": scale,
             "max_path_length": int(reference.attributes["max_path_length"]),
             "reference": {
                 "scene_hash": reference.attributes["scene_hash"], "mean": reference.mean.mean(axis=(0, 1)).tolist(),
@@ -53,12 +58,15 @@ def new_case(scene_file, reference_file, name, program, options=(), is_peer=Fals
     return case
 
 
-def report_cases(scenes, chapters, variants):
-    """Every chapter, and every variant of Mitsuba, on pairs (scene file, reference file)."""
+def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
+    """Every chapter on pairs (scene file, reference file), and every variant of Mitsuba, the fastest with these samplers, too."""
+    peers = [(variant, SAMPLERS[0]) for variant in variants]
+    peers += [(variants[-1], sampler) for sampler in samplers if sampler != SAMPLERS[0]]
     cases = []
     for scene, reference in scenes:
-        cases += [new_case(scene, reference, f"chapter {number}", CHAPTERS[number]) for number in chapters]
-        cases += [new_case(scene, reference, f"Mitsuba {VARIANTS[variant]}", variant, is_peer=True) for variant in variants]
+        cases += [new_case(scene, reference, f"chapter {number}", CHAPTERS[number], is_large=is_large) for number in chapters]
+        cases += [new_case(scene, reference, f"Mitsuba {VARIANTS[variant]}" + (f", {sampler}" if sampler != SAMPLERS[0] else ""),
+                           variant, ("--sampler", sampler), is_peer=True, is_large=is_large) for variant, sampler in peers]
     return cases
 
 
@@ -116,18 +124,19 @@ def working_variants():
 
 
 def run_case(case, settings, arguments):
-    """The report of one run, with the seconds from its start to its end."""
+    """The report of one run, with the seconds from its start to its end, less those of what a peer renders and discards."""
     with tempfile.TemporaryDirectory() as folder:
         command = [*peer_command(case["program"])] if case["is_peer"] else [BINARIES / case["program"], "--quiet"]
         command += [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
         if case["reference_file"]:
-            command += ["--max-path-length", case["max_path_length"], "--reference", ROOT / case["reference_file"]]
+            command += ["--max-path-length", case["max_path_length"]]
+            command += ["--reference", ROOT / case["reference_file"]] if case["scale"] == 1 else []
         if not case["is_peer"]:
             command += ["--backend", case["backend"] or settings["backend"]]
             command += ["--device", settings["device"]] if settings["device"] else []
-        command += ["--report", Path(folder) / "report.json", *arguments]
         if "--output" not in arguments:
-            command += ["--output", Path(folder) / "picture.exr"]
+            arguments = [*arguments, "--output", Path(folder) / "picture.exr"]
+        command += ["--report", Path(folder) / "report.json", *arguments]
         started = time.perf_counter()
         limit = settings.get("time_limit")
         try:
@@ -143,10 +152,19 @@ def run_case(case, settings, arguments):
             lost = "the device was lost: " if process.returncode == DEVICE_LOST else ""
             raise UserError(f"{case['scene']}, {case['case']}: {lost}{error}")
         report = read_json(Path(folder) / "report.json")
+        if case["scale"] > 1:
+            measure_large(case, report["rows"], arguments[arguments.index("--output") + 1])
     if case["reference"] and report["scene_hash"] != case["reference"]["scene_hash"]:
         raise UserError(f"{case['reference_file']}: is of another version of {case['scene_file']}: "
                         f"make it anew with ./lab reference {case['scene_file']}")
-    return report | {"command_seconds": seconds}
+    return report | {"command_seconds": seconds - report.get("discarded_seconds", 0)}
+
+
+def measure_large(case, rows, picture):
+    """The error of a picture that is larger than its reference: known for the last row alone."""
+    for row in rows:
+        row["rel_mse"] = None
+    rows[-1]["rel_mse"] = rel_mse(averaged(read_rgb(picture), case["scale"]), read_reference(ROOT / case["reference_file"]))
 
 
 def devices_text(program):
@@ -158,6 +176,12 @@ def driver_of(program, device):
     """Kind of the device, Vulkan's version and the driver."""
     found = re.search(rf"^ *\d+ +{re.escape(device)} \((.*)\)$", devices_text(program), re.MULTILINE)
     return found[1] if found else "unknown"
+
+
+def find_device(program, settings):
+    """The name of the device that such settings choose."""
+    tiny = new_case(ROOT / "assets/scenes/cornell_box.json", None, "which device?", program) | {"width": 8, "height": 8}
+    return run_case(tiny, settings, ["--samples", 1])["device"]
 
 
 def digest_of_sources(cases):
@@ -245,6 +269,8 @@ class Measurement:
         if not case["reference_file"]:
             samples = max(2, 1 << (samples.bit_length() - 1))  # both halves of them must be in the rows
         case |= {"samples": samples, "backend": report["backend"], "note": report.get("note", "")}
+        branches = re.search(r"--splitting-factor (\d+)", report.get("settings", ""))
+        case["paths_per_sample"] = int(branches[1]) if branches else 1
         environment = self.record["environment"]
         if case["is_peer"]:
             environment["peer"] = report["device"]
@@ -260,7 +286,7 @@ class Measurement:
         """A run, with its picture kept for the page if it has a name."""
         arguments = ["--samples", samples, "--seed", seed]
         if self.pictures and picture:
-            file = self.pictures / f"{case['scene']}_{case['program']}_{picture}.exr"
+            file = self.pictures / f"{case['scene']}_{re.sub('[^A-Za-z0-9]+', '_', case['case'])}_{picture}.exr"
             self.pictures.mkdir(parents=True, exist_ok=True)
             arguments += ["--output", file]
         report = run_case(case, self.record["settings"], arguments)

@@ -209,15 +209,17 @@ def seconds_to_target(case):
 def summarize_case(case, base, comparisons):
     """What the page shows of a case; `base` is the case that efficiencies are relative to."""
     rows, pixels = last_rows(case["runs"]), case["width"] * case["height"]
-    summary = {key: case[key] for key in ("case", "is_peer", "program", "backend", "note")}
+    summary = {key: case[key] for key in ("case", "is_peer", "program", "options", "backend", "note", "paths_per_sample")}
     summary |= {"runs": len(rows), "samples": rows[0]["samples"], "seconds": mean_of(rows, "seconds"),
                 "device_seconds": mean_of(rows, "device_seconds"), "rays": mean_of(rows, "rays"),
                 "error": errors(case).interval(), "curve": curve(case),
                 "slope_samples": slope(case, "samples"), "slope_seconds": slope(case, "seconds")}
-    paths = summary["samples"] * pixels
-    summary["paths_per_second"] = paths / summary["seconds"]
+    samples = summary["samples"] * pixels
+    summary["error_of_one_sample"] = summary["samples"] * case["scale"]**2 * errors(case).mean  # of a pixel of the reference
+    summary["samples_per_second"] = samples / summary["seconds"]
+    summary["paths_per_second"] = case["paths_per_sample"] * summary["samples_per_second"]
     if summary["rays"]:
-        summary["rays_per_path"] = summary["rays"] / paths
+        summary["rays_per_sample"] = summary["rays"] / samples
         summary["rays_per_second"] = summary["rays"] / summary["seconds"]
         summary["rays_per_device_second"] = summary["rays"] / summary["device_seconds"]
     for key, name in (("seconds", "efficiency"), ("device_seconds", "device_efficiency")):
@@ -229,7 +231,7 @@ def summarize_case(case, base, comparisons):
 
 
 def summarize(record):
-    """The content of report.json: a list of scenes with their cases, and how our chapters compare with peers."""
+    """The content of report.json: a list of scenes with their cases, and how they compare with peers."""
     measured = [case for case in record["cases"] if case["runs"]]
     comparisons = max(3 * len(measured), 1)
     scenes = []
@@ -238,12 +240,12 @@ def summarize(record):
         ours = [case for case in cases if case["runs"] and not case["is_peer"]]
         peers = [case for case in cases if case["runs"] and case["is_peer"]]
         scenes.append({
-            **{key: cases[0][key] for key in ("scene", "width", "height", "max_path_length", "reference")},
+            **{key: cases[0][key] for key in ("scene", "width", "height", "scale", "max_path_length", "reference")},
             "refused": [{"case": case["case"], "why": case["refused"]} for case in cases if case["refused"]],
             "cases": [summarize_case(case, ours[0] if ours else case, comparisons) for case in ours + peers],
-            # How often the time of one of ours fits into a peer's, for the same error.
+            # How often the time of a case fits into a peer's, for the same error.
             "gains": [{"case": case["case"], "peer": peer["case"],
                        "gain": paired_ratio(errors(peer, "seconds"), errors(case, "seconds"))}
-                      for peer in peers for case in ours],
+                      for peer in peers for case in ours + peers if case is not peer],
         })
     return scenes

@@ -4,7 +4,8 @@ import math
 from html import escape
 
 from project import ROOT, write_json
-from references.images import read_reference, read_rgb
+from references.images import averaged, read_reference, read_rgb
+from report.differences import DIFFERENCES
 from report.numbers import CONFIDENCE, FALSE_ALARMS, POWER, TARGET_ERROR, short, summarize
 from report.plots import DIFFERENCE_FACTOR, difference_picture, picture, plot_errors, style
 
@@ -80,12 +81,12 @@ def overview(scenes):
 def speed_table(scene):
     rows = [[
         escape(case["case"]), short(case["samples"]), ranged(case["error"], digits=3), percent_of_root(case["error"][0]),
-        short(case.get("rays_per_path")), short(case["paths_per_second"] / 1e6),
+        short(case.get("rays_per_sample")), short(case["samples_per_second"] / 1e6), short(case["paths_per_second"] / 1e6),
         short(case["rays_per_second"] / 1e6) if case["rays"] else "–",
         short(case["rays_per_device_second"] / 1e6) if case["rays"] else "–",
         short(case["seconds"]), short(case["device_seconds"]), ranged(case["slope_samples"]), ranged(case["slope_seconds"]),
         ranged(case.get("efficiency")), ranged(case.get("device_efficiency"))] for case in scene["cases"]]
-    head = ["", "samples", "error", "its root", "rays a path", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
+    head = ["", "samples", "error", "its root", "rays a sample", "Msamples/s", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
             "slope against samples", "against seconds", "efficiency", "in device time"]
     return table(head, rows)
 
@@ -97,15 +98,16 @@ def bias_table(scene):
 
 def peer_tables(scene):
     """Time to equal error against Mitsuba, and from the command on."""
-    if not scene["gains"]:
-        return ""
-    peers = list(dict.fromkeys(gain["peer"] for gain in scene["gains"]))
-    gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
     ours = [case for case in scene["cases"] if not case["is_peer"]]
+    peers = [case["case"] for case in scene["cases"] if case["is_peer"]]
+    if not ours or not peers:
+        return ""
+    gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
     rows = [[escape(case["case"]), *(ranged(gains[case["case"], peer]) for peer in peers)] for case in ours]
     best = max(ours, key=lambda case: gains[case["case"], peers[0]][0] or 0)
     starts = [[escape(case["case"]), ranged(case["seconds_to_target"]), ranged(case["start_up_seconds"])] for case in scene["cases"]]
     notes = "".join(f"<p>{escape(case['case'])}: {escape(case['note'])}.</p>" for case in scene["cases"] if case["note"])
+    notes += "<p>What differs:</p><ul>" + "".join(f"<li>{escape(text.replace('`', ''))}</li>" for text in DIFFERENCES) + "</ul>"
     return ("<h3>Time to equal error: how many times faster than Mitsuba</h3>"
             f"<p>Wall time of rendering alone; the fastest is {escape(best['case'])}.</p>" + table(["", *map(escape, peers)], rows)
             + notes + f"<h3>Seconds from the command to {100 * TARGET_ERROR:.0f} % error</h3><p>With start-up: the process, the scene, its kernels "
@@ -125,7 +127,7 @@ def picture_rows(record, name, folder):
             if kind not in case["pictures"]:
                 continue
             row = case["pictures"][kind]
-            radiance = read_rgb(folder / row["file"])
+            radiance = averaged(read_rgb(folder / row["file"]), case["scale"])
             caption = f"{row['samples']} samples, {short(row['seconds'])} s, error {percent_of_root(row['rel_mse'])}"
             figures.append(f'<figure><img src="{picture(radiance)}" alt="{escape(case["case"])}">'
                            f'<img src="{difference_picture(radiance, reference)}" alt="difference">'

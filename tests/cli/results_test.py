@@ -1,0 +1,79 @@
+"""The tables of docs/results.md that compare with peers, from records whose truth is known."""
+
+import unittest
+
+import tools_path  # noqa: F401  (first: it finds the others)
+from docs import best_table, peer_table
+
+SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}
+
+
+def scene_of_peers(name, width, speeds):
+    """A scene of a report, with exact gains. Where a case has no speed, its error was lost in noise."""
+    gains = [{"case": case, "peer": peer, "gain": [speeds[case] / speeds[peer] if speeds[case] else None, None, None]}
+             for case in speeds for peer in speeds if peer != case and peer.startswith("Mitsuba")]
+    cases = [{"case": case, "is_peer": case.startswith("Mitsuba"), "backend": "compute", "samples_per_second": 2e9,
+              "paths_per_second": 8e9, "error_of_one_sample": 0.5, "seconds_to_target": [1.0, None, None],
+              "start_up_seconds": [0.5, None, None]} for case in speeds]
+    return {"scene": name, "width": width, "height": width, "gains": gains, "cases": cases}
+
+
+def record_of_peers(*scenes):
+    return {"environment": {"device": "a device", "peer": "Mitsuba"}, "scenes": list(scenes)}
+
+
+def rows_of(text):
+    return [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| ")]
+
+
+class PeerTableTest(unittest.TestCase):
+    def test_without_other_samplers(self):
+        text = peer_table.peer_table(record_of_peers(scene_of_peers("box_6", 128, SPEEDS)))
+        self.assertIn("Mitsuba's sampler is `independent`", text)
+        head, _, first, *_ = rows_of(text)
+        self.assertEqual(head[5:7], ["times faster than Mitsuba scalar", "times faster than Mitsuba CUDA"])
+        self.assertEqual(first[:7], ["`box`", "chapter 3", "2,000", "8,000", "0.50", "40", "4.0"])
+
+    def test_the_best_sampler_is_named_and_compared_with(self):
+        samplers = {"Mitsuba CUDA, ldsampler": 0.5, "Mitsuba CUDA, multijitter": 1.25}
+        scenes = [scene_of_peers(name, 128, SPEEDS | samplers) for name in ("box_6", "heart_4")]
+        text = peer_table.peer_table(record_of_peers(*scenes))
+        self.assertIn("best sampler here is `multijitter`.", text)
+        self.assertIn("0.50 (ldsampler), 1.25 (multijitter)", text)
+        head, _, first, *others = rows_of(text)
+        self.assertIn("times faster than Mitsuba CUDA, multijitter", head)
+        self.assertNotIn("times faster than Mitsuba CUDA, ldsampler", head)
+        self.assertEqual(first[7], "3.2")
+        self.assertEqual(others[4][1:8], ["Mitsuba CUDA, multijitter", "2,000", "8,000", "0.50", "12", "1.2", ""])
+
+    def test_independent_may_be_the_best(self):
+        scene = scene_of_peers("box_6", 128, SPEEDS | {"Mitsuba CUDA, ldsampler": 0.5})
+        self.assertIn("best sampler here is `independent`.", peer_table.peer_table(record_of_peers(scene)))
+
+    def test_each_size_has_a_table(self):
+        sizes = [scene_of_peers(name, width, SPEEDS) for name, width in (("box_6", 128), ("box_6_1024", 1024))]
+        text = peer_table.peer_table(record_of_peers(*sizes))
+        self.assertRegex(text, r"(?s)128 x 128 pixels:.*1024 x 1024 pixels:")
+        self.assertEqual([row[0] for row in rows_of(text) if row[1] == "chapter 3"], ["`box`", "`box`"])
+
+
+class BestTableTest(unittest.TestCase):
+    def test_best_against_peers(self):
+        speeds = SPEEDS | {"chapter 5": 5.0, "chapter 6": None, "Mitsuba CUDA, multijitter": 1.25}
+        record = record_of_peers(scene_of_peers("box_6_1024", 1024, speeds), scene_of_peers("empty_2", 128, {"Mitsuba CUDA": 1.0}))
+        self.assertEqual(list(best_table.against_peers(record)),
+                         [(("box", 1024, 1024), ["chapter 5", "Mitsuba CUDA, multijitter", "4.0"])])
+
+    def chapter(self, name, error, scene="box_6"):
+        runs = [{"seed": seed, "rows": [{"rel_mse": error, "device_seconds": 2.0}]} for seed in (1, 2)]
+        return {"case": name, "scene": scene, "width": 128, "height": 128, "reference": None, "runs": runs}
+
+    def test_best_among_chapters(self):
+        cases = [self.chapter("chapter 1", 8.0), self.chapter("chapter 3", 0.5), self.chapter("chapter 4", 1.0),
+                 self.chapter("strategy both", 0.1), self.chapter("chapter 5", 1.0, "heart_4")]
+        self.assertEqual(list(best_table.among_chapters({"cases": cases})),
+                         [(("box", 128, 128), ["chapter 3", "16 (16 – 16)"]), (("heart", 128, 128), ["chapter 5", "1"])])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,53 @@
+"""The first table of docs/results.md: of each scene the chapter with which the same error takes the least time."""
+from docs.peer_table import gains_of
+from project import load_records, scene_of, table
+from report.numbers import errors, paired_ratio, with_interval
+
+HEADER = """
+## The best chapter of each scene
+
+The chapter that reaches the same error in the least time, how many times faster that is than with the first chapter that was
+measured there, in device time. Against Mitsuba, with its best variant and sampler, the time is that of the clock. The sections
+[Chapters](#chapters) and [Against Mitsuba](#against-mitsuba) say how it was measured.
+
+"""
+
+
+def among_chapters(record):
+    """[best chapter, its gain over the first one] of each scene and size of a device, from a record of chapters."""
+    scenes = {}
+    for case in record["cases"]:
+        if case["case"].startswith("chapter ") and errors(case, "device_seconds").mean > 0:
+            scenes.setdefault((scene_of(case["scene"]), case["width"], case["height"]), []).append(case)
+    for key, cases in scenes.items():
+        first, best = errors(cases[0], "device_seconds"), min(cases, key=lambda case: errors(case, "device_seconds").mean)
+        yield key, [best["case"], "1" if best is cases[0] else with_interval(paired_ratio(first, errors(best, "device_seconds")))]
+
+
+def against_peers(record):
+    """[best chapter, Mitsuba at its best, gain over that] of each scene and size of a device, from a record of peers."""
+    for scene in record["scenes"]:
+        ours = {pair: gain for pair, gain in gains_of(scene).items() if gain[0] and pair[0].startswith("chapter ")}
+        if ours:
+            # The best of us is the same against all of them, and the best of them is the one that we gain least over.
+            best = max(ours, key=lambda pair: ours[pair][0])[0]
+            peer = min((pair for pair in ours if pair[0] == best), key=lambda pair: ours[pair][0])[1]
+            yield (scene_of(scene["scene"]), scene["width"], scene["height"]), [best, peer, with_interval(ours[best, peer])]
+
+
+def best_table():
+    """The Markdown table of all devices."""
+    chapters, peers = {}, {}
+    for cells, folder, pairs_of in ((chapters, "chapters", among_chapters), (peers, "peers", against_peers)):
+        for record in load_records(folder):
+            cells.update({(*key, record["environment"]["device"]): texts for key, texts in pairs_of(record)})
+    scenes = list(dict.fromkeys(key[0] for key in [*chapters, *peers]))
+    rows, before = [], None
+    for key in sorted(chapters.keys() | peers.keys(), key=lambda key: (scenes.index(key[0]), *key[1:])):
+        scene, width, height, device = key
+        rows.append([f"`{scene}`" if scene != before else "", f"{width} x {height}", device,
+                     *chapters.get(key, ["", ""]), *peers.get(key, ["", "", ""])])
+        before = scene
+    head = ["scene", "pixels", "device", "best chapter", "times faster than the first", "best against Mitsuba",
+            "Mitsuba at its best", "times faster than that"]
+    return table(head, rows, left=4)
