@@ -94,7 +94,7 @@ struct ProbeCell {
 };
 
 // Where a scene has both, this part of the light samples goes to the probe and the rest to light triangles.
-// Chosen by a measurement, see docs/results.md.
+// With a half, neither is more than twice as noisy as alone, whatever the scene.
 SHARED_NUMBER LIGHT_PROBE_PROBABILITY = 0.5f;
 
 // The most cells of a light probe: larger ones have cells of several texels.
