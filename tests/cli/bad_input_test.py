@@ -5,6 +5,7 @@ import os
 import re
 import unittest
 
+import tools_path  # noqa: F401  (first: it finds the others)
 import numpy as np
 from image_files import Exr
 from program import BINARIES, PROJECT, QUAD_MTL, QUAD_OBJ, ProgramTest
