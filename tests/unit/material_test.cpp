@@ -136,6 +136,7 @@ TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
         {"d 1.5", "d \"1.5\": must be a number in [0,1]"},
         {"d -halo 0.5", "\"-halo\""},
         {"Tr 2", "a.mtl:2: Tr"},
+        {" newmtl# lass", "a.mtl:2: newmtl needs a space"},
         {"Tf 1 1 1.5", "a.mtl:2: Tf"},
         {"d 0.5\nNi nan", "a.mtl:3: Ni"},
         {"d 0.5\nNi 0", "material \"m\": is transparent (d < 1) and needs a refractive index"},
