@@ -51,7 +51,8 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
         if (keyword == "newmtl") {
             if (name_in(line).empty()) fail("newmtl needs a name");
             // tinyobjloader would take it for another word.
-            if (line.substr(line.find("newmtl")).starts_with("newmtl#")) fail("newmtl needs a space after it");
+            if (line.substr(line.find("newmtl")).starts_with("newmtl#"))
+                fail("newmtl needs a space after it");
             materials.emplace_back().name = name_in(line);
         } else if (materials.empty()) {
             fail("not a material file: it must start with newmtl");
