@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "parallel.h"
 #include "scene/alias_table.h"
 #include "scene/light_table.h"
 
 namespace lab {
 namespace {
+
+constexpr size_t rows_at_once = 64;
 
 // The mean over each texel of what linear filtering makes of a row of numbers: 1/8 of both neighbours.
 double filtered(double before, double here, double after) { return (before + 6 * here + after) / 8; }
@@ -18,23 +21,27 @@ double filtered(double before, double here, double after) { return (before + 6 *
 std::vector<float> filtered_luminances(const Image& probe) {
     const size_t width = probe.width, height = probe.height;
     std::vector<float> rows(width * height), texels(width * height);
-    for (size_t y = 0; y < height; ++y) {
-        const auto luminance = [&](size_t x) {
-            const float* colour = &probe.pixels[3 * (y * width + x)];
-            return get_luminance({colour[0], colour[1], colour[2]});
-        };
-        double before = luminance(width - 1), here = luminance(0);
-        for (size_t x = 0; x < width; ++x) {
-            const double after = luminance(x + 1 < width ? x + 1 : 0);
-            rows[y * width + x] = static_cast<float>(filtered(before, here, after));
-            before = here, here = after;
+    in_parallel(height, rows_at_once, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end; ++y) {
+            const auto luminance = [&](size_t x) {
+                const float* colour = &probe.pixels[3 * (y * width + x)];
+                return get_luminance({colour[0], colour[1], colour[2]});
+            };
+            double before = luminance(width - 1), here = luminance(0);
+            for (size_t x = 0; x < width; ++x) {
+                const double after = luminance(x + 1 < width ? x + 1 : 0);
+                rows[y * width + x] = static_cast<float>(filtered(before, here, after));
+                before = here, here = after;
+            }
         }
-    }
-    for (size_t y = 0; y < height; ++y)
-        for (size_t x = 0; x < width; ++x)
-            texels[y * width + x] =
-                static_cast<float>(filtered(rows[(y > 0 ? y - 1 : y) * width + x], rows[y * width + x],
-                                            rows[(y + 1 < height ? y + 1 : y) * width + x]));
+    });
+    in_parallel(height, rows_at_once, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end; ++y)
+            for (size_t x = 0; x < width; ++x)
+                texels[y * width + x] =
+                    static_cast<float>(filtered(rows[(y > 0 ? y - 1 : y) * width + x], rows[y * width + x],
+                                                rows[(y + 1 < height ? y + 1 : y) * width + x]));
+    });
     return texels;
 }
 
@@ -53,7 +60,7 @@ std::vector<ProbeCell> build_probe_table(const Image& probe, double probability)
     const size_t columns = std::min(probe.width, MAX_PROBE_CELL_COLUMNS),
                  rows = std::min(probe.height, MAX_PROBE_CELL_ROWS);
     std::vector<double> weights(columns * rows), solid_angles(rows);
-    for (size_t row = 0; row < rows; ++row) {
+    const auto weigh_row = [&](size_t row) {
         // cos a - cos b, which would cancel close to the poles.
         const double angle = std::numbers::pi / static_cast<double>(rows);
         solid_angles[row] = 2 * std::numbers::pi / static_cast<double>(columns) * 2 * std::sin(0.5 * angle) *
@@ -67,7 +74,10 @@ std::vector<ProbeCell> build_probe_table(const Image& probe, double probability)
             weights[row * columns + column] =
                 solid_angles[row] * sum / static_cast<double>((y.end - y.first) * (x.end - x.first));
         }
-    }
+    };
+    in_parallel(rows, rows_at_once, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) weigh_row(row);
+    });
     if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0; }))
         for (size_t i = 0; i < weights.size(); ++i) weights[i] = solid_angles[i / columns];
     const AliasTable table = build_alias_table(weights);

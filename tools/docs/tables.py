@@ -107,7 +107,8 @@ def page_table(name, record):
         if other == kind:
             chosen = cases
             if number:
-                places = [i for i, row in enumerate(cases) if row[0] == name]
+                # Where another chapter is measured against this one, the row has none before it.
+                places = [i for i, row in enumerate(cases) if row[0] == name and (i > 0 or number == "1")]
                 chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
             if number and chosen:  # the first row is the one to compare with
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
