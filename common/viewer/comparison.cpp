@@ -37,6 +37,8 @@ void Comparison::start(const Session& first, const std::string& chapter) {
         }
         options.samples.chapter_values.assign(chapter_.options.size(), std::nullopt);
         options.estimator.split_every_hit = false;
+        if (!chapter_.strategies && options.estimator.strategy == Strategy::light)
+            options.estimator.strategy = Strategy::both;
     }
     // Other random numbers: equal ones would make differences look smaller than they are.
     ++options.samples.seed;
