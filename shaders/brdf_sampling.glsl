@@ -43,11 +43,3 @@ vec3 sample_brdf(ShadingData s, vec3 out_direction, inout uvec2 seed) {
 #endif
     return get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
 }
-
-// The weight ρ n·ω / p of a direction above the surface with the density p of sample_brdf(): exactly the albedo of a
-// Lambertian surface.
-vec3 get_brdf_weight(ShadingData s, vec3 in_direction, vec3 out_direction) {
-    float cosine_density = dot(s.normal, in_direction) / PI;
-    return get_pi_brdf(s, in_direction, out_direction) *
-           (cosine_density / get_brdf_density(s, in_direction, out_direction));
-}

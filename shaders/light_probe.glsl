@@ -36,9 +36,7 @@ uvec2 get_probe_cell_count() {
 
 // One of the cells in constant time, by an alias table as that of the light triangles.
 uint choose_probe_cell(inout uvec2 seed) {
-    advance_random_state(seed);
-    uint index, unused;
-    umulExtended(seed.x, uint(probe_cells.length()), index, unused);
+    uint index = get_random_index(uint(probe_cells.length()), seed);
     return seed.y < probe_cells[index].threshold ? index : probe_cells[index].alias;
 }
 

@@ -12,12 +12,9 @@ struct LightPoint {
 const bool LIGHT_SAMPLING = true;
 
 // One of all emissive triangles, with probability proportional to area times luminance: in constant time, however many
-// there are, by an alias table. Two 32-bit words choose it; 24-bit numbers would give a million triangles unequal
-// chances.
+// there are, by an alias table. Two 32-bit words choose it.
 LightTriangle choose_light_triangle(inout uvec2 seed) {
-    advance_random_state(seed);
-    uint index, unused;
-    umulExtended(seed.x, uint(light_triangles.length()), index, unused);
+    uint index = get_random_index(uint(light_triangles.length()), seed);
     if (seed.y >= light_triangles[index].threshold) index = light_triangles[index].alias;
     return light_triangles[index];
 }

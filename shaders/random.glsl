@@ -28,6 +28,15 @@ vec2 get_random_numbers(inout uvec2 seed) {
     return vec2(seed >> 8u) * (1.0 / 16777216.0);
 }
 
+// An index below `count`, from 32 bits: 24-bit numbers would give a million entries unequal chances. The other word of the
+// state is independent of it.
+uint get_random_index(uint count, inout uvec2 seed) {
+    advance_random_state(seed);
+    uint index, unused;
+    umulExtended(seed.x, count, index, unused);
+    return index;
+}
+
 // Whether something of this probability happens: whether a random number of 64 bits is below it, exactly from 2^-40 on.
 // With 24 bits what has the probability 1e-9 would happen sixty times too often. If the probability is not a number it
 // happens, so that the sample is counted as invalid.

@@ -100,8 +100,10 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         } else {
             omega = sample_brdf(s, out_direction, seed);
             if (!is_above_surface(s, omega)) break;
-            throughput *= get_brdf_weight(s, omega, out_direction);
-            bounce_density = BOUNCES_FIND_LIGHTS ? get_brdf_density(s, omega, out_direction) : 0.0;
+            // The weight ρ n·ω / p_b: exactly the albedo of a Lambertian surface.
+            float density = get_brdf_density(s, omega, out_direction);
+            throughput *= get_pi_brdf(s, omega, out_direction) * (dot(s.normal, omega) / PI / density);
+            bounce_density = BOUNCES_FIND_LIGHTS ? density : 0.0;
         }
 
         // Russian roulette with the survival probability q = min(max throughput, cap).

@@ -132,8 +132,7 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
     if (options.image.view) return {shared / "view.glsl", {options.image.view->define}};
     if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};
     Estimator estimator{project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
-    if (chapter.strategies && options.estimator.strategy == Strategy::light)
-        estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    if (options.estimator.strategy == Strategy::light) estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
     return estimator;
 }
 

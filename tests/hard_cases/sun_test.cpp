@@ -18,9 +18,13 @@ constexpr uint32_t width = 64, height = 32;
 constexpr uvec2 ordinary_sun{40, 8};
 constexpr float sky_radiance = 0.1f, sun_radiance = 1e5f;
 
-// A white floor under the probe; the camera sees nothing but the floor.
-Scene sunny_floor(uvec2 sun = ordinary_sun, float sky = sky_radiance) {
-    Scene scene = make_scene({diffuse_material(vec3(1))}, {{{-1, 0, 1}, {2, 0, 0}, {0, 0, -2}}});
+// A white floor under the probe, and lamps of radiance 10^5; the camera sees nothing but the floor.
+constexpr float lamp_radiance = 1e5f;
+Scene sunny_floor(uvec2 sun = ordinary_sun, float sky = sky_radiance, std::vector<Quad> lamps = {}) {
+    std::vector<Material> materials{diffuse_material(vec3(1))};
+    if (!lamps.empty()) materials.push_back(diffuse_material(vec3(0), vec3(lamp_radiance)));
+    lamps.insert(lamps.begin(), {{-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0});
+    Scene scene = make_scene(materials, lamps);
     scene.camera = {{0, 2, 0}, {0, 0, 0}, {0, 0, -1}, 30};
     scene.background = vec3(1);
     scene.light_probe = Image{width, height, std::vector<float>(size_t{3} * width * height, sky)};
@@ -117,7 +121,6 @@ TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
 }
 
 TEST_P(SunCases, LampAndSunAddUp) {
-    Scene scene = sunny_floor();
     RenderSettings settings{.samples = 64,
                             .max_path_length = 1,
                             .seed = 77 + static_cast<uint32_t>(GetParam()),
@@ -125,13 +128,10 @@ TEST_P(SunCases, LampAndSunAddUp) {
     settings.estimator = chapter_estimator("08_light_probes");
     // A lamp so far to the side that it hides next to nothing of the sky, and not the sun.
     const std::vector<dvec3> lamp{{9, 5, -9}, {10, 5, -8}, {10, 6, -8}, {9, 6, -9}};
-    Scene lit = make_scene({diffuse_material(vec3(1)), diffuse_material(vec3(0), vec3(1e5f))},
-                           {{{-1, 0, 1}, {2, 0, 0}, {0, 0, -2}},
-                            {vec3(lamp[0]), vec3(lamp[1] - lamp[0]), vec3(lamp[3] - lamp[0]), 1}});
-    scene.positions = lit.positions, scene.triangles = lit.triangles, scene.materials = lit.materials;
-    scene.triangle_materials = lit.triangle_materials, scene.meshes = lit.meshes;
+    Scene scene = sunny_floor(ordinary_sun, sky_radiance,
+                              {{vec3(lamp[0]), vec3(lamp[1] - lamp[0]), vec3(lamp[3] - lamp[0]), 1}});
     scene.camera.vertical_fov = 0.5f;
-    const double of_lamp = 1e5 * polygon_irradiance(lamp, dvec3(0), {0, 1, 0}) / pi;
+    const double of_lamp = double{lamp_radiance} * polygon_irradiance(lamp, dvec3(0), {0, 1, 0}) / pi;
     const double of_sun = floor_radiance();
     ASSERT_GT(of_lamp, 0.1 * of_sun);
     expect_mean("lamp and sun", estimate_mean(pixel_means(render(scene, settings), 1)), of_lamp + of_sun,

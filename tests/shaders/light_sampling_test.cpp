@@ -154,7 +154,7 @@ dvec2 barycentrics_of(const dvec3& point) {
 }
 
 class LightPoints : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Chapters, LightPoints, testing::ValuesIn(chapters_from(3)), chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, LightPoints, testing::ValuesIn(light_sampling_chapters()), chapter_name);
 
 TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
     // Cells of equal area: rows between the lines of equal w_0, in each the two kinds of triangles of a

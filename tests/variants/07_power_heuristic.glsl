@@ -67,8 +67,9 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
             if (shares && is_counted(bounces + 1u)) sum += scale * beta * gather_light(v, seed);
             omega = sample_brdf(v.s, v.to_eye, seed);
             if (!is_above_surface(v.s, omega)) return sum;
-            beta *= get_brdf_weight(v.s, omega, v.to_eye);
-            p_bounce = BOUNCES_FIND_LIGHTS ? get_brdf_density(v.s, omega, v.to_eye) : 0.0;
+            float density = get_brdf_density(v.s, omega, v.to_eye);
+            beta *= get_pi_brdf(v.s, omega, v.to_eye) * (dot(v.s.normal, omega) / PI / density);
+            p_bounce = BOUNCES_FIND_LIGHTS ? density : 0.0;
         }
         if (bounces + 1u >= parameters.roulette_start) {
             float q = min(max_component(beta), parameters.survival_cap);

@@ -1,8 +1,8 @@
 """Renders scenes with every chapter and writes output/report/index.html: speed against error.
 
 Scenes are names or files with a reference (./lab reference makes one), or names of references in assets/references;
-chapters are their numbers. Without any, all shipped scenes and all chapters are rendered, in about five minutes on two
-cores. Ctrl-C keeps what was measured; the same command then goes on.
+chapters are their numbers. Without any, all shipped scenes and all chapters are rendered, in about a quarter of an hour on
+two cores. Ctrl-C keeps what was measured; the same command then goes on.
 """
 from pathlib import Path
 
