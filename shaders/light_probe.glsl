@@ -36,8 +36,23 @@ uvec2 get_probe_cell_count() {
 
 // One of the cells in constant time, by an alias table as that of the light triangles.
 uint choose_probe_cell(inout uvec2 seed) {
-    uint index = get_random_index(uint(probe_cells.length()), seed);
-    return seed.y < probe_cells[index].threshold ? index : probe_cells[index].alias;
+    uvec2 words = get_random_words(seed);
+    uint index = get_random_index(uint(probe_cells.length()), words.x);
+    return words.y < probe_cells[index].threshold ? index : probe_cells[index].alias;
+}
+
+// The same, and two numbers for a direction in it.
+uint choose_probe_cell(inout uvec2 seed, out vec2 u) {
+#ifdef LOW_DISCREPANCY
+    uvec2 words = get_random_words(seed);
+    u = to_numbers(words);
+    uint count = uint(probe_cells.length()), index = get_random_index(count, words.x);
+    return gives_way(words.x, count, probe_cells[index].threshold, u.x) ? probe_cells[index].alias : index;
+#else
+    uint index = choose_probe_cell(seed);
+    u = get_random_numbers(seed);
+    return index;
+#endif
 }
 
 // Density with which light samples find a cell's directions, with respect to solid angle.
@@ -47,5 +62,9 @@ float get_probe_cell_density(uint index) { return probe_cells[index].density; }
 const bool LIGHT_PROBE_SAMPLING = false;
 uvec2 get_probe_cell_count() { return uvec2(1u); }
 uint choose_probe_cell(inout uvec2 seed) { return 0u; }
+uint choose_probe_cell(inout uvec2 seed, out vec2 u) {
+    u = vec2(0.0);
+    return 0u;
+}
 float get_probe_cell_density(uint index) { return 0.0; }
 #endif

@@ -14,9 +14,25 @@ const bool LIGHT_SAMPLING = true;
 // One of all emissive triangles, with probability proportional to area times luminance: in constant time, however many
 // there are, by an alias table. Two 32-bit words choose it.
 LightTriangle choose_light_triangle(inout uvec2 seed) {
-    uint index = get_random_index(uint(light_triangles.length()), seed);
-    if (seed.y >= light_triangles[index].threshold) index = light_triangles[index].alias;
+    uvec2 words = get_random_words(seed);
+    uint index = get_random_index(uint(light_triangles.length()), words.x);
+    if (words.y >= light_triangles[index].threshold) index = light_triangles[index].alias;
     return light_triangles[index];
+}
+
+// The same, and two numbers for a point on it.
+LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
+#ifdef LOW_DISCREPANCY
+    uvec2 words = get_random_words(seed);
+    u = to_numbers(words);
+    uint count = uint(light_triangles.length()), index = get_random_index(count, words.x);
+    if (gives_way(words.x, count, light_triangles[index].threshold, u.x)) index = light_triangles[index].alias;
+    return light_triangles[index];
+#else
+    LightTriangle light = choose_light_triangle(seed);
+    u = get_random_numbers(seed);
+    return light;
+#endif
 }
 
 // The point of a light with the barycentric coordinates w_1 and w_2.
@@ -34,6 +50,10 @@ LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
 // Nothing emits, or --light-sampling off: the estimators leave out what these would be called for.
 const bool LIGHT_SAMPLING = false;
 LightTriangle choose_light_triangle(inout uvec2 seed) { return LightTriangle(0u, 0u, 0u, 0u, 0.0); }
+LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
+    u = vec2(0.0);
+    return choose_light_triangle(seed);
+}
 LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
     return LightPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 }

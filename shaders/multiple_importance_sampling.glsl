@@ -22,8 +22,8 @@ vec3 get_light_sample_weight(ShadingData s, vec3 omega, vec3 out_direction, floa
 // The direct light that x_k reflects into a direction, as far as it is left to one point y on the lights.
 vec3 sample_light_triangle(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     // A uniform point on a triangle that is chosen with probability P: density P/A with respect to area.
-    LightTriangle light = choose_light_triangle(seed);
-    vec2 u = get_random_numbers(seed);
+    vec2 u;
+    LightTriangle light = choose_light_triangle(seed, u);
     LightPoint y = get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
 
     // Both cosines must be positive. Lights emit from the front only.

@@ -12,38 +12,62 @@ void advance_random_state(inout uvec2 seed) {
     seed ^= (seed >> 16u);
 }
 
-// Start state of one sample of one pixel. For a given key all steps are bijections, so no two samples start alike;
+// A state of its own for each pixel and index. For a given key all steps are bijections, so no two of them are equal;
 // the slides' pixel_index + 2^16 * frame_index lets most samples of an image share their numbers with others.
+uvec2 get_state(uint pixel_index, uint index, uvec2 key) {
+    uvec2 state = uvec2(pixel_index, index);
+    advance_random_state(state);
+    state ^= key;
+    advance_random_state(state);
+    return state;
+}
+
+// The state that a sample of a pixel starts from, and two words of 32 random bits, independent of each other.
+#ifdef LOW_DISCREPANCY
+// The chapter's path_trace.glsl makes points of its own, see chapter 9.
+uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key);
+uvec2 get_random_words(inout uvec2 seed);
+#else
 uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
-    uvec2 seed = uvec2(pixel_index, sample_index);
-    advance_random_state(seed);
-    seed ^= key;
+    return get_state(pixel_index, sample_index, key);
+}
+uvec2 get_random_words(inout uvec2 seed) {
     advance_random_state(seed);
     return seed;
 }
+#endif
 
-// Two independent numbers, uniform in [0,1). Only 24 bits are used: all 32 would round up to 1.0 now and then.
-vec2 get_random_numbers(inout uvec2 seed) {
-    advance_random_state(seed);
-    return vec2(seed >> 8u) * (1.0 / 16777216.0);
+// Random words as numbers in [0,1). Only 24 bits are used: all 32 would round up to 1.0 now and then.
+vec2 to_numbers(uvec2 words) { return vec2(words >> 8u) * (1.0 / 16777216.0); }
+
+// Two independent numbers, uniform in [0,1).
+vec2 get_random_numbers(inout uvec2 seed) { return to_numbers(get_random_words(seed)); }
+
+// An index below `count` from a random word: 24-bit numbers would give a million entries unequal chances.
+uint get_random_index(uint count, uint word) {
+    uint index, unused;
+    umulExtended(word, count, index, unused);
+    return index;
 }
 
-// An index below `count`, from 32 bits: 24-bit numbers would give a million entries unequal chances. The other word of the
-// state is independent of it.
-uint get_random_index(uint count, inout uvec2 seed) {
-    advance_random_state(seed);
-    uint index, unused;
-    umulExtended(seed.x, count, index, unused);
-    return index;
+// Whether an entry of an alias table that get_random_index() has chosen gives way to its alias: by the digits of the word
+// that are left. They lie on one side of the threshold and make another number, uniform in [0,1). Of points that are
+// evenly spread it leaves points that are evenly spread on each entry, while a second word would draw lots.
+bool gives_way(uint word, uint count, uint threshold, out float rest) {
+    uint digits = word * count + count / 2u;  // only every `count`th occurs: the middle stands for them all
+    bool is_above = digits >= threshold;
+    float width = is_above ? 4294967296.0 - float(threshold) : float(threshold);
+    rest = min(float(is_above ? digits - threshold : digits) / width, 1.0 - 1.0 / 16777216.0);
+    return is_above;
 }
 
 // Whether something of this probability happens: whether a random number of 64 bits is below it, exactly from 2^-40 on.
 // With 24 bits what has the probability 1e-9 would happen sixty times too often. If the probability is not a number it
 // happens, so that the sample is counted as invalid.
 bool happens(float probability, inout uvec2 seed) {
-    advance_random_state(seed);
+    uvec2 words = get_random_words(seed);
     if (!(probability < 1.0)) return true;
     float scaled = 4294967296.0 * probability;
     uint first = uint(scaled), second = uint(4294967296.0 * fract(scaled));
-    return seed.x < first || (seed.x == first && seed.y < second);
+    return words.x < first || (words.x == first && words.y < second);
 }

@@ -69,7 +69,8 @@ Chapter load_chapter(const std::string& name) {
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(content, file.string(), "the chapter",
                           {"title", "default_scene", "light_sampling", "light_probe_sampling", "strategies",
-                           "split_every_hit", "unlimited_path_length", "dielectrics", "options"});
+                           "split_every_hit", "unlimited_path_length", "dielectrics", "low_discrepancy",
+                           "options"});
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),
@@ -80,6 +81,7 @@ Chapter load_chapter(const std::string& name) {
             .split_every_hit = root.boolean("split_every_hit").value_or(false),
             .unlimited_path_length = root.boolean("unlimited_path_length").value_or(false),
             .dielectrics = root.boolean("dielectrics").value_or(false),
+            .low_discrepancy = root.boolean("low_discrepancy").value_or(false),
             .options = read_options(root)};
 }
 

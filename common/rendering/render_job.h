@@ -15,6 +15,8 @@ struct RenderJob {
     RenderParameters parameters{};
     uint32_t samples = 0;  // wanted in every pixel
     FilmRecord record = {};
+    // Whether the first half of 2^k samples is independent of the second, so that they tell the error.
+    bool has_independent_halves = true;
     std::optional<FilmFile> resumed = {};  // the run that this one continues
 };
 

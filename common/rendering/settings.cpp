@@ -127,11 +127,17 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     return text.str();
 }
 
+Estimator estimator_of(const Chapter& chapter) {
+    Estimator estimator{project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
+    if (chapter.low_discrepancy) estimator.defines.emplace_back("LOW_DISCREPANCY");
+    return estimator;
+}
+
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
     if (options.image.view) return {shared / "view.glsl", {options.image.view->define}};
     if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};
-    Estimator estimator{project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
+    Estimator estimator = estimator_of(chapter);
     if (options.estimator.strategy == Strategy::light) estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
     return estimator;
 }

@@ -18,6 +18,9 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
 std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
                           const Options& options);
 
+// The chapter's shader and what it is compiled with.
+Estimator estimator_of(const Chapter& chapter);
+
 // The chapter's estimator, or what --view and --split-every-hit put in its place.
 Estimator make_estimator(const Chapter& chapter, const Options& options);
 

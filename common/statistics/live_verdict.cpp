@@ -10,7 +10,7 @@ namespace lab {
 namespace {
 
 constexpr uint32_t tile = 8;  // pixels of the reference
-constexpr uint32_t first_test = 16, most_batches = 64;
+constexpr uint32_t first_test = 16;
 constexpr double power = 0.99;
 // Paths from which on the mean of a region is normally distributed, also where one path in 1000 meets a
 // light.
@@ -57,83 +57,59 @@ LiveVerdict::LiveVerdict(Reference reference, glm::uvec2 image_size, double fals
 }
 
 void LiveVerdict::restart() {
-    batch_samples_ = 1;
-    batches_.clear();
-    total_.assign(size_t{tiles_.x} * tiles_.y, {});
+    const double paths_of_sample = square(scale_) * reference_.mean.width * reference_.mean.height;
+    next_samples_ = first_test;
+    while (next_samples_ * paths_of_sample < reliable_paths) next_samples_ *= 2;
     tests_ = 0;
     verdict_.reset();
 }
 
-LiveVerdict::TileSums LiveVerdict::tile_sums(const FilmImage& film) const {
-    TileSums sums(total_.size());
+void LiveVerdict::add(const FilmImage& film) {
+    const Image& mean = reference_.mean;
+    differences_.assign(size_t{mean.width} * mean.height, {});
+    const double part = 1 / (square(scale_) * next_samples_);
     for (uint32_t y = 0; y < film.height; ++y)
         for (uint32_t x = 0; x < film.width; ++x) {
             const FilmPixel& pixel = film.pixels[size_t{y} * film.width + x];
-            auto& sum = sums[size_t{y / (tile * scale_)} * tiles_.x + x / (tile * scale_)];
+            auto& difference = differences_[size_t{y / scale_} * mean.width + x / scale_];
             for (int channel = 0; channel < 3; ++channel)
-                sum[static_cast<size_t>(channel)] +=
-                    double{pixel.sum[channel]} + double{pixel.compensation[channel]};
+                difference[static_cast<size_t>(channel)] +=
+                    part * (double{pixel.sum[channel]} + double{pixel.compensation[channel]});
         }
-    return sums;
-}
-
-void LiveVerdict::add(const FilmImage& film) {
-    TileSums sums = tile_sums(film);
-    TileSums& batch = batches_.emplace_back(sums);
-    for (size_t i = 0; i < batch.size(); ++i)
-        for (size_t channel = 0; channel < 3; ++channel) batch[i][channel] -= total_[i][channel];
-    total_ = std::move(sums);
-
-    if (samples() >= first_test && (samples() & (samples() - 1)) == 0 &&
-        1.0 * film.width * film.height * samples() >= reliable_paths)
-        test();
-    if (batches_.size() == most_batches) merge_batches();
-}
-
-void LiveVerdict::merge_batches() {
-    for (size_t i = 0; i < most_batches / 2; ++i) {
-        TileSums merged = batches_[2 * i];
-        for (size_t j = 0; j < merged.size(); ++j)
-            for (size_t channel = 0; channel < 3; ++channel)
-                merged[j][channel] += batches_[2 * i + 1][j][channel];
-        batches_[i] = std::move(merged);
-    }
-    batches_.resize(most_batches / 2);
-    batch_samples_ *= 2;
+    for (size_t i = 0; i < differences_.size(); ++i)
+        for (size_t channel = 0; channel < 3; ++channel)
+            differences_[i][channel] -= double{mean.pixels[3 * i + channel]};
+    samples_ = next_samples_;
+    next_samples_ *= 2;
+    test();
 }
 
 // Of a channel's mean over a region, in units of radiance.
 Difference LiveVerdict::difference(const Region& region, size_t channel) const {
     const glm::uvec2 corner = region.first * tile;
-    const glm::uvec2 size =
-        glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height)) - corner;
-    const double paths_of_sample = square(scale_) * size.x * size.y;
-    std::vector<double> means;
-    for (const TileSums& batch : batches_) {
-        double sum = 0;
-        for (uint32_t y = region.first.y; y < region.end.y; ++y)
-            for (uint32_t x = region.first.x; x < region.end.x; ++x)
-                sum += batch[size_t{y} * tiles_.x + x][channel];
-        means.push_back(sum / (paths_of_sample * batch_samples_));
-    }
-    const Reference::Part expected = reference_.part(channel, corner, size);
-    Difference difference = difference_from(means, expected.mean);
+    const glm::uvec2 end =
+        glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
+    std::vector<double> pixels;
+    for (uint32_t y = corner.y; y < end.y; ++y)
+        for (uint32_t x = corner.x; x < end.x; ++x)
+            pixels.push_back(differences_[size_t{y} * reference_.mean.width + x][channel]);
+    Difference difference = difference_from(pixels, 0);
     double variance = square(difference.standard_error);
     // Where light is found by chance, too few finds make the mean and its spread too small together. Rare
     // events have a variance proportional to their mean: what the reference's mean would give counts.
+    const Reference::Part expected = reference_.part(channel, corner, end - corner);
     const double mean = expected.mean + difference.value;
     if (mean > 0) variance *= std::max(expected.mean / mean, 1.0);
     // What never occurred yet does not show in the spread at all. The reference's renderer has seen it.
     const double reference_samples = reference_samples_ / square(scale_);
-    variance = std::max(variance, expected.variance * reference_samples / samples());
-    difference.standard_error =
-        std::sqrt(variance + expected.variance + square(renderer_rounding * expected.mean));
+    variance = std::max(variance, expected.variance * reference_samples / samples_);
+    difference.standard_error = std::sqrt(variance + square(renderer_rounding * expected.mean));
     return difference;
 }
 
 // Smallest edge, in tiles, of square regions with enough paths; 0 if not even the image has them.
 uint32_t LiveVerdict::finest_reliable_edge() const {
-    const double paths_of_tile = square(tile * scale_) * samples();
+    const double paths_of_tile = square(tile * scale_) * samples_;
     for (uint32_t edge = 1; edge < std::max(tiles_.x, tiles_.y); edge *= 2)
         if (square(edge) * paths_of_tile >= reliable_paths) return edge;
     return 0;
@@ -142,10 +118,10 @@ uint32_t LiveVerdict::finest_reliable_edge() const {
 void LiveVerdict::test() {
     const double level = 0.5 * false_alarms_ / ((tests_ + 1.0) * (tests_ + 2.0));
     ++tests_;
-    Verdict verdict{.samples = samples(),
+    Verdict verdict{.samples = samples_,
                     .is_biased = verdict_ && verdict_->is_biased,
                     .differences = {},
-                    .map = {tiles_.x, tiles_.y, std::vector<double>(total_.size())},
+                    .map = {tiles_.x, tiles_.y, std::vector<double>(size_t{tiles_.x} * tiles_.y)},
                     .map_tile_size = tile * scale_};
     const auto is_off = [](const Difference& difference, double level_of_one) {
         return difference.p_value() < level_of_one;
@@ -208,7 +184,7 @@ std::string to_text(const Verdict& verdict) {
 
 std::string LiveVerdict::text() const {
     if (verdict_) return to_text(*verdict_);
-    return "no verdict before " + std::to_string(first_test) + " samples a pixel";
+    return "no verdict before " + std::to_string(next_samples_) + " samples a pixel";
 }
 
 }  // namespace lab

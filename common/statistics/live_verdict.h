@@ -28,9 +28,8 @@ struct Verdict {
 // "agrees with the reference: …" or "biased: …", in one line.
 std::string to_text(const Verdict& verdict);
 
-// The film keeps sums only, but the differences between its snapshots are independent estimates, whose spread
-// tells how exact their mean is: the film is read each time that next_samples() are there, 16 to 32 times
-// while the samples double. Only sums over tiles are kept.
+// Pixels are independent of each other, also where the samples of a pixel are not. So the spread of their
+// differences from the reference tells how exact the mean difference is.
 //
 // Looking again and again raises the chance to see a difference where there is none. So the image is tested
 // only at 16, 32, 64, … samples, and test number j spends 1/((j + 1)(j + 2)) of the probability of a false
@@ -46,36 +45,33 @@ class LiveVerdict {
 
     // The film has begun anew.
     void restart();
-    // Samples a pixel at which add() wants the film.
-    uint32_t next_samples() const { return samples() + batch_samples_; }
+    // Samples a pixel at which add() wants the film: a power of two.
+    uint32_t next_samples() const { return next_samples_; }
     // The film when all pixels have next_samples() samples.
     void add(const FilmImage& film);
-    // The latest; none before 16 samples. Once it is biased it stays so.
+    // The latest; none before 16 samples, of a small image more. Once it is biased it stays so.
     const std::optional<Verdict>& verdict() const { return verdict_; }
     // What there is to say, in one line.
     std::string text() const;
 
   private:
-    using TileSums = std::vector<std::array<double, 3>>;  // one of each tile: over pixels and samples
     // Tiles that are tested together.
     struct Region {
         glm::uvec2 first, end;  // in tiles
     };
-    uint32_t samples() const { return static_cast<uint32_t>(batches_.size()) * batch_samples_; }
-    TileSums tile_sums(const FilmImage& film) const;
     Difference difference(const Region& region, size_t channel) const;
     uint32_t finest_reliable_edge() const;
     void test();
-    void merge_batches();
 
     Reference reference_;
     double reference_samples_;  // a pixel
     double false_alarms_;
     uint32_t scale_;  // image pixels in a row of a reference pixel
     glm::uvec2 tiles_;
-    uint32_t batch_samples_ = 1;
-    std::vector<TileSums> batches_;
-    TileSums total_;
+    // From the reference, of each of its pixels.
+    std::vector<std::array<double, 3>> differences_;
+    uint32_t samples_ = 0;  // a pixel of the image
+    uint32_t next_samples_ = 0;
     uint32_t tests_ = 0;
     std::optional<Verdict> verdict_;
 };

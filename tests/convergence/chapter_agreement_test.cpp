@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 
-#include "files/project_folder.h"
 #include "support/agreement.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
@@ -13,39 +12,37 @@ namespace {
 
 struct Subject {
     std::string name;
-    std::string file;  // in chapters/
+    Estimator estimator;
     uint32_t splitting_factor;
     uint32_t roulette_start = 1;
-    std::vector<std::string> defines = {};
 };
 
 // Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
 // p-values are independent. The splitting factors differ from length to length.
 using Pair = std::array<Subject, 2>;
-const Pair bounces{Subject{"1", "01_uniform_sampling/path_trace.glsl", 1},
-                   Subject{"2", "02_cosine_sampling/path_trace.glsl", 1}};
+const Pair bounces{Subject{"1", chapter_estimator(all_chapters.at(0)), 1},
+                   Subject{"2", chapter_estimator(all_chapters.at(1)), 1}};
 std::vector<Pair> light_sampling_pairs(uint32_t length) {
-    const auto subject = [](const std::string& name, const std::string& file, uint32_t s,
-                            uint32_t roulette_start = 1) {
-        return Subject{name + ", s = " + std::to_string(s), file, s, roulette_start};
+    const auto chapter = [](size_t number, uint32_t s) {
+        return Subject{std::to_string(number) + (s > 1 ? ", s = " + std::to_string(s) : ""),
+                       chapter_estimator(all_chapters.at(number - 1)), s};
     };
-    const std::string every_hit = "../shaders/path_trace_every_hit.glsl";
+    const auto at_every_hit = [](const std::string& name, uint32_t s, uint32_t roulette_start) {
+        return Subject{name + " at every hit, s = " + std::to_string(s), every_hit_estimator(), s,
+                       roulette_start};
+    };
     const uint32_t s = length == 1 ? 1 : length == 2 ? 5 : 3;
     std::vector<Pair> pairs;
     // At length 1 there is but one hit to split at.
     if (length > 1)
-        pairs.push_back({subject("4 at every hit", every_hit, length == 2 ? 3 : 2, no_roulette),
-                         subject("5 at every hit", every_hit, length == 2 ? 2 : 3)});
-    pairs.push_back({Subject{"3", "03_next_event_estimation/path_trace.glsl", 1},
-                     subject("4", "04_splitting/path_trace.glsl", s)});
-    pairs.push_back({subject("5", "05_russian_roulette/path_trace.glsl", 6 - s),
-                     subject("6", "06_dielectrics/path_trace.glsl", s == 5 ? 1 : 2)});
-    pairs.push_back({Subject{"7 by light samples",
-                             "07_multiple_importance_sampling/path_trace.glsl",
-                             1,
-                             1,
-                             {"ONLY_LIGHT_SAMPLES"}},
-                     Subject{"8", "08_light_probes/path_trace.glsl", 1}});
+        pairs.push_back({at_every_hit("4", length == 2 ? 3 : 2, no_roulette),
+                         at_every_hit("5", length == 2 ? 2 : 3, 1)});
+    pairs.push_back({chapter(3, 1), chapter(4, s)});
+    pairs.push_back({chapter(5, 6 - s), chapter(6, s == 5 ? 1 : 2)});
+    Subject light_samples = chapter(7, 1);
+    light_samples.name += " by light samples";
+    light_samples.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    pairs.push_back({light_samples, chapter(8, 1)});
     return pairs;
 }
 
@@ -80,7 +77,7 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
                             .seed = seed,
                             .splitting_factor = subject.splitting_factor,
                             .roulette_start = subject.roulette_start};
-    settings.estimator = {project_folder() / "chapters" / subject.file, subject.defines};
+    settings.estimator = subject.estimator;
     return render_batches(scene, settings, batch_count);
 }
 

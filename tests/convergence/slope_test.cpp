@@ -1,9 +1,14 @@
 // The error falls with the square root of the number of samples. A slower fall tells of samples that depend
-// on each other, of seeds that repeat or of an infinite variance.
+// on each other, of seeds that repeat or of an infinite variance. With low-discrepancy points it falls
+// faster.
+#include <cmath>
 #include <cstdio>
 
+#include "files/project_folder.h"
 #include "support/error_slope.h"
 #include "support/expect_statistics.h"
+#include "support/gpu_test.h"
+#include "support/scenes.h"
 
 namespace lab {
 namespace {
@@ -25,7 +30,8 @@ void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings
 }
 
 class Convergence : public OnEachChapter {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(all_chapters), chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(pseudorandom_chapters_from(1)),
+                         chapter_name);
 
 TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
     Scene scene = load_shipped_scene("cornell_box.json");
@@ -38,6 +44,82 @@ TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
 TEST_P(Convergence, ErrorUnderASkyFallsWithTheRootOfTheNumberOfSamples) {
     expect_slope(load_shipped_scene("textured.json"), GetParam(),
                  {.width = 48, .height = 48, .max_path_length = 2});
+}
+
+// --- Low-discrepancy points.
+
+// The largest slope of a log-log line through the errors of 1, 4, 16, … that is allowed.
+void expect_slope_below(const std::string& what, const std::vector<double>& errors, double largest) {
+    double xy = 0, xx = 0;
+    std::string text;
+    for (size_t i = 0; i < errors.size(); ++i) {
+        const double x = static_cast<double>(i) - 0.5 * static_cast<double>(errors.size() - 1);
+        xy += x * std::log(errors[i]) / std::log(4);
+        xx += x * x;
+        text += " " + std::to_string(errors[i]);
+    }
+    std::printf("  %s: slope %.3f; errors%s\n", what.c_str(), xy / xx, text.c_str());
+    EXPECT_LT(xy / xx, largest) << what;
+}
+
+// Of smooth functions whose integrals are known. Pixels that share a scramble would err together, so that
+// their mean is no better than each of them. Pairs of numbers that share one would have another integral.
+TEST(LowDiscrepancyConvergence, ErrorOfSmoothIntegralsFallsFast) {
+    const Estimator chapter = chapter_estimator(all_chapters.at(8));
+    RenderSettings settings{.width = 64, .height = 64, .seed = test_seed(9100)};
+    settings.estimator = {.file = project_folder() / "tests" / "shaders" / "smooth_radiance.glsl",
+                          .defines = chapter.defines,
+                          .observed = chapter.file};
+    SceneRenderer renderer(closed_box(diffuse_material(vec3(0.5f))), settings);
+    // The pairs have nothing to do with each other: what depends on both converges more slowly.
+    for (const auto& [channel, largest_slope] : {std::pair{0, -0.9}, {1, -0.9}, {2, -0.55}}) {
+        std::vector<double> by_samples, by_pixels;
+        for (settings.samples = 1; settings.samples <= 1024; settings.samples *= 4) {
+            double square = 0;
+            for (const double mean : pixel_means(renderer.render(settings).film, channel))
+                square += (mean - 1) * (mean - 1);
+            by_samples.push_back(std::sqrt(square / (settings.width * settings.height)));
+        }
+        settings.samples = 64;
+        const auto means = pixel_means(renderer.render(settings).film, channel);
+        for (size_t pixels = 1; pixels <= 64; pixels *= 4) {
+            double square = 0;
+            for (size_t first = 0; first < means.size(); first += pixels) {
+                double sum = 0;
+                for (size_t i = first; i < first + pixels; ++i) sum += means[i] - 1;
+                square += sum * sum / static_cast<double>(pixels * pixels);
+            }
+            by_pixels.push_back(
+                std::sqrt(square * static_cast<double>(pixels) / static_cast<double>(means.size())));
+        }
+        expect_slope_below("samples, function " + std::to_string(channel), by_samples, largest_slope);
+        expect_slope_below("pixels, function " + std::to_string(channel), by_pixels, -0.44);
+    }
+}
+
+void expect_fast_convergence(const Scene& scene, RenderSettings settings, double largest_slope) {
+    settings.seed = 9200;
+    const ErrorSlope slope = measure_error_slope(scene, settings, 1024);
+    std::printf("  variance of a sample, from 1, 4, 16 ... samples:%s\n  slope %.4f ± %.4f\n",
+                slope.variances.c_str(), slope.value, slope.standard_error);
+    EXPECT_LT(slope.value + 5 * slope.standard_error, largest_slope);
+}
+
+TEST(LowDiscrepancyConvergence, ErrorOfUnoccludedDirectLightFallsFast) {
+    Scene scene =
+        make_scene({diffuse_material(vec3(0.8f)), diffuse_material(vec3(0), vec3(5))},
+                   {{{-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 0}, {{-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1}});
+    scene.camera = {.position = {0, 1, 3}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 25};
+    RenderSettings settings{.width = 48, .height = 48, .max_path_length = 1};
+    settings.estimator = chapter_estimator(all_chapters.at(8));
+    settings.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    expect_fast_convergence(scene, settings, -0.7);
+}
+
+TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster) {
+    RenderSettings settings{.width = 48, .height = 48, .max_path_length = 3, .roulette_start = 3};
+    settings.estimator = chapter_estimator(all_chapters.at(8));
+    expect_fast_convergence(load_shipped_scene("cornell_box.json"), settings, -0.52);
 }
 
 }  // namespace

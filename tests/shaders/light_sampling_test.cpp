@@ -135,9 +135,10 @@ std::vector<LightAnswer> sample_light(const std::string& chapter, const std::arr
     inputs.light_material.light_density = 1 / inverse_density;
     inputs.light = {
         .instance = 0, .triangle = 1, .threshold = 0, .alias = 0, .inverse_density = inverse_density};
-    TestShader shader{.name = "direct_light.comp"};
-    shader.named_includes = {
-        {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
+    const Estimator estimator = chapter_estimator(chapter);
+    const TestShader shader{.name = "direct_light.comp",
+                            .defines = estimator.defines,
+                            .named_includes = {{"path_trace.glsl", estimator.file}}};
     std::vector<LightAnswer> samples(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(samples)),
                std::as_bytes(std::span(&inputs, 1)));

@@ -19,6 +19,7 @@
 #include "files/hash.h"
 #include "files/project_folder.h"
 #include "rendering/renderer.h"
+#include "rendering/settings.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lab {
@@ -69,7 +70,7 @@ Scene load(const Case& item) {
 }
 
 Estimator estimator_of(const Case& item) {
-    return {project_folder() / "chapters" / item.chapter / "path_trace.glsl"};
+    return estimator_of(load_chapter(item.chapter));
 }
 
 void render(Renderer& renderer, uint32_t target_samples) {

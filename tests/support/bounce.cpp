@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "files/project_folder.h"
 #include "rendering/renderer.h"
+#include "support/render.h"
 
 namespace lab {
 namespace {
@@ -21,9 +21,11 @@ std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surfa
                seed_bytes = std::as_bytes(std::span(seeds));
     std::vector<std::byte> inputs(header_bytes.begin(), header_bytes.end());
     inputs.insert(inputs.end(), seed_bytes.begin(), seed_bytes.end());
-    TestShader shader{.name = "bounce.comp", .defines = std::move(defines)};
-    shader.named_includes = {
-        {"path_trace.glsl", project_folder() / "chapters" / chapter / "path_trace.glsl"}};
+    const Estimator estimator = chapter_estimator(chapter);
+    defines.insert(defines.end(), estimator.defines.begin(), estimator.defines.end());
+    TestShader shader{.name = "bounce.comp",
+                      .defines = std::move(defines),
+                      .named_includes = {{"path_trace.glsl", estimator.file}}};
     if (surface.material.specular_albedo != vec3(0)) shader.defines.emplace_back("FEATURE_SPECULAR");
     std::vector<Bounce> bounces(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs, device);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "files/project_folder.h"
+#include "rendering/settings.h"
 #include "rendering/options.h"
 #include "support/gpu_test.h"
 
@@ -18,7 +19,7 @@ std::vector<std::string> light_sampling_chapters() {
 }
 
 Estimator chapter_estimator(const std::string& chapter) {
-    return {project_folder() / "chapters" / chapter / "path_trace.glsl"};
+    return estimator_of(load_chapter(chapter));
 }
 
 Estimator every_hit_estimator() { return {project_folder() / "shaders" / "path_trace_every_hit.glsl"}; }
@@ -147,6 +148,12 @@ std::vector<std::string> chapters_from(uint32_t first) {
     std::vector<std::string> chapters;
     for (const std::string& chapter : all_chapters)
         if (chapter_number(chapter) >= first) chapters.push_back(chapter);
+    return chapters;
+}
+
+std::vector<std::string> pseudorandom_chapters_from(uint32_t first) {
+    std::vector<std::string> chapters = chapters_from(first);
+    std::erase_if(chapters, [](const std::string& name) { return load_chapter(name).low_discrepancy; });
     return chapters;
 }
 

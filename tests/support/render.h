@@ -20,6 +20,9 @@ std::vector<std::string> light_sampling_chapters();
 // Those that use what chapter number `first` teaches, and all after it.
 std::vector<std::string> chapters_from(uint32_t first);
 
+// Of these, those whose random numbers are the generator's: its states decide what they do.
+std::vector<std::string> pseudorandom_chapters_from(uint32_t first);
+
 // Whether its paths split: whether it has --splitting-factor.
 bool splits_paths(const std::string& chapter);
 

@@ -156,14 +156,17 @@ TEST(LiveVerdict, TakesImagesLargerThanTheReference) {
     EXPECT_THROW(LiveVerdict(flat_reference(), {64, 32}), UserError);
 }
 
-TEST(LiveVerdict, KeepsFewBatches) {
+TEST(LiveVerdict, ReadsTheFilmWhenSamplesDouble) {
     LiveVerdict verdict(flat_reference(), glm::uvec2(extent));
     FakeRender render(1, unbiased);
-    uint32_t reads = 0;
-    for (; verdict.next_samples() <= 4096; ++reads) verdict.add(render.advance(verdict.next_samples()));
-    EXPECT_EQ(reads, 64 + 6 * 32u);
-    EXPECT_EQ(verdict.verdict()->samples, 4096u);
-    EXPECT_EQ(verdict.verdict()->differences[0].degrees_of_freedom, 63);
+    std::vector<uint32_t> reads;
+    while (verdict.next_samples() <= 1024) {
+        reads.push_back(verdict.next_samples());
+        verdict.add(render.advance(verdict.next_samples()));
+    }
+    EXPECT_EQ(reads, (std::vector<uint32_t>{128, 256, 512, 1024}));
+    EXPECT_EQ(verdict.verdict()->samples, 1024u);
+    EXPECT_EQ(verdict.verdict()->differences[0].degrees_of_freedom, extent * extent - 1);
 }
 
 TEST(LiveVerdict, WaitsForEnoughPaths) {

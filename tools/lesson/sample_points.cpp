@@ -8,6 +8,7 @@
 #include "files/project_folder.h"
 #include "gpu/compute_kernel.h"
 #include "rendering/renderer.h"
+#include "rendering/settings.h"
 #include "shaders/interface.h"
 
 namespace {
@@ -35,12 +36,12 @@ struct Inputs {
 
 std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t count, uint32_t seed,
                           const std::string& device_name) {
-    const ShaderSource source{
-        .file = project_folder() / "tools/lesson/sample_points.comp",
-        .stage = ShaderStage::compute,
-        .defines = {sampler.define, "COLUMNS " + std::to_string(columns)},
-        .named_includes = {
-            {"path_trace.glsl", project_folder() / "chapters" / sampler.chapter / "path_trace.glsl"}}};
+    const Estimator estimator = estimator_of(load_chapter(sampler.chapter));
+    ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
+                        .stage = ShaderStage::compute,
+                        .defines = {sampler.define, "COLUMNS " + std::to_string(columns)},
+                        .named_includes = {{"path_trace.glsl", estimator.file}}};
+    source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     const Device device({device_name, false});
     // A table of one triangle, the stub's second one, that always stands for itself.
     const Inputs inputs{seed_key(seed), 1, {0, 1, 0xffffffffu, 0, 1.0f}};
