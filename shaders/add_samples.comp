@@ -19,11 +19,11 @@ void main() {
     uint block = dispatch.first_block + gl_WorkGroupID.x;
     uvec2 position = get_pixel_position(block, gl_LocalInvocationIndex, parameters.image_size);
     if (any(greaterThanEqual(position, parameters.image_size))) return;
-    uint pixel_index = position.y * parameters.image_size.x + position.x;
+    uint film_index = position.y * parameters.image_size.x + position.x - dispatch.first_film_pixel;
 
-    FilmPixel pixel = film[pixel_index];
+    FilmPixel pixel = film[film_index];
     // Where render_samples.glsl has left the pixel's next sample.
     uint place = gl_WorkGroupID.x * dispatch.samples_per_pixel * BLOCK_SIZE + gl_LocalInvocationIndex;
     for (; pixel.sample_count < dispatch.target_samples; place += BLOCK_SIZE) add_sample(pixel, samples[place]);
-    film[pixel_index] = pixel;
+    film[film_index] = pixel;
 }

@@ -19,7 +19,9 @@ vec3 get_srgb(vec3 linear) {
 void show_pixel(uvec2 position) {
     if (any(greaterThanEqual(position, display.image_size))) return;
     uvec2 film_position = position * display.film_size / display.image_size;
-    FilmPixel pixel = film[film_position.y * display.film_size.x + film_position.x];
+    uint film_index = film_position.y * display.film_size.x + film_position.x - display.first_film_pixel;
+    if (film_index >= film.length()) return;  // in another part of a large film; also where it lies before this one
+    FilmPixel pixel = film[film_index];
     // A picture that has just been begun replaces the one before pixel by pixel.
     if (pixel.sample_count == 0u) return;
     vec3 radiance = (pixel.sum + pixel.compensation) / float(pixel.sample_count);

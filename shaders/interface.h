@@ -131,6 +131,7 @@ struct DispatchParameters {
     uint threads_per_pixel;  // 1, unless pixels are shared
     uint samples_per_pixel;  // where they are: no pixel lacks more
     uint target_samples;
+    uint first_film_pixel;  // that the binding of the film begins with
 };
 
 // What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation).
@@ -145,6 +146,7 @@ struct FilmPixel {
 struct DisplayParameters {
     uvec2 film_size;          // pixels in use
     uvec2 image_size;         // of the picture; the film is scaled to it
+    uint first_film_pixel;    // that the binding of the film begins with
     uint block_count;         // of the picture
     float scale;              // of radiance
     uint is_srgb;             // 1: encode with the sRGB curve

@@ -44,18 +44,19 @@ void render_samples(uint invocation) {
     uvec2 position = get_pixel_position(dispatch.first_block + block, index, parameters.image_size);
     if (any(greaterThanEqual(position, parameters.image_size))) return;
     uint pixel_index = position.y * parameters.image_size.x + position.x;
+    uint film_index = pixel_index - dispatch.first_film_pixel;
 
     // L := 1/N sum of path_trace(x_0, ω_0, 0) over N samples; the division by N happens when the film is read.
 #ifdef SHARED_PIXELS
     // The threads of a pixel render its samples in turns; add_samples.comp adds them up in the order of their indices.
-    uint first = film[pixel_index].sample_count;
+    uint first = film[film_index].sample_count;
     for (uint i = group % dispatch.threads_per_pixel; first + i < dispatch.target_samples; i += dispatch.threads_per_pixel)
         samples[(block * dispatch.samples_per_pixel + i) * BLOCK_SIZE + index] = render_sample(position, pixel_index, first + i);
 #else
-    FilmPixel pixel = film[pixel_index];
+    FilmPixel pixel = film[film_index];
     while (pixel.sample_count < dispatch.target_samples)
         add_sample(pixel, render_sample(position, pixel_index, pixel.sample_count));
-    film[pixel_index] = pixel;
+    film[film_index] = pixel;
 #endif
     atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);
 }

@@ -28,6 +28,7 @@ void print_devices() {
             std::printf("   %-9s %s\n", to_string(backend).c_str(),
                         missing.empty() ? "works" : ("lacks " + missing).c_str());
         }
+        std::printf("   largest image %zu megapixels\n", Film::max_pixels(device) / 1000000);
     }
 }
 

@@ -25,9 +25,9 @@ uint32_t FilmImage::min_samples() const {
 }
 
 bool FilmImage::has_equal_sample_counts() const {
-    const uint32_t samples = min_samples();
-    return std::all_of(pixels.begin(), pixels.end(),
-                       [&](const FilmPixel& pixel) { return pixel.sample_count == samples; });
+    return std::all_of(pixels.begin(), pixels.end(), [&](const FilmPixel& pixel) {
+        return pixel.sample_count == pixels.front().sample_count;
+    });
 }
 
 uint64_t FilmImage::invalid_samples() const {

@@ -42,29 +42,35 @@ Allocation allocate(const Device& device, const vk::MemoryRequirements& requirem
     throw DeviceError("the device has no suitable kind of memory");
 }
 
-// Bytes that a buffer of this usage may have.
-size_t size_limit(const Device& device, vk::BufferUsageFlags usage) {
-    if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
+// Bytes that such a buffer may have.
+size_t size_limit(const Device& device, const MemoryNeed& need) {
+    if (need.is_seen_in_parts) return device.description().largest_buffer;
+    if (need.usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
         return size_t{16} * device.limits().maxTexelBufferElements;
-    if (usage & vk::BufferUsageFlagBits::eStorageBuffer) return device.limits().maxStorageBufferRange;
+    if (need.usage & vk::BufferUsageFlagBits::eStorageBuffer) return device.limits().maxStorageBufferRange;
     return SIZE_MAX;
+}
+
+void check_extent(const Device& device, uint32_t width, uint32_t height) {
+    const uint32_t limit = device.limits().maxImageDimension2D;
+    if (std::max(width, height) > limit)
+        throw DeviceFailure("an image of " + std::to_string(width) + "x" + std::to_string(height) +
+                            " is larger than the device allows (" + std::to_string(limit) +
+                            "): make it smaller");
 }
 
 }  // namespace
 
 void require_memory(const Device& device, std::span<const MemoryNeed> needs) {
-    size_t sum = 0, memory = 0;
+    size_t sum = 0;
     for (const MemoryNeed& need : needs) {
-        if (const size_t limit = size_limit(device, need.usage); need.bytes > limit)
+        if (const size_t limit = size_limit(device, need); need.bytes > limit)
             throw DeviceFailure("too large for the device: " + need.what + ", a buffer of " +
                                 mebibytes(need.bytes) + " where it allows " + mebibytes(limit) +
                                 ": use a smaller image or scene");
         sum += need.bytes;
     }
-    const auto heaps = device.physical().getMemoryProperties();
-    for (uint32_t i = 0; i < heaps.memoryHeapCount; ++i)
-        if (heaps.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
-            memory = std::max<size_t>(memory, heaps.memoryHeaps[i].size);
+    const size_t memory = device.description().memory;
     if (sum <= memory) return;
     const auto largest = std::ranges::max_element(needs, {}, &MemoryNeed::bytes);
     throw DeviceFailure("too large for the device: " + largest->what + " of " + mebibytes(largest->bytes) +
@@ -73,10 +79,13 @@ void require_memory(const Device& device, std::span<const MemoryNeed> needs) {
 }
 
 Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location)
-    : device_(&device), size_(std::max<size_t>(size, 16)) {
-    const MemoryNeed need{"image or scene", size_, usage};
+    : Buffer(device, {"image or scene", size, usage}, location) {}
+
+Buffer::Buffer(const Device& device, const MemoryNeed& need, Location location)
+    : device_(&device), size_(std::max<size_t>(need.bytes, 16)) {
     require_memory(device, {&need, 1});
-    usage |= vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
+    const auto usage =
+        need.usage | vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     buffer_ = {device.handle(), vk::BufferCreateInfo({}, size_, usage)};
     const auto required = location == Location::host ? host_visible : vk::MemoryPropertyFlags();
     const auto preferred = location == Location::host ? vk::MemoryPropertyFlagBits::eHostCached
@@ -127,10 +136,7 @@ void Buffer::clear() {
 
 SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
                            std::span<const std::byte> pixels) {
-    if (std::max(width, height) > device.limits().maxImageDimension2D)
-        throw DeviceFailure("an image of " + std::to_string(width) + "x" + std::to_string(height) +
-                            " is larger than the device allows (" +
-                            std::to_string(device.limits().maxImageDimension2D) + "): make it smaller");
+    check_extent(device, width, height);
     image_ = {device.handle(),
               vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
                                   vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
@@ -166,6 +172,7 @@ SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height
 
 StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height)
     : device_(&device), width_(width), height_(height) {
+    check_extent(device, width, height);
     constexpr vk::Format format = vk::Format::eR8G8B8A8Unorm;
     image_ = {device.handle(),
               vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,

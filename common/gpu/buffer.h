@@ -11,6 +11,7 @@ struct MemoryNeed {
     std::string what;  // "positions"
     size_t bytes;
     vk::BufferUsageFlags usage = {};
+    bool is_seen_in_parts = false;  // shaders see as much of it at a time as they can
 };
 
 // Throws DeviceFailure, with the sizes, for a buffer that is larger than the device allows and for more bytes
@@ -27,6 +28,8 @@ class Buffer {
     // device.
     Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage,
            Location location = Location::device);
+
+    Buffer(const Device& device, const MemoryNeed& need, Location location = Location::device);
 
     // Device buffer that holds a copy of `data`.
     template <typename T>

@@ -62,9 +62,9 @@ ComputeKernel::ComputeKernel(const Device& device, const ShaderSource& source,
 }
 
 void ComputeKernel::record(const vk::raii::CommandBuffer& commands, const void* push_constants,
-                           uint32_t group_count) const {
+                           uint32_t group_count, vk::ArrayProxy<const uint32_t> offsets) const {
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, descriptors_.handle(), {});
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, descriptors_.handle(), offsets);
     if (push_constant_size_ > 0)
         (*commands).pushConstants(*layout_, vk::ShaderStageFlagBits::eCompute, 0, push_constant_size_,
                                   push_constants, *commands.getDispatcher());

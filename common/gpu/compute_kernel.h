@@ -39,9 +39,9 @@ class ComputeKernel {
     ComputeKernel(const Device& device, const ShaderSource& source, std::span<const Binding> bindings,
                   uint32_t push_constant_size);
 
-    // Starts `group_count` workgroups in a row.
-    void record(const vk::raii::CommandBuffer& commands, const void* push_constants,
-                uint32_t group_count) const;
+    // Starts `group_count` workgroups in a row. `offsets` in bytes, of the bindings that have one.
+    void record(const vk::raii::CommandBuffer& commands, const void* push_constants, uint32_t group_count,
+                vk::ArrayProxy<const uint32_t> offsets = {}) const;
 
   private:
     DescriptorSet descriptors_;

@@ -63,9 +63,19 @@ std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& devi
     return missing;
 }
 
+size_t largest_local_memory(const vk::raii::PhysicalDevice& device) {
+    const auto memory = device.getMemoryProperties();
+    size_t largest = 0;
+    for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+        if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
+            largest = std::max<size_t>(largest, memory.memoryHeaps[i].size);
+    return largest;
+}
+
 DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
     const auto properties =
-        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
+                              vk::PhysicalDeviceMaintenance3Properties>();
     const auto& general = properties.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
     DeviceDescription description{
@@ -73,6 +83,10 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         .kind = kind_text(general.deviceType),
         .driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data(),
         .api_version = version_text(general.apiVersion),
+        .memory = largest_local_memory(device),
+        // The place of a part has 32 bits.
+        .largest_buffer = std::min<size_t>(
+            properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),
         .missing = {},
     };
     if (general.apiVersion < VK_API_VERSION_1_2) {

@@ -36,6 +36,8 @@ struct DeviceDescription {
     std::string kind;    // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
     std::string driver;  // name and version as the driver tells them
     std::string api_version;
+    size_t memory = 0;                                    // bytes of the largest that is the device's own
+    size_t largest_buffer = 0;                            // bytes of one that shaders see in parts
     std::map<Backend, std::vector<std::string>> missing;  // what the device lacks for each backend
 
     bool supports(Backend backend) const { return missing.at(backend).empty(); }

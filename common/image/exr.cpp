@@ -12,6 +12,7 @@
 #include "files/file.h"
 #include "image/image.h"
 #include "image/image_checks.h"
+#include "parallel.h"
 
 namespace lab {
 namespace {
@@ -91,16 +92,22 @@ ExrFile collect(const std::filesystem::path& file, const EXRHeader& header, cons
     exr.image.width = static_cast<uint32_t>(decoded.width);
     exr.image.height = static_cast<uint32_t>(decoded.height);
     const size_t pixel_count = static_cast<size_t>(decoded.width) * decoded.height;
+    std::array<const float*, 3> colours{};
     for (int i = 0; i < header.num_channels; ++i) {
         const auto* plane = reinterpret_cast<const float*>(decoded.images[i]);
-        exr.channels[header.channels[i].name].assign(plane, plane + pixel_count);
+        const std::string name = header.channels[i].name;
+        if (name == "R" || name == "G" || name == "B")
+            colours[std::string("RGB").find(name)] = plane;
+        else
+            exr.channels[name].assign(plane, plane + pixel_count);
     }
+    if (std::ranges::count(colours, nullptr) > 0) fail(file, "it needs the channels R, G and B");
     exr.image.pixels.resize(3 * pixel_count);
-    for (size_t channel = 0; channel < 3; ++channel) {
-        const auto plane = exr.channels.extract(std::string(1, "RGB"[channel]));
-        if (!plane) fail(file, "it needs the channels R, G and B");
-        for (size_t i = 0; i < pixel_count; ++i) exr.image.pixels[3 * i + channel] = plane.mapped()[i];
-    }
+    in_parallel(pixel_count, 1 << 16, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            for (size_t channel = 0; channel < 3; ++channel)
+                exr.image.pixels[3 * i + channel] = colours[channel][i];
+    });
     for (int i = 0; i < header.num_custom_attributes; ++i) {
         const EXRAttribute& attribute = header.custom_attributes[i];
         if (std::string_view(attribute.type) != "string") continue;

@@ -157,7 +157,8 @@ Estimator recording(const Estimator& estimator) {
 PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure,
                            const Estimator& estimator, uvec2 image_size)
     : device_(&device),
-      film_(device, image_size.x, image_size.y),
+      // Samples go to a row of blocks, wherever in the image it is.
+      film_(device, image_size.x, BLOCK_HEIGHT),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
       events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent),
@@ -176,10 +177,10 @@ RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixe
     const Header header{pixel.y * film_.width() + pixel.x, sample, 0};
     events_.write(&header, sizeof header);
 
-    const uint32_t blocks_per_row = (film_.width() + BLOCK_WIDTH - 1) / BLOCK_WIDTH;
-    const uint32_t block = pixel.y / BLOCK_HEIGHT * blocks_per_row + pixel.x / BLOCK_WIDTH;
+    const uint32_t row = pixel.y / BLOCK_HEIGHT;
+    const uint32_t block = row * count_blocks({film_.width(), 1}) + pixel.x / BLOCK_WIDTH;
     device_->submit([&](const vk::raii::CommandBuffer& commands) {
-        tracer_->record(commands, {block, 1, 1, 1}, 1);
+        tracer_->record(commands, {block, 1, 1, 1, row * BLOCK_HEIGHT * film_.width()}, 1, 0);
     });
 
     std::vector<std::byte> bytes(events_.size());

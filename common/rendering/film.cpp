@@ -1,6 +1,14 @@
 #include "rendering/film.h"
 
+#include <algorithm>
+
 namespace lab {
+namespace {
+
+// Windows begin and end at multiples of this: no device asks for more.
+constexpr size_t alignment = 256;
+
+}  // namespace
 
 uint32_t count_blocks(uvec2 image_size) {
     return ((image_size.x + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
@@ -8,15 +16,41 @@ uint32_t count_blocks(uvec2 image_size) {
 }
 
 MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
-    return {"image's pixels", size_t{width} * height * sizeof(FilmPixel),
-            vk::BufferUsageFlagBits::eStorageBuffer};
+    const size_t bytes = size_t{width} * height * sizeof(FilmPixel);
+    return {.what = "image's pixels",
+            .bytes = (bytes + alignment - 1) / alignment * alignment,
+            .usage = vk::BufferUsageFlagBits::eStorageBuffer,
+            .is_seen_in_parts = true};
 }
 
-Film::Film(const Device& device, uint32_t width, uint32_t height)
+size_t Film::max_pixels(const DeviceDescription& device) {
+    return std::min(device.largest_buffer, device.memory) / sizeof(FilmPixel);
+}
+
+Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_window)
     : width_(width),
       height_(height),
-      buffer_(device, memory_need(width, height).bytes, memory_need(width, height).usage) {
+      buffer_(device, memory_need(width, height)),
+      window_size_(std::min({buffer_.size(), max_window / alignment * alignment,
+                             device.limits().maxStorageBufferRange / alignment * alignment})) {
     clear();
+}
+
+Binding Film::binding() const {
+    return {.index = BINDING_FILM,
+            .type = vk::DescriptorType::eStorageBufferDynamic,
+            .buffers = {{buffer_.handle(), 0, window_size_}}};
+}
+
+FilmWindow Film::window_from(uint32_t block) const {
+    const uint32_t blocks_per_row = count_blocks({width_, 1});
+    const size_t first_row = block / blocks_per_row * BLOCK_HEIGHT;
+    // Eight rows of pixels are a multiple of the alignment.
+    const size_t offset = std::min(first_row * width_ * sizeof(FilmPixel), buffer_.size() - window_size_);
+    const size_t end_row = (offset + window_size_) / sizeof(FilmPixel) / width_;
+    return {static_cast<uint32_t>(offset / sizeof(FilmPixel)),
+            end_row < height_ ? static_cast<uint32_t>(end_row) / BLOCK_HEIGHT * blocks_per_row
+                              : count_blocks({width_, height_})};
 }
 
 void Film::clear() { buffer_.clear(); }

@@ -61,18 +61,18 @@ std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
 
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
                    const Estimator& estimator, const RenderParameters& parameters,
-                   std::span<const Binding> further_bindings)
+                   std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1),
                   vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
-      film_(device, parameters.image_size.x, parameters.image_size.y) {
+      film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window) {
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
     if (are_pixels_shared(parameters.image_size)) {
-        samples_.emplace(device, memory_need_of_samples().bytes, memory_need_of_samples().usage);
+        samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
         adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "add_samples.comp"},
@@ -103,19 +103,22 @@ void Renderer::resume(const FilmImage& image) {
     next_block_ = 0;
 }
 
-void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks) const {
+void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks,
+                      const FilmWindow& window) const {
     if (!adder_) {
-        tracer_->record(commands, {next_block_, 1, 0, pass_samples_}, blocks);
+        tracer_->record(commands, {next_block_, 1, 0, pass_samples_, window.first_pixel}, blocks,
+                        window.offset());
         return;
     }
     const uint32_t groups_per_block = enough_groups / blocks;
     for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
         const uint32_t added = std::min(groups_per_block * samples_per_group, pass_samples_ - samples);
         samples += added;
-        const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples};
-        tracer_->record(commands, dispatch, blocks);
+        const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples,
+                                          window.first_pixel};
+        tracer_->record(commands, dispatch, blocks, window.offset());
         wait_for_writes(commands);
-        adder_->record(commands, &dispatch, blocks);
+        adder_->record(commands, &dispatch, blocks, window.offset());
         wait_for_writes(commands);
     }
 }
@@ -132,14 +135,15 @@ bool Renderer::advance(uint32_t target_samples) {
     const uint32_t step = pass_samples_ - finished_samples_;
     const double fitting = std::max(blocks_per_dispatch_ / step, 1.0);
     const uint32_t group_limit = device_->limits().maxComputeWorkGroupCount[0];
-    const uint32_t count = static_cast<uint32_t>(
-        std::min({fitting, static_cast<double>(group_limit), static_cast<double>(blocks - next_block_)}));
+    const FilmWindow window = film_.window_from(next_block_);
+    const uint32_t count = static_cast<uint32_t>(std::min(
+        {fitting, static_cast<double>(group_limit), static_cast<double>(window.end_block - next_block_)}));
 
     const auto counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = std::chrono::steady_clock::now();
     device_seconds_ +=
-        device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count); });
+        device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
     const double seconds = seconds_since(start);
     for (const uint32_t counter : counters) rays_ += counter;
 

@@ -24,10 +24,10 @@ class Renderer {
     static std::vector<MemoryNeed> memory_needs(uvec2 image_size);
 
     // The device and the acceleration structure must outlive the renderer. An estimator may have bindings of
-    // its own.
+    // its own. `max_film_window` as of Film.
     Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
              const Estimator& estimator, const RenderParameters& parameters,
-             std::span<const Binding> further_bindings = {});
+             std::span<const Binding> further_bindings = {}, size_t max_film_window = SIZE_MAX);
 
     // One dispatch of about `dispatch_seconds` on the way to `target_samples` samples in every pixel; true
     // while more are needed. Short dispatches keep driver watchdogs quiet and the program responsive: one
@@ -49,8 +49,8 @@ class Renderer {
 
   private:
     uint32_t block_count() const;
-    // Brings blocks from next_block_ on from finished_samples_ to pass_samples_.
-    void record(const vk::raii::CommandBuffer& commands, uint32_t blocks) const;
+    // Brings blocks from next_block_ on, which are in the window, from finished_samples_ to pass_samples_.
+    void record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const;
 
     const Device* device_;
     Buffer parameters_;

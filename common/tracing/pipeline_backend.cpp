@@ -46,10 +46,10 @@ class PipelineTracer : public Tracer {
     }
 
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                uint32_t block_count) const override {
+                uint32_t block_count, uint32_t film_offset) const override {
         commands.bindPipeline(vk::PipelineBindPoint::eRayTracingKHR, *pipeline_);
         commands.bindDescriptorSets(vk::PipelineBindPoint::eRayTracingKHR, *layout_, 0, descriptors_.handle(),
-                                    {});
+                                    film_offset);
         (*commands).pushConstants(*layout_, all_stages, 0, sizeof dispatch, &dispatch,
                                   *commands.getDispatcher());
         commands.traceRaysKHR(ray_generation_records_, miss_records_, hit_records_, {},

@@ -15,8 +15,8 @@ class ComputeTracer : public Tracer {
         : kernel_(device, source, bindings, sizeof(DispatchParameters)) {}
 
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                uint32_t block_count) const override {
-        kernel_.record(commands, &dispatch, block_count * dispatch.threads_per_pixel);
+                uint32_t block_count, uint32_t film_offset) const override {
+        kernel_.record(commands, &dispatch, block_count * dispatch.threads_per_pixel, film_offset);
     }
 
   private:

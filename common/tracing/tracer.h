@@ -36,9 +36,10 @@ class Tracer {
   public:
     virtual ~Tracer() = default;
     // Brings `block_count` blocks of pixels up to the asked number of samples. With the estimator's define
-    // SHARED_PIXELS their samples are left to be added to the film by shaders/add_samples.comp.
+    // SHARED_PIXELS their samples are left to be added to the film by shaders/add_samples.comp. The binding
+    // of the film begins `film_offset` bytes after its start.
     virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                        uint32_t block_count) const = 0;
+                        uint32_t block_count, uint32_t film_offset) const = 0;
 };
 
 // A scene's acceleration structure, built once and used by all its tracers.

@@ -26,12 +26,11 @@ DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr
 
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform,
                          float exposure) const {
-    const uint32_t blocks = count_blocks({picture_->width(), picture_->height()});
-    const uint32_t groups = std::min(blocks, device_->limits().maxComputeWorkGroupCount[0]);
     const bool is_radiance = transform == DisplayTransform::exposure;
     DisplayParameters parameters{.film_size = {film_->width(), film_->height()},
                                  .image_size = {picture_->width(), picture_->height()},
-                                 .block_count = blocks,
+                                 .first_film_pixel = 0,
+                                 .block_count = count_blocks({picture_->width(), picture_->height()}),
                                  .scale = is_radiance ? std::exp2(exposure) : 1.0f,
                                  .is_srgb = is_radiance,
                                  .divides_by_largest = 0};
@@ -40,12 +39,23 @@ void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransfo
         commands.fillBuffer(largest_value_.handle(), 0, VK_WHOLE_SIZE, 0);
         wait_for_writes(commands);
         parameters.divides_by_largest = 2;
-        kernel_.record(commands, &parameters, groups);
+        record_parts(commands, parameters);
         wait_for_writes(commands);
         parameters.divides_by_largest = 1;
     }
-    kernel_.record(commands, &parameters, groups);
+    record_parts(commands, parameters);
     wait_for_writes(commands);
+}
+
+void DisplayPass::record_parts(const vk::raii::CommandBuffer& commands, DisplayParameters parameters) const {
+    const uint32_t groups = std::min(parameters.block_count, device_->limits().maxComputeWorkGroupCount[0]);
+    const uint32_t film_blocks = count_blocks({film_->width(), film_->height()});
+    for (uint32_t block = 0; block < film_blocks;) {
+        const FilmWindow window = film_->window_from(block);
+        parameters.first_film_pixel = window.first_pixel;
+        kernel_.record(commands, &parameters, groups, window.offset());
+        block = window.end_block;
+    }
 }
 
 }  // namespace lab

@@ -20,6 +20,9 @@ class DisplayPass {
     const std::shared_ptr<StorageImage>& shared_picture() const { return picture_; }
 
   private:
+    // One pass over the picture for each part of the film that can be seen at a time.
+    void record_parts(const vk::raii::CommandBuffer& commands, DisplayParameters parameters) const;
+
     const Device* device_;
     const Film* film_;
     std::shared_ptr<StorageImage> picture_;

@@ -28,6 +28,7 @@ class Information(ProgramTest):
         self.assertRegex(out, r"(?m)^0\b.*Vulkan 1\.\d")
         for backend in ("pipeline", "query", "compute"):
             self.assertRegex(out, rf"{backend} +(works|lacks \w+)")
+        self.assertGreaterEqual(int(re.search(r"largest image (\d+) megapixels\n", out)[1]), 16)
 
     def test_a_render_tells_what_it_did(self):
         out = self.render("quad.json", "--width", 8, "--height", 8, "--samples", 4)

@@ -46,6 +46,13 @@ class Determinism(RenderTest):
             self.assertAlmostEqual((3 * a + b) / 4, c, delta=1e-6 * (1 + abs(c)))
 
 
+class LargeImages(RenderTest):
+    def test_all_pixels_of_an_image_that_shaders_see_in_parts_have_their_sample(self):
+        """Mesa's driver for CPUs binds 4.2 million pixels at a time."""
+        out = self.render("quad.json", "--width=4096", "--height=1100", "--samples=1", "--output=a.png")
+        self.assertRegex(out, "samples +1 a pixel, 4.51 M paths")
+
+
 class SampleRanges(RenderTest):
     def test_halves_merge_to_the_whole(self):
         self.picture("first", "--samples=32")

@@ -72,6 +72,22 @@ TEST(Submissions, OfManySamplesGiveTheSameImage) {
     }
 }
 
+// A film that shaders see in parts, as large ones are on devices that bind little memory: of images whose
+// pixels several threads share and of one with a thread for each. The last part is smaller than the others.
+TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
+    for (const Backend backend : all_backends) {
+        if (!test_device().description().supports(backend)) continue;
+        for (const auto& size : {uvec2(53, 37), uvec2(520, 536)}) {
+            RenderSettings whole{.width = size.x, .height = size.y, .samples = 3, .max_path_length = 2};
+            whole.backend = backend;
+            RenderSettings parts = whole;
+            parts.max_film_window = 2 * BLOCK_HEIGHT * size.x * sizeof(FilmPixel) + 300;
+            EXPECT_TRUE(are_identical(render(lit_box(), parts), render(lit_box(), whole)))
+                << to_string(backend) << ", " << size.x << "x" << size.y;
+        }
+    }
+}
+
 // A renderer that was made for a large image has one thread for each pixel, also if it goes on with a small
 // one.
 TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
@@ -121,12 +137,14 @@ TEST_P(Determinism, PartsMergeToTheWhole) {
 }
 
 TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
+    // Of a film that shaders see in parts: the checkpoint has the samples of all.
+    const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
     const GpuScene gpu_scene(test_device(), scene);
     const auto acceleration_structure =
         build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
     const auto make_renderer = [&] {
         return Renderer(test_device(), *acceleration_structure, settings().estimator,
-                        make_parameters(scene, settings()));
+                        make_parameters(scene, settings()), {}, two_rows_of_blocks);
     };
     // Interrupted within a pass, when some pixels have one sample more than others.
     Renderer interrupted = make_renderer();

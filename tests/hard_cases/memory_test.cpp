@@ -62,6 +62,17 @@ TEST(Memory, OfFilmsIsWhatTheyAllocate) {
     EXPECT_NE(text.find(in_mebibytes(size_t{65535} * 65535 * sizeof(FilmPixel))), std::string::npos) << text;
 }
 
+// One binding of 128 MiB, all that some devices allow, holds 4.2 million pixels.
+TEST(Memory, HoldsFilmsOfSixteenMegapixels) {
+    for (const auto& size : {uvec2(4096, 4096), uvec2(7680, 2160)})
+        EXPECT_EQ(refusal([&] { require_memory(test_device(), Renderer::memory_needs(size)); }), "");
+    const size_t largest = Film::max_pixels(test_device().description());
+    const MemoryNeed fits = Film::memory_need(static_cast<uint32_t>(largest / 8), 8),
+                     too_large = Film::memory_need(static_cast<uint32_t>(largest / 8 + 1), 8);
+    EXPECT_EQ(refusal([&] { require_memory(test_device(), {&fits, 1}); }), "");
+    EXPECT_NE(refusal([&] { require_memory(test_device(), {&too_large, 1}); }), "");
+}
+
 TEST(Memory, OfLargeRendersIsThatOfTheFilm) { EXPECT_EQ(Renderer::memory_needs({1024, 1024}).size(), 1u); }
 
 TEST(Memory, OfSmallRendersIsThatOfFilmAndSamples) {

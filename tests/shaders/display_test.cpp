@@ -1,4 +1,5 @@
 // shaders/display.comp: a screen shows what film/display.h computes.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -52,6 +53,23 @@ TEST(Display, AgreesWithTheSavedPictureToOneStepOfEightBits) {
     EXPECT_EQ(std::memcmp(after.pixels.data(), image.pixels.data(), image.pixels.size() * sizeof(FilmPixel)),
               0)
         << "showing a film must not change it";
+}
+
+// As on a device that binds little memory: the largest value is that of all parts.
+TEST(Display, ShowsAFilmThatIsSeenInParts) {
+    FilmImage image = make_film(61, 35);
+    std::ranges::rotate(image.pixels, image.pixels.begin() + 1000);
+    Film whole(test_device(), image.width, image.height),
+        parts(test_device(), image.width, image.height, BLOCK_HEIGHT * image.width * sizeof(FilmPixel));
+    whole.write(image);
+    parts.write(image);
+    ASSERT_GT(parts.window_from(count_blocks({image.width, image.height}) - 1).first_pixel, 0u);
+    for (const uvec2 size : {uvec2(61, 35), uvec2(183, 70), uvec2(30, 20)})
+        for (const auto transform : {DisplayTransform::exposure, DisplayTransform::maximum}) {
+            const auto of_whole = std::make_shared<StorageImage>(test_device(), size.x, size.y),
+                       of_parts = std::make_shared<StorageImage>(test_device(), size.x, size.y);
+            EXPECT_EQ(show(parts, of_parts, transform, 0), show(whole, of_whole, transform, 0));
+        }
 }
 
 TEST(Display, KeepsThePictureWhereThereAreNoSamplesYet) {

@@ -53,6 +53,7 @@ void main() {
         results[0].dispatch_parameters[i].threads_per_pixel = next();
         results[0].dispatch_parameters[i].samples_per_pixel = next();
         results[0].dispatch_parameters[i].target_samples = next();
+        results[0].dispatch_parameters[i].first_film_pixel = next();
         results[0].film_pixels[i].sum = next_vec3();
         results[0].film_pixels[i].compensation = next_vec3();
         results[0].film_pixels[i].sample_count = next();

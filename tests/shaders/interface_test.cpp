@@ -59,6 +59,7 @@ TEST(Interface, HasTheSameLayoutInCppAndGlsl) {
         EXPECT_FIELD(all.dispatch_parameters[i].threads_per_pixel);
         EXPECT_FIELD(all.dispatch_parameters[i].samples_per_pixel);
         EXPECT_FIELD(all.dispatch_parameters[i].target_samples);
+        EXPECT_FIELD(all.dispatch_parameters[i].first_film_pixel);
         EXPECT_FIELD(all.film_pixels[i].sum);
         EXPECT_FIELD(all.film_pixels[i].compensation);
         EXPECT_FIELD(all.film_pixels[i].sample_count);

@@ -53,8 +53,8 @@ LightSampling light_sampling_of(const RenderSettings& settings) {
 SceneRenderer::SceneRenderer(const Scene& scene, const RenderSettings& settings)
     : gpu_scene_(test_device(), scene, light_sampling_of(settings)),
       acceleration_structure_(build_acceleration_structure(settings.backend, test_device(), gpu_scene_)),
-      renderer_(test_device(), *acceleration_structure_, settings.estimator,
-                make_parameters(scene, settings)) {}
+      renderer_(test_device(), *acceleration_structure_, settings.estimator, make_parameters(scene, settings),
+                {}, settings.max_film_window) {}
 
 Rendering SceneRenderer::render(const RenderSettings& settings) {
     renderer_.set_dispatch_seconds(settings.dispatch_seconds);

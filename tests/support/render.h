@@ -51,6 +51,7 @@ struct RenderSettings {
     Estimator estimator = chapter_estimator(all_chapters.front());
     Backend backend = Backend::compute;
     double dispatch_seconds = 0.1;
+    size_t max_film_window = SIZE_MAX;  // bytes
 };
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings);
@@ -62,7 +63,7 @@ struct Rendering {
 };
 
 // A scene that is rendered again and again: its shaders are compiled once. The settings may differ in
-// everything but estimator, backend and light sampling.
+// everything but estimator, backend, light sampling and the film's window.
 class SceneRenderer {
   public:
     SceneRenderer(const Scene& scene, const RenderSettings& settings);
