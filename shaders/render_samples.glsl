@@ -25,14 +25,28 @@ bool is_counted(uint path_length) {
 
 // The estimator: a chapter's path_trace.glsl.
 //   vec3 path_trace(Ray ray, inout uvec2 seed) estimates the radiance L(x_0, ω_0) that arrives along a camera ray.
+// With PATH_REGENERATION, which chapter 10 defines, it does the same bounce by bounce.
 #include "path_trace.glsl"
+#ifndef PATH_REGENERATION
+struct Path {
+    Ray ray;
+    vec3 radiance;
+};
+Path start_path(Ray ray) { return Path(ray, vec3(0.0)); }
 
-// Radiance of a sample of a pixel, which has so many before it.
-vec3 render_sample(uvec2 position, uint pixel_index, uint sample_count) {
+// Returns whether the path goes on. All of it is done at once here.
+bool extend_path(inout Path path, inout uvec2 seed) {
+    path.radiance = path_trace(path.ray, seed);
+    return false;
+}
+#endif
+
+// The camera ray of a sample of a pixel, which has so many before it, and the state of its random numbers.
+Ray start_sample(uvec2 position, uint pixel_index, uint sample_count, out uvec2 seed) {
     uint sample_index = parameters.first_sample + sample_count;
-    uvec2 seed = random_start_state(pixel_index, sample_index, parameters.seed_key);
+    seed = random_start_state(pixel_index, sample_index, parameters.seed_key);
     vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
-    return path_trace(get_camera_ray(image_position), seed);
+    return get_camera_ray(image_position);
 }
 
 // Invocations of a dispatch are numbered: first the pixels of a block, then the next threads of the same pixels, then the
@@ -47,15 +61,31 @@ void render_samples(uint invocation) {
     uint film_index = pixel_index - dispatch.first_film_pixel;
 
     // L := 1/N sum of path_trace(x_0, ω_0, 0) over N samples; the division by N happens when the film is read.
+    FilmPixel pixel = film[film_index];
+    uint sample_count = pixel.sample_count, step = 1u;
 #ifdef SHARED_PIXELS
     // The threads of a pixel render its samples in turns; add_samples.comp adds them up in the order of their indices.
-    uint first = film[film_index].sample_count;
-    for (uint i = group % dispatch.threads_per_pixel; first + i < dispatch.target_samples; i += dispatch.threads_per_pixel)
-        samples[(block * dispatch.samples_per_pixel + i) * BLOCK_SIZE + index] = render_sample(position, pixel_index, first + i);
+    uint place = block * dispatch.samples_per_pixel + group % dispatch.threads_per_pixel;
+    sample_count += group % dispatch.threads_per_pixel;
+    step = dispatch.threads_per_pixel;
+#endif
+    // One loop over samples and bounces: a thread whose path has ended starts its next one, whatever its neighbours do.
+    Path path;
+    uvec2 seed;
+    bool is_path_alive = false;
+    while (is_path_alive || sample_count < dispatch.target_samples) {
+        if (!is_path_alive) path = start_path(start_sample(position, pixel_index, sample_count, seed));
+        is_path_alive = extend_path(path, seed);
+        if (is_path_alive) continue;
+#ifdef SHARED_PIXELS
+        samples[place * BLOCK_SIZE + index] = path.radiance;
+        place += step;
 #else
-    FilmPixel pixel = film[film_index];
-    while (pixel.sample_count < dispatch.target_samples)
-        add_sample(pixel, render_sample(position, pixel_index, pixel.sample_count));
+        add_sample(pixel, path.radiance);
+#endif
+        sample_count += step;
+    }
+#ifndef SHARED_PIXELS
     film[film_index] = pixel;
 #endif
     atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);

@@ -9,6 +9,7 @@
 #define path_trace observed_path_trace
 #include "observed.glsl"
 #undef path_trace
+#undef PATH_REGENERATION  // path_trace() below is what is called
 
 layout(scalar, set = 0, binding = BINDING_SHADING_POINT) readonly buffer ShadingPointBuffer {
     ShadingPoint shading_point;

@@ -3,6 +3,7 @@
 #define path_trace path_trace_of_chapter
 #include "observed.glsl"
 #undef path_trace
+#undef PATH_REGENERATION  // path_trace() below is what is called
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     vec2 u = get_random_numbers(seed), v = get_random_numbers(seed);
