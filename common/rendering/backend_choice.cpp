@@ -90,14 +90,22 @@ Backend choose_backend(const std::string& name, const Device& device, const GpuS
     return fastest;
 }
 
+bool can_show(const View& view, Backend backend) {
+    if (backend == Backend::compute) return true;
+    // Our own hierarchy is that of the backend compute. Lanes may be counted in compute shaders only.
+    if (view.name == "bvh-steps") return false;
+    return view.name != "idle-lanes" || backend == Backend::query;
+}
+
 Backend choose_backend(const Options& options, const Device& device, const GpuScene& scene,
                        const Estimator& estimator, const RenderParameters& parameters) {
     if (!options.image.view) return choose_backend(options.run.backend, device, scene, estimator, parameters);
-    if (options.image.view->name == "bvh-steps" && options.run.backend != "auto" &&
-        options.run.backend != "compute")
-        throw UserError("--view bvh-steps looks into our own hierarchy: leave --backend out or use compute");
-    return choose_backend(options.run.backend == "auto" ? "compute" : options.run.backend, device, scene,
-                          estimator, parameters);
+    const Backend backend = choose_backend(options.run.backend == "auto" ? "compute" : options.run.backend,
+                                           device, scene, estimator, parameters);
+    if (!can_show(*options.image.view, backend))
+        throw UserError("--view " + options.image.view->name + " does not work with the backend " +
+                        to_string(backend) + ": leave --backend out or use compute");
+    return backend;
 }
 
 }  // namespace lab

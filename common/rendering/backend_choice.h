@@ -7,6 +7,9 @@
 
 namespace lab {
 
+// Whether a view can be shown with this backend.
+bool can_show(const View& view, Backend backend);
+
 // The backend of that name; for "auto" the one that a short measurement on this scene finds fastest. The
 // choice is kept for the device, its driver and the decade of the number of triangles, so only the first run
 // pays for it.

@@ -14,6 +14,7 @@ namespace lab {
 // A picture of something else than radiance: what shaders/view.glsl shows when `define` is defined.
 struct View {
     std::string name;
+    std::string shader;  // in shaders/
     std::string define;
     DisplayTransform display;
 };

@@ -135,9 +135,14 @@ Estimator estimator_of(const Chapter& chapter) {
 
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
-    if (options.image.view) return {shared / "view.glsl", {options.image.view->define}};
-    if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};
     Estimator estimator = estimator_of(chapter);
+    if (const auto& view = options.image.view) {
+        estimator.observed = estimator.file;
+        estimator.file = shared / view->shader;
+        estimator.defines.push_back(view->define);
+        return estimator;
+    }
+    if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};
     if (options.estimator.strategy == Strategy::light) estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
     return estimator;
 }

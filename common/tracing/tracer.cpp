@@ -32,13 +32,20 @@ void require_support(Backend backend, const DeviceDescription& device) {
                       " for the backend '" + to_string(backend) + "'; these work on it: " + working);
 }
 
+// What #include stands for in the shaders that run the estimator.
+std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator) {
+    std::map<std::string, std::filesystem::path> names{{"path_trace.glsl", estimator.file}};
+    if (!estimator.observed.empty()) names["observed.glsl"] = estimator.observed;
+    return names;
+}
+
 // These shaders of shaders/ and all that they include.
 std::set<std::filesystem::path> files_of(std::initializer_list<const char*> names,
                                          const Estimator& estimator) {
     std::set<std::filesystem::path> files;
     for (const char* name : names)
-        for (const auto& file : shader_files({.file = project_folder() / "shaders" / name,
-                                .named_includes = {{"path_trace.glsl", estimator.file}}}))
+        for (const auto& file : shader_files(
+                 {.file = project_folder() / "shaders" / name, .named_includes = named_includes(estimator)}))
             files.insert(file);
     return files;
 }
@@ -50,9 +57,8 @@ ShaderSource shader_source(const std::string& name, ShaderStage stage, const Gpu
     ShaderSource source{.file = project_folder() / "shaders" / name,
                         .stage = stage,
                         .defines = scene.defines(),
-                        .named_includes = {{"path_trace.glsl", estimator.file}},
+                        .named_includes = named_includes(estimator),
                         .edit = estimator.edit};
-    if (!estimator.observed.empty()) source.named_includes["observed.glsl"] = estimator.observed;
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     return source;
 }

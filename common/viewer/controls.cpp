@@ -9,6 +9,7 @@
 #include "error.h"
 #include "files/file.h"
 #include "files/project_folder.h"
+#include "rendering/backend_choice.h"
 #include "rendering/numbers_text.h"
 #include "rendering/settings.h"
 
@@ -205,9 +206,7 @@ void Controls::draw_picture(const Session& session, Options& options) {
     if (ImGui::BeginCombo("view", options.image.view ? options.image.view->name.c_str() : "radiance")) {
         if (ImGui::Selectable("radiance", !options.image.view)) options.image.view = nullptr;
         for (const View& view : views()) {
-            // That one looks into our own hierarchy.
-            const bool is_possible = view.name != "bvh-steps" || session.build().backend == Backend::compute;
-            if (is_possible && ImGui::Selectable(view.name.c_str(), options.image.view == &view))
+            if (can_show(view, session.build().backend) && ImGui::Selectable(view.name.c_str(), options.image.view == &view))
                 options.image.view = &view;
         }
         ImGui::EndCombo();

@@ -76,10 +76,7 @@ void add_shading_data() {
 
 #define trace_ray record_and_trace_ray
 #define is_occluded record_and_ask_is_occluded
-#define path_trace observed_path_trace
-#include "observed.glsl"
-#undef path_trace
-#undef PATH_REGENERATION  // path_trace() below is what is called
+#include "inside/observed_estimator.glsl"
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     // All samples of all pixels have different random numbers, so these tell which one it is.

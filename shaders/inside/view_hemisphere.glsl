@@ -6,10 +6,7 @@
 // horizon at the rim; the hemisphere is seen from above.
 #include "inside/shading_point.h"
 
-#define path_trace observed_path_trace
-#include "observed.glsl"
-#undef path_trace
-#undef PATH_REGENERATION  // path_trace() below is what is called
+#include "inside/observed_estimator.glsl"
 
 layout(scalar, set = 0, binding = BINDING_SHADING_POINT) readonly buffer ShadingPointBuffer {
     ShadingPoint shading_point;

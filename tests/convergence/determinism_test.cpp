@@ -179,5 +179,24 @@ TEST_P(Determinism, PathLengthsAddUpToTheImage) {
             ASSERT_NEAR(sums[i][channel], whole.pixels[i].sum[channel], 1e-6 * sums[i][channel]);
 }
 
+// Chapter 10 orders the work of threads in another way, and nothing else.
+class PathRegeneration : public OnEachBackend {};
+INSTANTIATE_TEST_SUITE_P(Backends, PathRegeneration, testing::ValuesIn(all_backends), backend_name);
+
+TEST_P(PathRegeneration, GivesTheImageOfChapterNine) {
+    for (const char* name : {"cornell_box", "glass", "studio"}) {
+        const Scene scene_with_all = load_shipped_scene(name + std::string(".json"));
+        RenderSettings settings{
+            .width = 40, .height = 24, .samples = 21, .max_path_length = 30, .backend = GetParam()};
+        settings.estimator = chapter_estimator(all_chapters.at(8));
+        const FilmImage whole = render(scene_with_all, settings);
+        settings.estimator = chapter_estimator(all_chapters.at(9));
+        EXPECT_TRUE(are_identical(whole, render(scene_with_all, settings))) << name;
+        // Dispatches of one block and one sample leave nothing to regenerate.
+        settings.dispatch_seconds = 1e-9;
+        EXPECT_TRUE(are_identical(whole, render(scene_with_all, settings))) << name;
+    }
+}
+
 }  // namespace
 }  // namespace lab
