@@ -110,8 +110,8 @@ TEST(Efficiency, SamplingTheLightProbePays) {
 TEST(Efficiency, LowDiscrepancyPointsPay) {
     expect_gain("low-discrepancy points against light probes, Cornell box",
                 measure_chapter("cornell_box", 8, 32, 4), measure_chapter("cornell_box", 9, 32, 4));
-    expect_gain("low-discrepancy points against light probes, wide sun", measure_chapter("textured", 8, 32, 2),
-                measure_chapter("textured", 9, 32, 2));
+    expect_gain("low-discrepancy points against light probes, wide sun",
+                measure_chapter("textured", 8, 32, 2), measure_chapter("textured", 9, 32, 2));
 }
 
 }  // namespace

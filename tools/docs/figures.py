@@ -73,19 +73,21 @@ def renders_of_strategies():
                    height=256) for strategy in ("light", "brdf", "both")]
 
 
-def renders_of_neighbours(scenes, chapters, size, rays_per_pixel):
+def renders_of_neighbours(scenes, chapters, options=(), rays_per_pixel=0):
     """Chapters beside each other, for the same number of rays."""
-    return [Render(f"{scene}_{int(chapter[:2])}", chapter, scene, size, (), rays_per_pixel)
+    return [Render(f"{scene}_{int(chapter[:2])}", chapter, scene, 320, options, rays_per_pixel)
             for scene in scenes for chapter in map(chapter_named, chapters)]
 
 
 def renders_of_light_probes():
-    return renders_of_neighbours(("sunny", "studio"), ("multiple_importance_sampling", "light_probes"), 320, RAYS_PER_PIXEL)
+    chapters = ("multiple_importance_sampling", "light_probes")
+    return renders_of_neighbours(("sunny", "studio"), chapters, rays_per_pixel=RAYS_PER_PIXEL)
 
 
 def renders_of_low_discrepancy():
-    """With so few rays that the difference shows."""
-    return renders_of_neighbours(("cornell_box", "heart_light"), ("light_probes", "low_discrepancy_points"), 256, RAYS_PER_PIXEL / 4)
+    """Light that is reflected once, where the points matter most."""
+    chapters = ("light_probes", "low_discrepancy_points")
+    return renders_of_neighbours(("cornell_box", "textured"), chapters, ("--samples", 64, "--max-path-length", 1))
 
 
 def renders_of_path_lengths():

@@ -18,7 +18,7 @@ using namespace lab;
 
 struct Sampler {
     std::string define;   // of sample_points.comp
-    std::string chapter;  // whose estimator is included there; random numbers may be its own, the rest runs it
+    std::string chapter;  // whose estimator is included there, unless only PCG2D is wanted
     uint32_t columns;     // numbers a point; 0: as many as --dimensions says
 };
 const std::map<std::string, Sampler> samplers{
