@@ -67,10 +67,10 @@ std::vector<std::string> chapter_folders() {
 Chapter load_chapter(const std::string& name) {
     const auto file = project_folder() / "chapters" / name / "chapter.json";
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
-    const JsonObject root(content, file.string(), "the chapter",
-                          {"title", "default_scene", "light_sampling", "light_probe_sampling", "strategies",
-                           "split_every_hit", "unlimited_path_length", "dielectrics", "low_discrepancy",
-                           "options"});
+    const JsonObject root(
+        content, file.string(), "the chapter",
+        {"title", "default_scene", "light_sampling", "light_probe_sampling", "strategies", "split_every_hit",
+         "unlimited_path_length", "dielectrics", "low_discrepancy", "options"});
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),

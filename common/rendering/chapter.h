@@ -30,7 +30,7 @@ struct Chapter {
     bool split_every_hit = false;               // has --split-every-hit
     bool unlimited_path_length = false;         // whatever the scene says; --max-path-length still limits it
     bool dielectrics = false;                   // whether its estimator handles them
-    bool low_discrepancy = false;               // its shader makes its random numbers, see shaders/random.glsl
+    bool low_discrepancy = false;  // its shader makes its random numbers, see shaders/random.glsl
     std::vector<ChapterOption> options = {};
 };
 

@@ -29,8 +29,9 @@ void check_sample_count(const RenderJob& job) {
 // Of low-discrepancy points samples 2^k to 2^(k+1) - 1 share a scramble, counted from 0.
 void check_halves(const RenderJob& job) {
     if (!job.has_independent_halves && job.options.run.target_error && job.options.run.reference.empty())
-        throw UserError("--target-error: with --first-sample this chapter cannot tell its error, since its samples "
-                        "depend on each other: give a --reference");
+        throw UserError(
+            "--target-error: with --first-sample this chapter cannot tell its error, since its samples "
+            "depend on each other: give a --reference");
 }
 
 void check_scene(const Chapter& chapter, const Scene& scene) {

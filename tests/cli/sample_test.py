@@ -7,7 +7,7 @@ import unittest
 from program import BINARIES, TOOLS, ProgramTest  # first: it finds the tools
 import mistake
 
-NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-point"]
+NAMES = ["1d", "kd", "numbers", "points", "blog-hash", "uniform-angles", "cosine", "light-point"]
 
 
 class SampleTest(ProgramTest):
@@ -45,14 +45,36 @@ class SampleTest(ProgramTest):
             error = float(re.findall(r"^ +4096 +([\d.]+) +[\d.]+$", out, re.MULTILINE)[0])
             self.assertAlmostEqual(error * 2 ** (1 + 12 / dimensions), 1, delta=0.1)
 
-    def test_a_mistake_in_the_chapter_shows(self):
+    def slopes(self, **options):
+        """Of the two integrals: slopes with points of a grid, random ones, Sobol's and scrambled ones."""
+        out = self.sample("points", "--output=picture.png", **options)
+        return [list(map(float, line.split()[1:])) for line in out.splitlines() if line.split()[:1] == ["slope"]]
+
+    def test_errors_with_scrambled_points_fall_fast(self):
+        disk, smooth = self.slopes()
+        self.assertAlmostEqual(disk[1], -0.5, delta=0.06)
+        self.assertAlmostEqual(smooth[1], -0.5, delta=0.06)
+        self.assertLess(disk[3], -0.65)
+        self.assertLess(smooth[3], -1.3)
+
+    def test_a_mistake_in_the_points_shows(self):
+        """With two equal numbers in a pair it is another integral that is found."""
+        _, smooth = self.slopes(binaries=self.tree_with("one-dimension-for-both"))
+        self.assertGreater(smooth[3], -0.5)
+
+    def tree_with(self, name):
+        """Binaries that read shaders with a mistake of mistakes.json in them."""
         tree = self.folder / "tree"
-        mistake.make(mistake.load()["flat-hemisphere"], tree)
+        mistake.make(mistake.load()[name], tree)
         for name in ("tools/lesson", "bin"):
             (tree / name).mkdir(parents=True, exist_ok=True)
         shutil.copy(TOOLS / "lesson/sample_points.comp", tree / "tools/lesson")
         shutil.copy(BINARIES / "sample_points", tree / "bin")
-        self.assertIn("too large for chance", self.sample("cosine", "--output=picture.png", binaries=tree / "bin"))
+        return tree / "bin"
+
+    def test_a_mistake_in_the_chapter_shows(self):
+        binaries = self.tree_with("flat-hemisphere")
+        self.assertIn("too large for chance", self.sample("cosine", "--output=picture.png", binaries=binaries))
 
     def test_other_words_are_refused(self):
         self.refuse(["nothing"], "'nothing'", "cosine")

@@ -69,9 +69,7 @@ Scene load(const Case& item) {
     return load_scene(project_folder() / "assets" / "scenes" / (item.scene + ".json"));
 }
 
-Estimator estimator_of(const Case& item) {
-    return estimator_of(load_chapter(item.chapter));
-}
+Estimator estimator_of(const Case& item) { return estimator_of(load_chapter(item.chapter)); }
 
 void render(Renderer& renderer, uint32_t target_samples) {
     while (renderer.advance(target_samples)) {

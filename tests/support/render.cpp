@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "files/project_folder.h"
-#include "rendering/settings.h"
 #include "rendering/options.h"
+#include "rendering/settings.h"
 #include "support/gpu_test.h"
 
 namespace lab {
@@ -18,9 +18,7 @@ std::vector<std::string> light_sampling_chapters() {
     return chapters;
 }
 
-Estimator chapter_estimator(const std::string& chapter) {
-    return estimator_of(load_chapter(chapter));
-}
+Estimator chapter_estimator(const std::string& chapter) { return estimator_of(load_chapter(chapter)); }
 
 Estimator every_hit_estimator() { return {project_folder() / "shaders" / "path_trace_every_hit.glsl"}; }
 

@@ -6,7 +6,7 @@ import matplotlib
 matplotlib.use("agg")
 import numpy as np
 from lesson import sample
-from lesson.sample_plots import scatter
+from lesson.sample_plots import save_point_sets, scatter
 from matplotlib import image, pyplot
 from project import BINARIES, ROOT, UserError, run_program
 from report.plots import COLOURS, MARKERS, encode_srgb, style_axis
@@ -103,6 +103,10 @@ def light_probes(folder, images, reports):
     by_scene(folder / "light_probes.jpg", images, reports)
 
 
+def low_discrepancy(folder, images, reports):
+    by_scene(folder / "low_discrepancy.jpg", images, reports)
+
+
 def convergence(folder, images, reports):
     """Error against samples and against seconds; means of all runs of a chapter."""
     figure, axes = pyplot.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
@@ -126,7 +130,7 @@ def sampler_points(folder, images, reports):
     figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.9), layout="constrained")
     for axis, name in zip(axes, names):
         playground = sample.PLAYGROUNDS[name]
-        scatter(axis, playground.kind, sample.draw(playground, 2000, 0, playground.dimensions))
+        scatter(axis, playground.kind, sample.draw(playground.sampler, 2000, 0, playground.dimensions))
         axis.set_title(playground.title.replace(", density", "\ndensity"), fontsize=9)
     save(figure, folder / "sampler_points.png")
 
@@ -136,10 +140,14 @@ def mean_errors(terms, exact, sizes):
     return [np.sqrt(((terms[: len(terms) // n * n].reshape(-1, n).mean(axis=1) - exact) ** 2).mean()) for n in sizes]
 
 
+def point_sets(folder, images, reports):
+    save_point_sets(folder / "point_sets.png", sample.draw_sets(0), sample.COMPARED)
+
+
 def one_over_root_n(folder, images, reports):
     playground = sample.PLAYGROUNDS["1d"]
     integral, sizes = playground.integrals[0], 2 ** np.arange(15)
-    terms = integral.terms(sample.draw(playground, 2**20, 0, 1))
+    terms = integral.terms(sample.draw(playground.sampler, 2**20, 0, 1))
     errors = mean_errors(terms, integral.value(1), sizes)
 
     def draw(axis):
@@ -155,7 +163,7 @@ def grid_and_random(folder, images, reports):
     figure, axes = pyplot.subplots(1, 4, figsize=(13, 3.6), sharey=True, layout="constrained")
     for axis, k in zip(axes, (1, 2, 4, 8)):
         sizes = 2 ** np.arange(0, 17, 2)
-        terms = integral.terms(sample.draw(playground, 2**20, 0, k))
+        terms = integral.terms(sample.draw(playground.sampler, 2**20, 0, k))
         axis.plot(sizes, mean_errors(terms, integral.value(k), sizes), "o-", color=COLOURS[0], markersize=4, label="random: N^(−1/2)")
         n, corners, midpoints = zip(*sample.grid_rows(integral, k, 2**16))
         axis.plot(n, corners, "s-", color=COLOURS[4], markersize=4, label=f"grid of corners: N^(−1/{k})")
@@ -171,7 +179,7 @@ def random_numbers(folder, images, reports):
     figure, axes = pyplot.subplots(1, 2, figsize=(8, 4.2), layout="constrained")
     for axis, name, title in zip(axes, ("numbers", "blog-hash"), ("PCG2D", "frac(sin(dot(p, …)) · 43758.5)")):
         playground = sample.PLAYGROUNDS[name]
-        points = sample.draw(playground, 2**20, 0, 2)
+        points = sample.draw(playground.sampler, 2**20, 0, 2)
         corner = points[(points < 1 / 32).all(axis=1)]
         axis.plot(corner[:, 0], corner[:, 1], ".", color=COLOURS[0], markersize=3, markeredgewidth=0)
         axis.set(title=f"{title}\n{len(corner):,} of {len(points):,} points", xlabel="u_x", ylabel="u_y")

@@ -73,10 +73,21 @@ def renders_of_strategies():
                    height=256) for strategy in ("light", "brdf", "both")]
 
 
+def renders_of_neighbours(scenes, chapters, options=(), rays_per_pixel=0):
+    """Chapters beside each other, for the same number of rays."""
+    return [Render(f"{scene}_{int(chapter[:2])}", chapter, scene, 320, options, rays_per_pixel)
+            for scene in scenes for chapter in map(chapter_named, chapters)]
+
+
 def renders_of_light_probes():
-    """Bounces beside light samples, for the same number of rays."""
-    return [Render(f"{scene}_{int(chapter[:2])}", chapter, scene, 320, (), RAYS_PER_PIXEL)
-            for scene in ("sunny", "studio") for chapter in map(chapter_named, ("multiple_importance_sampling", "light_probes"))]
+    chapters = ("multiple_importance_sampling", "light_probes")
+    return renders_of_neighbours(("sunny", "studio"), chapters, rays_per_pixel=RAYS_PER_PIXEL)
+
+
+def renders_of_low_discrepancy():
+    """Light that is reflected once, where the points matter most."""
+    chapters = ("light_probes", "low_discrepancy_points")
+    return renders_of_neighbours(("cornell_box", "textured"), chapters, ("--samples", 64, "--max-path-length", 1))
 
 
 def renders_of_path_lengths():
@@ -123,12 +134,14 @@ FIGURES = {
     "chapters": (renders_of_chapters, figure_plots.chapters),
     "strategies": (renders_of_strategies, figure_plots.strategies),
     "light_probes": (renders_of_light_probes, figure_plots.light_probes),
+    "low_discrepancy": (renders_of_low_discrepancy, figure_plots.low_discrepancy),
     "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
     "effects": (renders_of_effects, figure_plots.effects),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
     "equal_time": (renders_at_equal_time, figure_plots.equal_time),
     "convergence": (renders_of_convergence, figure_plots.convergence),
     "sampler_points": (list, figure_plots.sampler_points),
+    "point_sets": (list, figure_plots.point_sets),
     "one_over_root_n": (list, figure_plots.one_over_root_n),
     "grid_and_random": (list, figure_plots.grid_and_random),
     "random_numbers": (list, figure_plots.random_numbers),

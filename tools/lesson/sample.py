@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Callable
 
 import numpy as np
-from lesson import sample_plots
+from lesson import point_sets, sample_plots
 from project import BINARIES, ROOT, Parser, UserError, number, run_program
 from report.numbers import CONFIDENCE, two_sided
 
@@ -33,6 +33,7 @@ class Playground:
     cumulative: Callable  # the distribution function of that coordinate
     dimensions: int = 2
     kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
+    is_pixel: bool = False  # whether the points are samples of one pixel, and not the first ones of as many
 
 
 def drop_lost(points):
@@ -50,6 +51,7 @@ COSINES = [Integral("∫ n·ω dω over the hemisphere", lambda k: math.pi, lamb
            Integral("∫ (n·ω)² dω over the hemisphere", lambda k: 2 * math.pi / 3, lambda p: math.pi * p[:, 3] * p[:, 2])]
 MEAN_SQUARE = Integral("∫ ((u_1 + … + u_k) / k)² du over [0,1]^k", lambda k: 1 / 4 + 1 / (12 * k),
                        lambda u: u.mean(axis=1) ** 2)
+COMPARED = {"the quarter disk's area": DARTS, "a smooth integral": MEAN_SQUARE}  # with each set of points
 
 PLAYGROUNDS = {
     "1d": Playground("1D Monte Carlo integration", "numbers", [
@@ -59,6 +61,8 @@ PLAYGROUNDS = {
                      lambda u: u[:, 0], identity, dimensions=4),
     "numbers": Playground("pairs of random numbers by PCG2D, shaders/random.glsl", "numbers", [DARTS], "u_x",
                           lambda u: u[:, 0], identity),
+    "points": Playground("points of chapter 9: the samples of a pixel, beside other sets of points", "scrambled", [DARTS, MEAN_SQUARE],
+                         "u_x", lambda u: u[:, 0], identity, is_pixel=True),
     "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS],
                             "u_x", lambda u: u[:, 0], identity),
     "uniform-angles": Playground("directions of chapter 1, density 1 / (π² sin θ)", "uniform-angles", COSINES, "cos θ",
@@ -71,13 +75,18 @@ PLAYGROUNDS = {
 }
 
 
-def draw(playground, count, seed, dimensions, device=None):
-    """Array [index, column] of points."""
-    command = [PROGRAM, playground.sampler, "--count", count, "--seed", seed, "--dimensions", dimensions]
+def draw(sampler, count, seed, dimensions, device=None, samples=1):
+    """Array [index, column] of points: the first ones of pixels, or `samples` of each pixel."""
+    command = [PROGRAM, sampler, "--count", count, "--samples", samples, "--seed", seed, "--dimensions", dimensions]
     result = run_program(command + (["--device", device] if device else []), text=False)
     if result.returncode != 0:
         raise UserError(result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}")
     return np.frombuffer(result.stdout, np.float32).reshape(count, -1).astype(float)
+
+
+def draw_sets(seed, device=None):
+    """Those that point_sets compares."""
+    return point_sets.draw_sets(lambda sampler, count, samples: draw(sampler, count, seed, 2, device, samples))
 
 
 def histogram(playground, points):
@@ -160,12 +169,19 @@ def main():
     options = parse()
     playground = PLAYGROUNDS[options.name]
     dimensions = options.dimensions or playground.dimensions
-    points = draw(playground, options.count, options.seed, dimensions, options.device)
+    samples = options.count if playground.is_pixel else 1
+    points = draw(playground.sampler, options.count, options.seed, dimensions, options.device, samples)
     print(report(playground, points, dimensions))
+    if playground.is_pixel:
+        sets = draw_sets(options.seed, options.device)
+        print("\n".join(point_sets.report(sets, COMPARED)))
     output = options.output or ROOT / f"output/sample_{options.name}.png"
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
-        sample_plots.save_overview(output, playground, points, dimensions, histogram, estimates)
+        if playground.is_pixel:
+            sample_plots.save_point_sets(output, sets, COMPARED)
+        else:
+            sample_plots.save_overview(output, playground, points, dimensions, histogram, estimates)
     except OSError as error:
         raise UserError(f"{output}: cannot be written: {error}") from None
     print(f"\npicture        {output}")

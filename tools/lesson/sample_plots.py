@@ -3,8 +3,9 @@ import matplotlib
 
 matplotlib.use("agg")
 import numpy as np
+from lesson import point_sets
 from matplotlib import pyplot
-from report.plots import COLOURS, style_axis
+from report.plots import COLOURS, MARKERS, style_axis
 
 SHOWN = 2000  # points in a scatter plot
 DPI = 100
@@ -57,5 +58,28 @@ def save_overview(path, playground, points, dimensions, histogram, estimates):
     style_axis(axes[2], xscale="log", xlabel="N")
     axes[2].legend(frameon=False, fontsize=8)
     figure.suptitle(playground.title, fontsize=11)
+    figure.savefig(path, dpi=DPI)
+    pyplot.close(figure)
+
+
+def save_point_sets(path, sets, integrals):
+    """Sets of points, their spectra, and the errors of two integrals with them."""
+    pyplot.rcParams.update({"font.family": "sans-serif", "font.size": 10})
+    names = ["grid", *sets]
+    figure = pyplot.figure(figsize=(14, 6), layout="constrained")
+    axes = figure.add_gridspec(2, len(names) + 1, width_ratios=[1] * len(names) + [1.5])
+    shown, reach = point_sets.SPECTRUM_SIZE, point_sets.FREQUENCIES
+    for column, (name, power) in enumerate(point_sets.spectra(sets).items()):
+        points = figure.add_subplot(axes[0, column], title=f"{name}, {shown} points")
+        points.plot(*point_sets.first_points(sets, name, shown)[0].T, ".", color=COLOURS[0], markersize=4, markeredgewidth=0)
+        points.set(aspect="equal", xlim=(0, 1), ylim=(0, 1), xticks=[], yticks=[])
+        figure.add_subplot(axes[1, column], title="spectrum" + (", mean of pixels" if column else ""), xlabel="frequency").imshow(
+            power, cmap="gray", vmin=0, vmax=2, extent=[-reach, reach, -reach, reach], interpolation="nearest")
+    for row, (title, integral) in enumerate(integrals.items()):
+        axis = figure.add_subplot(axes[row, -1])
+        for (name, errors), colour, marker in zip(point_sets.errors(sets, integral).items(), COLOURS, MARKERS):
+            axis.plot(point_sets.SIZES, errors, marker + "-", color=colour, markersize=4, label=name)
+        style_axis(axis, xscale="log", yscale="log", title=f"error of {title}", xlabel="N" if row else None)
+        axis.legend(frameon=False, fontsize=8)
     figure.savefig(path, dpi=DPI)
     pyplot.close(figure)

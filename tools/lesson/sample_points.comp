@@ -9,10 +9,11 @@ layout(scalar, binding = 0) writeonly buffer Results { float results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {
     uvec2 key;             // of the random start states
     uint max_path_length;  // 1; set_surface() says why it is no constant
+    uint samples, first_sample;  // of each pixel
     LightTriangle light_triangles[1];
 };
 
-#if defined(DIRECTIONS) || defined(LIGHT_POINTS)
+#if defined(DIRECTIONS) || defined(LIGHT_POINTS) || defined(LOW_DISCREPANCY)
 #include "lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 
@@ -24,7 +25,9 @@ LightPoint get_and_note_light_point(LightTriangle light, vec2 barycentrics) {
 }
 #define get_light_point get_and_note_light_point
 #include "path_trace.glsl"
+#endif
 
+#if defined(DIRECTIONS) || defined(LIGHT_POINTS)
 // Runs the estimator at a white floor under a white sky.
 vec3 run_estimator(uvec2 seed) {
     Material white = Material(vec3(1.0), -1, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
@@ -60,6 +63,12 @@ void write_point(uint i, uvec2 seed) {
     results[COLUMNS * i] = hash(position);
     results[COLUMNS * i + 1u] = hash(position + vec3(1.0, 0.0, 0.0));
 }
+#elif defined(SOBOL)
+// Sobol's points as they are, before they are scrambled.
+void write_point(uint i, uvec2 seed) {
+    vec2 point = to_numbers(bitfieldReverse(uvec2(i % samples, get_second_dimension(i % samples))));
+    for (int axis = 0; axis < 2; ++axis) results[COLUMNS * i + axis] = point[axis];
+}
 #else
 // The first random numbers of a path.
 void write_point(uint i, uvec2 seed) {
@@ -75,5 +84,5 @@ layout(local_size_x = 128) in;
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (COLUMNS * i < results.length()) write_point(i, random_start_state(i, 0u, key));
+    if (COLUMNS * i < results.length()) write_point(i, random_start_state(i / samples, first_sample + i % samples, key));
 }

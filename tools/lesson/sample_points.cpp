@@ -1,6 +1,7 @@
 // Writes points of a sampler as 32-bit numbers to the standard output: sample_points SAMPLER. ./lab sample
 // shows them.
 #include <CLI/CLI.hpp>
+#include <bit>
 #include <iostream>
 #include <map>
 
@@ -17,11 +18,13 @@ using namespace lab;
 
 struct Sampler {
     std::string define;   // of sample_points.comp
-    std::string chapter;  // whose estimator is included there; only directions and light points run it
+    std::string chapter;  // whose estimator is included there, unless only PCG2D is wanted
     uint32_t columns;     // numbers a point; 0: as many as --dimensions says
 };
 const std::map<std::string, Sampler> samplers{
     {"numbers", {"NUMBERS", "01_uniform_sampling", 0}},
+    {"sobol", {"SOBOL", "09_low_discrepancy_points", 2}},
+    {"scrambled", {"NUMBERS", "09_low_discrepancy_points", 2}},
     {"blog-hash", {"BLOG_HASH", "01_uniform_sampling", 2}},
     {"uniform-angles", {"DIRECTIONS", "01_uniform_sampling", 4}},
     {"cosine", {"DIRECTIONS", "02_cosine_sampling", 4}},
@@ -30,12 +33,13 @@ const std::map<std::string, Sampler> samplers{
 // As in sample_points.comp.
 struct Inputs {
     uvec2 key;
-    uint32_t max_path_length;
+    uint32_t max_path_length, samples, first_sample;
     LightTriangle light_triangle;
 };
 
-std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t count, uint32_t seed,
-                          const std::string& device_name) {
+// `count` points: `samples` of each pixel, one after the other.
+std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t count, uint32_t samples,
+                          uint32_t seed, const std::string& device_name) {
     const Estimator estimator = estimator_of(load_chapter(sampler.chapter));
     ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
                         .stage = ShaderStage::compute,
@@ -43,8 +47,10 @@ std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t cou
                         .named_includes = {{"path_trace.glsl", estimator.file}}};
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     const Device device({device_name, false});
+    // Of low-discrepancy points samples 2^k to 2^(k+1) - 1 belong together.
+    const uint32_t first_sample = samples == 1 ? 0 : std::bit_ceil(samples);
     // A table of one triangle, the stub's second one, that always stands for itself.
-    const Inputs inputs{seed_key(seed), 1, {0, 1, 0xffffffffu, 0, 1.0f}};
+    const Inputs inputs{seed_key(seed), 1, samples, first_sample, {0, 1, 0xffffffffu, 0, 1.0f}};
     std::vector<float> points(size_t{count} * columns);
     Buffer results(device, points.size() * sizeof(float), vk::BufferUsageFlagBits::eStorageBuffer);
     const Buffer input_buffer(device, std::span(&inputs, 1), vk::BufferUsageFlagBits::eStorageBuffer);
@@ -60,9 +66,10 @@ std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t cou
 int main(int argument_count, char** arguments) {
     CLI::App app("Writes points of a sampler as 32-bit numbers", "sample_points");
     std::string name, device;
-    uint32_t count = 4096, seed = 0, dimensions = 2;
+    uint32_t count = 4096, samples = 1, seed = 0, dimensions = 2;
     app.add_option("sampler", name, "Which one")->required()->check(CLI::IsMember(samplers));
     app.add_option("--count", count, "Number of points")->check(CLI::Range(1u, 1u << 22));
+    app.add_option("--samples", samples, "Points of each pixel")->check(CLI::Range(1u, 1u << 22));
     app.add_option("--seed", seed, "Chooses the random numbers");
     app.add_option("--dimensions", dimensions, "Numbers a point of the sampler numbers")
         ->check(CLI::Range(1u, 8u));
@@ -71,7 +78,7 @@ int main(int argument_count, char** arguments) {
         app.parse(argument_count, arguments);
         const Sampler& sampler = samplers.at(name);
         const auto points =
-            sample(sampler, sampler.columns > 0 ? sampler.columns : dimensions, count, seed, device);
+            sample(sampler, sampler.columns > 0 ? sampler.columns : dimensions, count, samples, seed, device);
         std::cout.write(reinterpret_cast<const char*>(points.data()),
                         static_cast<std::streamsize>(points.size() * sizeof(float)));
         return std::cout ? 0 : 1;

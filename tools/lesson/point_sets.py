@@ -1,0 +1,68 @@
+"""Sets of points in the unit square, each as one pixel of a render would have it: their spectra, and how the errors of what
+they estimate fall. The random ones and Sobol's come from the shaders."""
+import numpy as np
+
+PIXELS, SIZE = 64, 4096  # sets of a kind, and points of each
+SPECTRUM_SIZE, FREQUENCIES = 256, 40  # points of a set whose spectrum is shown, and its largest frequency
+SAMPLERS = {"random": "numbers", "Sobol": "sobol", "scrambled": "scrambled"}  # of the program sample_points
+SIZES = [4**k for k in range(7)]
+
+
+def grid(size):
+    """The midpoints of the cells of a grid: [index, axis]."""
+    side = round(size**0.5)
+    axis = (np.arange(side) + 0.5) / side
+    return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def draw_sets(draw):
+    """Name -> sets of points [pixel, index, axis], by a function of a sampler, the number of points and that of a pixel."""
+    return {name: draw(sampler, PIXELS * SIZE, SIZE).reshape(PIXELS, SIZE, 2) for name, sampler in SAMPLERS.items()}
+
+
+def first_points(sets, name, size):
+    """The first points of each set; a grid has to be another one for each size."""
+    return grid(size)[None] if name == "grid" else sets[name][:, :size]
+
+
+def spectrum(points):
+    """|Σ exp(-2πi f·u)|² / N for frequencies f from -FREQUENCIES to FREQUENCIES along each axis, averaged over the sets. It is 1
+    for random points, and 0 at 0, which is left out. The variance of an estimate is the sum of its products with the
+    integrand's spectrum, divided by N."""
+    waves = np.exp(-2j * np.pi * np.arange(-FREQUENCIES, FREQUENCIES + 1)[:, None, None, None] * points)  # frequency, pixel, index, axis
+    sums = np.einsum("apn,bpn->pba", waves[..., 0], waves[..., 1])
+    power = (abs(sums)**2).mean(axis=0) / points.shape[1]
+    power[FREQUENCIES, FREQUENCIES] = 0
+    return power
+
+
+def spectra(sets):
+    return {name: spectrum(first_points(sets, name, SPECTRUM_SIZE)) for name in ("grid", *sets)}
+
+
+def errors(sets, integral):
+    """Name -> errors of estimates from SIZES points: the roots of their mean squares over the sets."""
+    exact = integral.value(2)
+
+    def error(points):
+        terms = integral.terms(points.reshape(-1, 2)).reshape(points.shape[:2])
+        return np.sqrt(((terms.mean(axis=1) - exact) ** 2).mean())
+
+    return {name: [error(first_points(sets, name, size)) for size in SIZES] for name in ("grid", *sets)}
+
+
+def slope(values):
+    """Of the line through the logarithms of the errors of SIZES points."""
+    return np.polyfit(np.log(SIZES), np.log(values), 1)[0]
+
+
+def report(sets, integrals):
+    """The errors as text, a table for each name of an integral."""
+    lines = []
+    for title, integral in integrals.items():
+        table = errors(sets, integral)
+        lines += ["", f"Error of {title} from the first N samples of a pixel, root mean square over {PIXELS} pixels:",
+                  f"{'N':>9}" + "".join(f"{name:>12}" for name in table)]
+        lines += [f"{size:9d}" + "".join(f"{values[i]:12.6f}" for values in table.values()) for i, size in enumerate(SIZES)]
+        lines.append(f"{'slope':>9}" + "".join(f"{slope(values):12.2f}" for values in table.values()))
+    return lines
