@@ -177,6 +177,15 @@ class StoppingEarly(RenderTest):
                 stopped = self.picture("stopped", "--samples=1000000", f"--target-error={target}")
                 self.assertLessEqual(math.sqrt(relative_mse(stopped, reference)), 2 * target)
 
+    def test_low_discrepancy_points_from_the_middle_tell_no_error(self):
+        """There the halves of the samples share a scramble. A reference tells, and so do independent samples."""
+        self.picture("reference", "--samples=16")
+        chapter = BINARIES / "09_low_discrepancy_points"
+        command = self.command("--samples=8", "--target-error=0.3", "--first-sample=4", "--output=a.exr")
+        self.assert_refused(command, "--first-sample", "--reference", program=chapter)
+        for program, *more in ((chapter, "--reference=reference.exr"), (BINARIES / "08_light_probes",)):
+            self.render(*command, *more, program=program)
+
     def test_samples_limit_an_error_that_is_out_of_reach(self):
         self.assertEqual(self.picture("a", "--samples=12", "--target-error=1e-9").text("samples"), "12")
 

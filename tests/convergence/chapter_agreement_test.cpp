@@ -35,14 +35,18 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
     std::vector<Pair> pairs;
     // At length 1 there is but one hit to split at.
     if (length > 1)
-        pairs.push_back({at_every_hit("4", length == 2 ? 3 : 2, no_roulette),
-                         at_every_hit("5", length == 2 ? 2 : 3, 1)});
+        pairs.push_back(
+            {at_every_hit("4", length == 2 ? 3 : 2, no_roulette), at_every_hit("5", length == 2 ? 2 : 3, 1)});
     pairs.push_back({chapter(3, 1), chapter(4, s)});
     pairs.push_back({chapter(5, 6 - s), chapter(6, s == 5 ? 1 : 2)});
-    Subject light_samples = chapter(7, 1);
-    light_samples.name += " by light samples";
-    light_samples.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
-    pairs.push_back({light_samples, chapter(8, 1)});
+    const auto by_light_samples = [&](size_t number) {
+        Subject subject = chapter(number, 1);
+        subject.name += " by light samples";
+        subject.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+        return subject;
+    };
+    pairs.push_back({by_light_samples(7), chapter(8, 1)});
+    pairs.push_back({by_light_samples(8), chapter(9, 1)});
     return pairs;
 }
 
@@ -87,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(AgreementCase{"cornell_box", 8, 64, {0.06, 0.75}, {0.02, 0.18}},
                     AgreementCase{"torus", 8, 64, {0.06, 0.9}, {0.02, 0.22}, Run::with_all},
                     AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}, Run::with_all},
-                    AgreementCase{"textured", 8, 8, {0.045, 0.45}, {0.045, 0.45}},
+                    AgreementCase{"textured", 12, 8, {0.045, 0.45}, {0.045, 0.45}},
                     AgreementCase{"glossy", 8, 64, {0.12, 3.5}, {0.05, 1.3}, Run::with_all}),
     [](const auto& instance) { return instance.param.scene; });
 

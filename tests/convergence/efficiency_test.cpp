@@ -107,5 +107,12 @@ TEST(Efficiency, SamplingTheLightProbePays) {
                 measure_chapter("textured", 7, 16, 2), measure_chapter("textured", 8, 4, 2));
 }
 
+TEST(Efficiency, LowDiscrepancyPointsPay) {
+    expect_gain("low-discrepancy points against light probes, Cornell box",
+                measure_chapter("cornell_box", 8, 32, 4), measure_chapter("cornell_box", 9, 32, 4));
+    expect_gain("low-discrepancy points against light probes, wide sun",
+                measure_chapter("textured", 8, 32, 2), measure_chapter("textured", 9, 32, 2));
+}
+
 }  // namespace
 }  // namespace lab

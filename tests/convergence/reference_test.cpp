@@ -54,6 +54,8 @@ const std::vector<ReferenceCase> reference_cases{
     {"glass_8", 7, 5, 0.01, 0.9, Run::always, Tail::heavy},
     {"sunny_4", 8, 14, 0.003},
     {"studio_4", 8, 12, 0.005},
+    {"cornell_box_6", 9, 16, 0.003},
+    {"heart_light_4", 9, 13, 0.003},
     {"textured_4", 1, 16, 0.01, 0.9, Run::with_all},
     {"torus_5", 3, 26, 0.003, 0.5, Run::with_all},
     {"torus_5", 4, 22, 0.003, 0.5, Run::with_all},
@@ -69,6 +71,8 @@ const std::vector<ReferenceCase> reference_cases{
     {"instances_4", 5, 4, 0.003, 0.9, Run::with_all},
     {"instances_4", 6, 4, 0.003, 0.9, Run::with_all},
     {"glass_8", 6, 26, 0.003, 0.9, Run::with_all, Tail::heavy},
+    {"glass_8", 9, 5, 0.01, 0.9, Run::with_all, Tail::heavy},
+    {"sunny_4", 9, 14, 0.003, 0.9, Run::with_all},
 };
 
 // The part of the estimates that a batch has in a rectangle of pixels, and the same of the reference.

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "files/project_folder.h"
+#include "statistics/error_metrics.h"
 #include "support/error_slope.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
@@ -105,21 +106,71 @@ void expect_fast_convergence(const Scene& scene, RenderSettings settings, double
     EXPECT_LT(slope.value + 5 * slope.standard_error, largest_slope);
 }
 
-TEST(LowDiscrepancyConvergence, ErrorOfUnoccludedDirectLightFallsFast) {
+// A square lamp above a floor: nothing is in the way of its light.
+Scene lamp_above_floor() {
     Scene scene =
         make_scene({diffuse_material(vec3(0.8f)), diffuse_material(vec3(0), vec3(5))},
                    {{{-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 0}, {{-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1}});
     scene.camera = {.position = {0, 1, 3}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 25};
+    return scene;
+}
+
+RenderSettings light_samples_only() {
     RenderSettings settings{.width = 48, .height = 48, .max_path_length = 1};
     settings.estimator = chapter_estimator(all_chapters.at(8));
     settings.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
-    expect_fast_convergence(scene, settings, -0.7);
+    return settings;
+}
+
+TEST(LowDiscrepancyConvergence, ErrorOfUnoccludedDirectLightFallsFast) {
+    expect_fast_convergence(lamp_above_floor(), light_samples_only(), -0.7);
 }
 
 TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster) {
     RenderSettings settings{.width = 48, .height = 48, .max_path_length = 3, .roulette_start = 3};
     settings.estimator = chapter_estimator(all_chapters.at(8));
     expect_fast_convergence(load_shipped_scene("cornell_box.json"), settings, -0.52);
+}
+
+// What reports, --target-error and noise maps rest on: the difference between the first half of 2^k samples
+// and the second tells the error of their mean, which the spread over seeds tells as well. Halves of one
+// sequence fill each other's gaps. So they differ more than their mean errs: here their estimate would be
+// several times too large.
+TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
+    constexpr uint32_t seeds = 24, half = 16;
+    RenderSettings settings = light_samples_only();
+    settings.samples = half;
+    SceneRenderer renderer(lamp_above_floor(), settings);
+    std::vector<Image> means;
+    std::vector<double> estimated, actual;
+    for (settings.seed = 9300; settings.seed < 9300 + seeds; ++settings.seed) {
+        settings.first_sample = 0;
+        Image first = renderer.render(settings).film.mean();
+        settings.first_sample = half;
+        const Image second = renderer.render(settings).film.mean();
+        estimated.push_back(estimate_error(first, second).mse);
+        for (size_t i = 0; i < first.pixels.size(); ++i)
+            first.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
+        means.push_back(std::move(first));
+    }
+    for (const Image& mean : means) {
+        double sum = 0;
+        for (size_t i = 0; i < mean.pixels.size(); ++i) {
+            double expected = 0;
+            for (const Image& other : means) expected += double{other.pixels[i]} / seeds;
+            sum += (mean.pixels[i] - expected) * (mean.pixels[i] - expected);
+        }
+        actual.push_back(sum / static_cast<double>(mean.pixels.size()) * seeds / (seeds - 1));
+    }
+    const MeanEstimate estimate = estimate_mean(estimated), truth = estimate_mean(actual);
+    const double ratio = estimate.mean / truth.mean,
+                 error = ratio * std::hypot(estimate.standard_error / estimate.mean,
+                                            truth.standard_error / truth.mean);
+    constexpr double tolerance = 0.1;
+    std::printf("  estimated over actual error: %.4f ± %.4f; finds one off by %.3f\n", ratio, error,
+                tolerance + normal_quantile(power) * error);
+    EXPECT_NEAR(ratio, 1, tolerance);
+    EXPECT_LT(error, tolerance / 6) << "the test is too weak, take larger images";
 }
 
 }  // namespace
