@@ -73,8 +73,9 @@ def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
 def study_cases():
     """What docs/results.md shows: neighbours are compared with each other."""
     cases = []
-    splitting, roulette, glass, weights, probes = map(
-        chapter_named, ("splitting", "russian_roulette", "dielectrics", "multiple_importance_sampling", "light_probes"))
+    splitting, roulette, glass, weights, probes, points = map(
+        chapter_named, ("splitting", "russian_roulette", "dielectrics", "multiple_importance_sampling", "light_probes",
+                        "low_discrepancy_points"))
 
     def add(scene, length, name, program, *options):
         reference = ROOT / f"assets/references/{scene}_{length}.exr" if length else None
@@ -90,8 +91,10 @@ def study_cases():
         for strategy in ("light", "brdf", "both"):
             add(scene, length, f"strategy {strategy}", weights, "--strategy", strategy)
     for scene in ("sunny", "studio", "textured"):
-        for program in (weights, probes):
+        for program in (weights, probes, points):
             add(scene, 4, f"chapter {int(program[:2])}", program)
+    for program in (weights, points):
+        add("glass", 8, f"chapter {int(program[:2])}", program)
     for scene, length in (("cornell_box", 6), ("heart_light", 4)):
         for factor in (1, 2, 4, 8, 16):
             add(scene, length, f"splitting factor {factor}", splitting, "--splitting-factor", str(factor))
