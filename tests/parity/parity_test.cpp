@@ -127,14 +127,10 @@ class Parity : public testing::TestWithParam<Backend> {
 std::map<std::string, RenderSettings> chapter_estimators(const std::string& scene) {
     const bool takes_all = scene == "cornell_box" || runs_all_tests();
     std::map<std::string, RenderSettings> all;
-    const auto& last_chapter = all_chapters.back();
-    for (const auto& chapter : sorted_entries(project_folder() / "chapters"))
-        for (const auto& file : sorted_entries(chapter)) {
-            if (file.extension() != ".glsl") continue;
-            if (!takes_all && chapter.filename() != last_chapter) continue;
-            all[chapter.filename().string().substr(0, 2) + " " + file.stem().string()] = {
-                .width = 192, .height = 192, .splitting_factor = 2, .estimator = {file}};
-        }
+    for (const std::string& chapter : all_chapters)
+        if (takes_all || chapter == all_chapters.back())
+            all[chapter] = {
+                .width = 192, .height = 192, .splitting_factor = 2, .estimator = chapter_estimator(chapter)};
     if (!takes_all) return all;
     // The paths are short, since they branch at every hit.
     all["every hit"] = {.width = 192,
