@@ -14,8 +14,8 @@ namespace {
 // (docs/backends.md).
 constexpr uint32_t enough_groups = 8192;
 // Samples of pixels that are shared wait to be added to the film: at most so many of each group's pixels. The
-// more a thread renders, the less it waits for the others (docs/backends.md). All of them fit into 128 MiB,
-// which is as much as some devices let shaders see of a buffer.
+// more a thread renders, the less it waits for others at the end. All of them fit into 128 MiB, which is as
+// much as some devices let shaders see of a buffer.
 constexpr uint32_t samples_per_group = 20;
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
