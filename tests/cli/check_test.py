@@ -66,6 +66,9 @@ class CheckTest(ProgramTest):
             self.assertEqual(len(seeds[-1]), 2 + seed)
         self.assertFalse(seeds[0] & seeds[1], seeds)
 
+    def test_samples_that_depend_on_each_other_have_the_number_of_their_level(self):
+        self.assert_tool_refused(["check", 9, "--samples", 4], "--samples", "leave it out", code=2)
+
     def test_what_is_still_to_be_written_is_no_mistake(self):
         text = SHADER.read_text(encoding="utf-8")
         geometry = "float geometry = "

@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(AgreementCase{"cornell_box", 8, 64, {0.06, 0.75}, {0.02, 0.18}},
                     AgreementCase{"torus", 8, 64, {0.06, 0.9}, {0.02, 0.22}, Run::with_all},
                     AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}, Run::with_all},
-                    AgreementCase{"textured", 8, 8, {0.045, 0.45}, {0.045, 0.45}},
+                    AgreementCase{"textured", 12, 8, {0.045, 0.45}, {0.045, 0.45}},
                     AgreementCase{"glossy", 8, 64, {0.12, 3.5}, {0.05, 1.3}, Run::with_all}),
     [](const auto& instance) { return instance.param.scene; });
 

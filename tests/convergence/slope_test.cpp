@@ -134,8 +134,8 @@ TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster) {
 
 // What reports, --target-error and noise maps rest on: the difference between the first half of 2^k samples
 // and the second tells the error of their mean, which the spread over seeds tells as well. Halves of one
-// sequence fill each other's gaps. So they differ more than their mean errs: here their estimate is more than
-// twice too large.
+// sequence fill each other's gaps. So they differ more than their mean errs: here their estimate would be
+// several times too large.
 TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
     constexpr uint32_t seeds = 24, half = 16;
     RenderSettings settings = light_samples_only();

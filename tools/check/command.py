@@ -19,7 +19,7 @@ import numpy as np
 from check.grading import MOST_RUNS, SCENES, first_seed, judge
 from check.likely_mistake import likely_mistake
 from matplotlib import pyplot
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, description, number
 
 UNGRADED = 2  # exit code
 
@@ -43,6 +43,8 @@ def check(options):
     """The result of a check; UserError where there is none."""
     if options.chapter not in SCENES or options.chapter not in CHAPTERS:
         raise UserError(f"there is no chapter {options.chapter} to be checked: ./lab check N FILE grades a file as chapter N's")
+    if options.samples and description(CHAPTERS[options.chapter]).get("low_discrepancy"):
+        raise UserError(f"--samples: in chapter {options.chapter} the error of a sample depends on how many there are: leave it out")
     file = options.file or ROOT / "chapters" / CHAPTERS[options.chapter] / "path_trace.glsl"
     if not file.is_file():
         raise UserError(f"{file}: no such file")

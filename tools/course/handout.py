@@ -20,7 +20,11 @@ FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile"
 # What only teachers need: it names solutions or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check", "tools/course", "tools/docs"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
-FEW = ["--runs", "8", "--samples", "4"]  # enough to tell a TODO from its solution
+
+
+def few(chapter):
+    """Options of a check: enough to tell a TODO from its solution."""
+    return ["--runs", "8"] + ([] if description(CHAPTERS[chapter]).get("low_discrepancy") else ["--samples", "4"])
 
 
 def exercises(chapter):
@@ -121,7 +125,7 @@ def verify(chapter, folder):
         raise UserError(f"chapter {chapter}: the handout has {missing or 'tests'}")
     run(["cmake", "-S", tree, "-B", tree / "build", "-G", "Ninja"], 0, f"chapter {chapter}: CMake")
     environment = os.environ | {"LAB_BINARIES": str(BINARIES.resolve())}
-    check = [sys.executable, "-B", tree / "tools", "check", chapter, *FEW]
+    check = [sys.executable, "-B", tree / "tools", "check", chapter, *few(chapter)]
     run(check, EXPECTED["biased"], f"chapter {chapter}: check of the TODO", env=environment)
     solution = ROOT / "chapters" / CHAPTERS[chapter] / "path_trace.glsl"
     run([*check, solution], EXPECTED["correct"], f"chapter {chapter}: check of the solution", env=environment)
