@@ -51,6 +51,16 @@ class Scanner {
         return std::string_view(text_).substr(at, end - at);
     }
 
+    // The variable that the statement here begins with, or a member to be recorded, like path.throughput.
+    std::string_view variable_at(size_t at) const {
+        const std::string_view word = word_at(at);
+        const size_t dot = at + word.size();
+        if (dot >= text_.size() || text_[dot] != '.') return word;
+        const std::string_view member = word_at(dot + 1);
+        if (member != "throughput" && member != "radiance") return word;
+        return std::string_view(text_).substr(at, word.size() + 1 + member.size());
+    }
+
     size_t skip_space(size_t at) const {
         while (at < text_.size() && std::isspace(static_cast<unsigned char>(text_[at]))) ++at;
         return at;
@@ -81,7 +91,7 @@ class Scanner {
     bool copy_recorded_statement() {
         if (braces_ == 0) return false;
         const std::string_view first = word_at(at_);
-        std::string_view variable = first;
+        std::string_view variable = variable_at(at_);
         const bool is_declaration = first == "vec3" || first == "float";
         if (is_declaration) {
             const size_t name = skip_space(at_ + first.size());
@@ -102,13 +112,14 @@ class Scanner {
     }
 
     std::string recording_call(std::string_view variable, bool is_declaration) {
-        const std::string starts = is_declaration ? "_STARTS" : "";
-        if (variable == "throughput")
-            return " record_throughput(EVENT_THROUGHPUT" + starts + ", throughput);";
-        if (variable == "radiance") {
+        const std::string starts = is_declaration ? "_STARTS, " : ", ", expression(variable);
+        const std::string_view name = variable.substr(variable.find('.') + 1);
+        if (name == "throughput") return " record_throughput(EVENT_THROUGHPUT" + starts + expression + ");";
+        if (name == "radiance") {
             if (is_declaration) ++radiances_;
-            if (radiances_ == 0) return "";  // somebody else's
-            return " record_radiance(EVENT_RADIANCE" + starts + ", radiance, " + std::to_string(radiances_) +
+            const int number = name == variable ? radiances_ : 0;
+            if (name == variable && number == 0) return "";  // somebody else's
+            return " record_radiance(EVENT_RADIANCE" + starts + expression + ", " + std::to_string(number) +
                    "u);";
         }
         if (variable == "survival_probability" && is_declaration)

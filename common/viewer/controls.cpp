@@ -206,7 +206,8 @@ void Controls::draw_picture(const Session& session, Options& options) {
     if (ImGui::BeginCombo("view", options.image.view ? options.image.view->name.c_str() : "radiance")) {
         if (ImGui::Selectable("radiance", !options.image.view)) options.image.view = nullptr;
         for (const View& view : views()) {
-            if (can_show(view, session.build().backend) && ImGui::Selectable(view.name.c_str(), options.image.view == &view))
+            if (can_show(view, session.build().backend) &&
+                ImGui::Selectable(view.name.c_str(), options.image.view == &view))
                 options.image.view = &view;
         }
         ImGui::EndCombo();

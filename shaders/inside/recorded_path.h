@@ -17,7 +17,7 @@ SHARED_CONSTANT EVENT_RESULT = 7u;             // what path_trace() returned
 
 struct RecordedEvent {
     uint kind;
-    // Of radiance: which of the variables of this name, counted through the text.
+    // Of radiance: which of the variables of this name, counted through the text from 1; 0 is the member of a struct.
     uint variable;
     vec3 value;  // of throughput and radiance after the assignment, or survival probability
 

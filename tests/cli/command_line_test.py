@@ -105,6 +105,8 @@ class WrongArguments(ProgramTest):
     def test_choices(self):
         self.refuse("--backend", "raster", "pipeline", "query", "compute")
         self.refuse("--view", "nothing", "normals", "bvh-steps")
+        for view in ("idle-lanes", "bvh-steps"):
+            self.assert_refused(["quad.json", f"--view={view}", "--backend=pipeline"], "pipeline", "compute")
 
     def test_more_samples_than_random_numbers(self):
         self.assert_refused(["quad.json", "--first-sample=4294967295", "--samples=2"], "--first-sample")

@@ -1,4 +1,5 @@
 // The same samples give the same image, however a render is cut into pieces.
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -88,20 +89,25 @@ TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
     }
 }
 
-// A renderer that was made for a large image has one thread for each pixel, also if it goes on with a small
-// one.
-TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
-    const GpuScene gpu_scene(test_device(), scene);
+// By a renderer that was made for a large image: it has one thread for each pixel, also if it goes on with a
+// small one.
+FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSettings& settings) {
+    const GpuScene gpu_scene(test_device(), scene, light_sampling_of(settings));
     const auto acceleration_structure =
-        build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
-    RenderSettings large = settings();
+        build_acceleration_structure(settings.backend, test_device(), gpu_scene);
+    RenderSettings large = settings;
     large.width = large.height = 640;
-    Renderer renderer(test_device(), *acceleration_structure, settings().estimator,
+    Renderer renderer(test_device(), *acceleration_structure, settings.estimator,
                       make_parameters(scene, large));
-    renderer.restart(make_parameters(scene, settings()));
-    while (renderer.advance(settings().samples)) {
+    renderer.restart(make_parameters(scene, settings));
+    while (renderer.advance(settings.samples)) {
     }
-    EXPECT_TRUE(are_identical(renderer.film().read(), render(scene, settings())));
+    return renderer.film().read();
+}
+
+TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
+    EXPECT_TRUE(
+        are_identical(render_with_a_thread_for_each_pixel(scene, settings()), render(scene, settings())));
 }
 
 TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
@@ -180,22 +186,45 @@ TEST_P(Determinism, PathLengthsAddUpToTheImage) {
 }
 
 // Chapter 10 orders the work of threads in another way, and nothing else.
-class PathRegeneration : public OnEachBackend {};
+class PathRegeneration : public OnEachBackend {
+  protected:
+    // Of chapters 9 and 10.
+    template <typename Render>
+    std::array<FilmImage, 2> render_both(RenderSettings settings, const Render& render_one) const {
+        settings.backend = GetParam();
+        std::array<FilmImage, 2> films;
+        for (size_t i = 0; i < films.size(); ++i) {
+            settings.estimator = chapter_estimator(all_chapters.at(8 + i));
+            films[i] = render_one(settings);
+        }
+        return films;
+    }
+};
 INSTANTIATE_TEST_SUITE_P(Backends, PathRegeneration, testing::ValuesIn(all_backends), backend_name);
 
 TEST_P(PathRegeneration, GivesTheImageOfChapterNine) {
     for (const char* name : {"cornell_box", "glass", "studio"}) {
-        const Scene scene_with_all = load_shipped_scene(name + std::string(".json"));
-        RenderSettings settings{
-            .width = 40, .height = 24, .samples = 21, .max_path_length = 30, .backend = GetParam()};
-        settings.estimator = chapter_estimator(all_chapters.at(8));
-        const FilmImage whole = render(scene_with_all, settings);
-        settings.estimator = chapter_estimator(all_chapters.at(9));
-        EXPECT_TRUE(are_identical(whole, render(scene_with_all, settings))) << name;
+        const Scene scene = load_shipped_scene(name + std::string(".json"));
+        RenderSettings settings{.width = 40, .height = 24, .samples = 21, .max_path_length = 30};
+        // One thread renders all samples of a pixel.
+        const auto whole = render_both(
+            settings, [&](const RenderSettings& s) { return render_with_a_thread_for_each_pixel(scene, s); });
+        EXPECT_TRUE(are_identical(whole[0], whole[1])) << name;
         // Dispatches of one block and one sample leave nothing to regenerate.
         settings.dispatch_seconds = 1e-9;
-        EXPECT_TRUE(are_identical(whole, render(scene_with_all, settings))) << name;
+        const auto cut = render_both(settings, [&](const RenderSettings& s) { return render(scene, s); });
+        for (const FilmImage& film : cut) EXPECT_TRUE(are_identical(whole[0], film)) << name;
     }
+}
+
+// Several threads share a pixel, and each renders several samples of it.
+TEST_P(PathRegeneration, OfThreadsThatShareAPixelGivesTheImageOfChapterNine) {
+    const Scene scene = load_shipped_scene("cornell_box.json");
+    const RenderSettings settings{
+        .width = 200, .height = 136, .samples = 40, .max_path_length = 5, .dispatch_seconds = 10};
+    const auto [before, now] =
+        render_both(settings, [&](const RenderSettings& s) { return render(scene, s); });
+    EXPECT_TRUE(are_identical(before, now));
 }
 
 }  // namespace

@@ -22,10 +22,11 @@ Estimator chapter_estimator(const std::string& chapter) { return estimator_of(lo
 
 Estimator every_hit_estimator() { return {project_folder() / "shaders" / "path_trace_every_hit.glsl"}; }
 
-Estimator view_estimator(const std::string& view) {
-    const auto found =
-        std::find_if(views().begin(), views().end(), [&](const View& v) { return v.name == view; });
-    return {project_folder() / "shaders" / "view.glsl", {found->define}};
+Estimator view_estimator(const std::string& view, const std::string& chapter) {
+    Options options;
+    options.image.view =
+        &*std::find_if(views().begin(), views().end(), [&](const View& v) { return v.name == view; });
+    return make_estimator(load_chapter(chapter), options);
 }
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings) {

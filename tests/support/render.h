@@ -28,7 +28,7 @@ bool splits_paths(const std::string& chapter);
 
 Estimator chapter_estimator(const std::string& chapter);
 Estimator every_hit_estimator();  // --split-every-hit
-Estimator view_estimator(const std::string& view);
+Estimator view_estimator(const std::string& view, const std::string& chapter = all_chapters.front());
 
 // For messages.
 inline const std::array<std::string, 3> channel_names{"red", "green", "blue"};

@@ -37,17 +37,28 @@ TEST(RecordingCalls, TellTheVariablesNamedRadianceApart) {
                 "for (;;) { radiance += d; record_radiance(EVENT_RADIANCE, radiance, 2u); }");
 }
 
+TEST(RecordingCalls, FollowMembers) {
+    expect_edit("path.throughput *= a;",
+                "{ path.throughput *= a; record_throughput(EVENT_THROUGHPUT, path.throughput); }");
+    expect_edit("if (b) path.radiance.r += c;",
+                "if (b) { path.radiance.r += c; record_radiance(EVENT_RADIANCE, path.radiance, 0u); }");
+    expect_edit("vec3 radiance = path.radiance;\npath.radiance = radiance;",
+                "vec3 radiance = path.radiance; record_radiance(EVENT_RADIANCE_STARTS, radiance, 1u);\n"
+                "{ path.radiance = radiance; record_radiance(EVENT_RADIANCE, path.radiance, 0u); }");
+}
+
 TEST(RecordingCalls, LeaveEverythingElseAlone) {
     expect_no_edit("// throughput *= a;\n/* throughput *= a; */\n#define X throughput *= a;");
     expect_no_edit(
         "x = throughput * a; stack[0].throughput = b; f(throughput); throughputs *= 2; my_throughput = c;");
     expect_no_edit("for (uint i = 0u; throughput.x > 0.1; throughput *= 0.5) ++i;");
     expect_no_edit("radiance += somebody_elses;");
+    expect_no_edit("path.radiance_scale /= a; path.survival_probability = b; f.throughput_of(c);");
     expect_no_edit("return b ? throughput : radiance;");
     const std::string at_file_scope = "vec3 throughput = vec3(1.0);\nstruct S { vec3 throughput; };\n";
     EXPECT_EQ(add_recording_calls(at_file_scope), at_file_scope);
-    for (const std::string broken :
-         {"void f() { throughput *= a", "void f() { throughput", "/*", "void f() { /*", "("})
+    for (const std::string broken : {"void f() { throughput *= a", "void f() { throughput",
+                                     "void f() { path.", "/*", "void f() { /*", "("})
         EXPECT_EQ(add_recording_calls(broken), broken);
 }
 

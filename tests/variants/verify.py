@@ -15,23 +15,23 @@ from planting import own_shader  # noqa: E402
 from project import CHAPTERS, Parser, number, read_json, run_program, show_progress  # noqa: E402
 from references.images import read_rgb  # noqa: E402
 
-SIZE, TILE, SAMPLES = 64, 8, {1: 256, 2: 256, 3: 96, 4: 24, 5: 32, 6: 32, 7: 48, 8: 48, 9: 64}  # that a chapter renders in less than a second
+SIZE, TILE, SAMPLES = 64, 8, {1: 256, 2: 256, 3: 96, 4: 24, 5: 32, 6: 32, 7: 48, 8: 48, 9: 64, 10: 64}  # that a chapter renders in less than a second
 LIMITS = {"z": 4, "mean": 1, "noise": 1.4, "rays": 1.4}
 # First and last chapter: scenes and options. The scenes together have all that an estimator must handle.
 SETTINGS = {
-    (1, 9): [("cornell_box", "--max-path-length 5"), ("cornell_box", "--max-path-length 4 --only-path-length 2"),
+    (1, 10): [("cornell_box", "--max-path-length 5"), ("cornell_box", "--max-path-length 4 --only-path-length 2"),
              (HERE / "under_the_sky.json", "--max-path-length 3"), ("textured", "--max-path-length 3"),
              ("glossy", "--max-path-length 4")],
     (1, 2): [("furnace", "--max-path-length 4")],
-    (3, 9): [("furnace", "--max-path-length 4 --light-sampling off"), ("heart_light", "--max-path-length 4"),
+    (3, 10): [("furnace", "--max-path-length 4 --light-sampling off"), ("heart_light", "--max-path-length 4"),
              ("cornell_box", "--max-path-length 3 --light-sampling off")],
     (4, 6): [(HERE / "under_the_sky.json", "--max-path-length 2 --splitting-factor 1"),
              ("cornell_box", "--max-path-length 1 --splitting-factor 3")],
     (5, 6): [("cornell_box", "--max-path-length 40 --splitting-factor 3 --survival-cap 0.6 --roulette-start 2")],
-    (6, 9): [("glass", "--max-path-length 8"), ("glass", "--max-path-length 6 --only-path-length 3")],
-    (7, 9): [("plates", "--max-path-length 2"), ("heart_light", "--max-path-length 2 --strategy light"),
+    (6, 10): [("glass", "--max-path-length 8"), ("glass", "--max-path-length 6 --only-path-length 3")],
+    (7, 10): [("plates", "--max-path-length 2"), ("heart_light", "--max-path-length 2 --strategy light"),
              ("cornell_box", "--max-path-length 40 --survival-cap 0.6 --roulette-start 2")],
-    (8, 9): [("sunny", "--max-path-length 3"), ("studio", "--max-path-length 3"), ("textured", "--max-path-length 2 --strategy light")],
+    (8, 10): [("sunny", "--max-path-length 3"), ("studio", "--max-path-length 3"), ("textured", "--max-path-length 2 --strategy light")],
 }
 
 

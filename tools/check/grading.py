@@ -28,6 +28,7 @@ SCENES = {
     7: (16, ["check_room_6", "plates_3", "check_glass_8"]),
     8: (12, ["check_room_6", "textured_4", "sunny_4"]),
     9: (32, ["check_room_6", "cornell_box_1", "textured_4"]),
+    10: (32, ["check_room_6", "textured_4", "sunny_4"]),
 }
 # Roulette from the first bounce on and with a cap that matters: otherwise both hardly show.
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.35"]

@@ -85,14 +85,18 @@ def bvh_steps(folder, images, reports):
     sheet(folder / "bvh_steps.jpg", [tiles])
 
 
-def by_scene(path, images, reports):
-    """A row of chapters for each scene; renders are named SCENE_CHAPTER."""
+def rows_by_scene(images, tile):
+    """A row of chapters for each scene; renders are named SCENE_CHAPTER, and tile(name, image) says and shows what they are."""
     rows = {}
     for name, radiance in images.items():
         scene, number = name.rsplit("_", 1)
-        label = f"chapter {number}: {reports[name]['rows'][-1]['samples']:,} samples"
-        rows.setdefault(scene, []).append((label, encode_srgb(radiance)))
-    sheet(path, list(rows.values()))
+        label, pixels = tile(name, radiance)
+        rows.setdefault(scene, []).append((f"chapter {number}: {label}", pixels))
+    return list(rows.values())
+
+
+def by_scene(path, images, reports):
+    sheet(path, rows_by_scene(images, lambda name, radiance: (f"{reports[name]['rows'][-1]['samples']:,} samples", encode_srgb(radiance))))
 
 
 def equal_time(folder, images, reports):
@@ -105,6 +109,11 @@ def light_probes(folder, images, reports):
 
 def low_discrepancy(folder, images, reports):
     by_scene(folder / "low_discrepancy.jpg", images, reports)
+
+
+def idle_lanes(folder, images, reports):
+    """Black never waits, and white always does."""
+    sheet(folder / "idle_lanes.jpg", rows_by_scene(images, lambda _, parts: (f"idle {parts.mean():.0%} of the time", parts)))
 
 
 def convergence(folder, images, reports):

@@ -90,6 +90,12 @@ def renders_of_low_discrepancy():
     return renders_of_neighbours(("cornell_box", "textured"), chapters, ("--samples", 64, "--max-path-length", 1))
 
 
+def renders_of_idle_lanes():
+    """Who waits, in chapters 9 and 10."""
+    return renders_of_neighbours(("cornell_box", "glass"), ("low_discrepancy_points", "path_regeneration"),
+                                 ("--samples", 4, "--view", "idle-lanes"))
+
+
 def renders_of_path_lengths():
     return [Render(f"only_{length}", chapter_named("next_event_estimation"), "cornell_box", 160,
                    ("--samples", 256, "--only-path-length", length, "--max-path-length", 9)) for length in range(10)]
@@ -115,10 +121,10 @@ def renders_at_equal_time():
 
 
 def renders_of_convergence():
-    """Four runs of each chapter that differs in the Cornell box, whose errors are averaged; a sample of splitting is several
+    """Four runs of each chapter whose error differs in the Cornell box, whose errors are averaged; a sample of splitting is several
     paths."""
     reference = ("--reference", "assets/references/cornell_box_6.exr", "--max-path-length", 6)
-    others = [chapter_named("dielectrics"), chapter_named("light_probes")]
+    others = [chapter_named(name) for name in ("dielectrics", "light_probes", "path_regeneration")]
     return [Render(f"run_{number}_{seed}", name, "cornell_box", 128,
                    ("--samples", 64 if "--splitting-factor" in description(name).get("options", []) else 256, "--seed", seed,
                     *reference))
@@ -135,6 +141,7 @@ FIGURES = {
     "strategies": (renders_of_strategies, figure_plots.strategies),
     "light_probes": (renders_of_light_probes, figure_plots.light_probes),
     "low_discrepancy": (renders_of_low_discrepancy, figure_plots.low_discrepancy),
+    "idle_lanes": (renders_of_idle_lanes, figure_plots.idle_lanes),
     "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
     "effects": (renders_of_effects, figure_plots.effects),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),

@@ -73,9 +73,9 @@ def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
 def study_cases():
     """What docs/results.md shows: neighbours are compared with each other."""
     cases = []
-    splitting, roulette, glass, weights, probes, points = map(
+    splitting, roulette, glass, weights, probes, points, regeneration = map(
         chapter_named, ("splitting", "russian_roulette", "dielectrics", "multiple_importance_sampling", "light_probes",
-                        "low_discrepancy_points"))
+                        "low_discrepancy_points", "path_regeneration"))
 
     def add(scene, length, name, program, *options):
         reference = ROOT / f"assets/references/{scene}_{length}.exr" if length else None
@@ -91,9 +91,9 @@ def study_cases():
         for strategy in ("light", "brdf", "both"):
             add(scene, length, f"strategy {strategy}", weights, "--strategy", strategy)
     for scene in ("sunny", "studio", "textured"):
-        for program in (weights, probes, points):
+        for program in (weights, probes, points, regeneration):
             add(scene, 4, f"chapter {int(program[:2])}", program)
-    for program in (weights, points):
+    for program in (weights, points, regeneration):
         add("glass", 8, f"chapter {int(program[:2])}", program)
     for scene, length in (("cornell_box", 6), ("heart_light", 4)):
         for factor in (1, 2, 4, 8, 16):

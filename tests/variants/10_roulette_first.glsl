@@ -1,0 +1,87 @@
+// A path's last decision of a bounce, Russian roulette, is the first one of the next call. Bounces are counted down.
+#define PATH_REGENERATION
+#include "light_probe_sampling.glsl"
+#include "low_discrepancy.glsl"
+
+struct Path {
+    vec3 radiance;
+    vec3 beta;    // product of all weights
+    float scale;  // 1/η² for every medium entered
+    Ray ray;
+    uint bounces_left;
+    float p_bounce;  // of the ray's direction; below 0: no light sample was taken where it starts
+};
+
+Path start_path(Ray ray) {
+    Path path;
+    path.radiance = vec3(0.0);
+    path.beta = vec3(1.0);
+    path.scale = 1.0;
+    path.ray = ray;
+    path.bounces_left = parameters.max_path_length;
+    path.p_bounce = -1.0;
+    return path;
+}
+
+// What a bounce finds, with the part of it that light samples of this density leave.
+void find(inout Path path, vec3 emission, float p_light) {
+    if (!is_counted(parameters.max_path_length - path.bounces_left)) return;
+    float part = path.p_bounce < 0.0 ? 1.0 : get_bounce_part(p_light, path.p_bounce);
+    path.radiance += path.scale * part * path.beta * emission;
+}
+
+bool survives(inout Path path, inout uvec2 seed) {
+    uint length = parameters.max_path_length - path.bounces_left;
+    if (length == 0u || length < parameters.roulette_start) return true;
+    float q = min(max(path.beta.r, max(path.beta.g, path.beta.b)), parameters.survival_cap);
+    path.beta /= q;
+    return happens(q, seed);
+}
+
+bool extend_path(inout Path path, inout uvec2 seed) {
+    if (!survives(path, seed)) return false;
+    bool has_light_sample = path.p_bounce >= 0.0;
+    Hit hit;
+    if (!trace_ray(path.ray, NO_LIMIT, hit)) {
+        find(path, get_background_radiance(path.ray.direction),
+             has_light_sample ? get_light_probe_density(path.ray.direction) : 0.0);
+        return false;
+    }
+    ShadingData s = get_shading_data(hit, path.ray.direction);
+    vec3 out_direction = -path.ray.direction;
+    path.beta *= s.transmittance;
+    find(path, s.emission,
+         has_light_sample ? to_solid_angle(s.light_density, hit.distance, dot(s.geometric_normal, out_direction)) : 0.0);
+    if (path.bounces_left == 0u || !is_above_surface(s, out_direction)) return false;
+    --path.bounces_left;
+
+    vec3 omega;
+    if (s.is_dielectric) {
+        path.p_bounce = -1.0;
+        omega = sample_dielectric(s, out_direction, seed);
+        bool is_refracted = dot(s.normal, omega) < 0.0;
+        if (is_refracted != (dot(s.geometric_normal, omega) < 0.0)) return false;
+        if (is_refracted) path.scale /= s.relative_index * s.relative_index;
+    } else {
+        has_light_sample = LIGHT_SAMPLING || LIGHT_PROBE_SAMPLING;
+        if (has_light_sample) {
+            vec3 direct_light = sample_direct_light(s, out_direction, seed);
+            if (is_counted(parameters.max_path_length - path.bounces_left))
+                path.radiance += path.scale * path.beta * direct_light;
+        }
+        omega = sample_brdf(s, out_direction, seed);
+        if (!is_above_surface(s, omega)) return false;
+        float density = get_brdf_density(s, omega, out_direction);
+        path.beta *= get_pi_brdf(s, omega, out_direction) * (dot(s.normal, omega) / PI / density);
+        path.p_bounce = has_light_sample ? (BOUNCES_FIND_LIGHTS ? density : 0.0) : -1.0;
+    }
+    path.ray = get_ray_from_surface(s, omega);
+    return true;
+}
+
+vec3 path_trace(Ray ray, inout uvec2 seed) {
+    Path path = start_path(ray);
+    while (extend_path(path, seed)) {
+    }
+    return path.radiance;
+}
