@@ -32,13 +32,14 @@ uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
     return uvec2(sample_index, get_state(pixel_index, scramble, key).x);
 }
 
-// The words of the pixel's next point. The hash in the state is a new one for each.
+// The words of the pixel's next point. The hash in the state counts on, so that it comes back after 2^32 pairs only: a
+// hash of a hash of a hash would soon go round in circles.
 uvec2 get_random_words(inout uvec2 seed) {
     uvec2 keys = uvec2(seed.y, 0u);
     advance_random_state(keys);
-    uint index = bitfieldReverse(scramble_reversed(bitfieldReverse(seed.x), seed.y));
-    uvec2 point = uvec2(scramble_reversed(index, keys.x), scramble_reversed(get_second_dimension(index), keys.y));
+    uint index = bitfieldReverse(scramble_reversed(bitfieldReverse(seed.x), keys.x));
     advance_random_state(keys);
-    seed.y = keys.x;
+    uvec2 point = uvec2(scramble_reversed(index, keys.x), scramble_reversed(get_second_dimension(index), keys.y));
+    seed.y += 0x9e3779b9u;
     return bitfieldReverse(point);
 }
