@@ -179,7 +179,7 @@ class ReportCommandTest(ProgramTest):
         self.assert_report_refused(["no_such_scene"], "no_such_scene", "lab reference")
         self.assert_report_refused(["quad.json"], "quad.json", "lab reference")
         self.assert_report_refused(["missing.json"], "missing.json", "no such file")
-        self.assert_report_refused(["cornell_box", "9"], "no chapter 9")
+        self.assert_report_refused(["cornell_box", "99"], "no chapter 99")
         self.assert_report_refused(["--seconds=0"], "seconds", "--help")
         self.assert_report_refused(["--record=record.json", "torus"], "record", "no scenes")
         self.assert_report_refused(["torus", "--peer-sampler=multijitter"], "--peer mitsuba")
