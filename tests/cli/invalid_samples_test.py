@@ -21,11 +21,11 @@ class Poison(RenderTest):
             shutil.copytree(PROJECT / name, tree / name)
         shader = tree / "shaders" / "render_samples.glsl"
         text = shader.read_text(encoding="utf-8")
-        call = "return path_trace(get_camera_ray(image_position), seed);"
+        call = "if (is_path_alive) continue;"
         self.assertEqual(text.count(call), 1)
-        poisoned = f"""if (pixel_index == {self.pixel}u && sample_index == {self.sample}u)
-            return vec3(0.5, uintBitsToFloat(0x7fc00000u), 0.5);
-        {call}"""
+        poisoned = f"""{call}
+        if (pixel_index == {self.pixel}u && parameters.first_sample + sample_count == {self.sample}u)
+            path.radiance = vec3(0.5, uintBitsToFloat(0x7fc00000u), 0.5);"""
         shader.write_text(text.replace(call, poisoned), encoding="utf-8")
         # Programs find the shaders above themselves.
         self.poisoned = tree / "bin" / CHAPTER.name
