@@ -100,15 +100,19 @@ FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSe
     Renderer renderer(test_device(), *acceleration_structure, settings.estimator,
                       make_parameters(scene, large));
     renderer.restart(make_parameters(scene, settings));
+    renderer.set_dispatch_seconds(settings.dispatch_seconds);
     while (renderer.advance(settings.samples)) {
     }
     return renderer.film().read();
 }
 
 TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
-    RenderSettings shared = settings();
-    shared.dispatch_seconds = 10;  // dispatches of several samples, however slow the device is
-    EXPECT_TRUE(are_identical(render_with_a_thread_for_each_pixel(scene, settings()), render(scene, shared)));
+    // Dispatches of several samples on the one side and of a single one on the other, however fast the device
+    // is.
+    RenderSettings shared = settings(), alone = settings();
+    shared.dispatch_seconds = 10;
+    alone.dispatch_seconds = 1e-9;
+    EXPECT_TRUE(are_identical(render_with_a_thread_for_each_pixel(scene, alone), render(scene, shared)));
 }
 
 TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
@@ -206,7 +210,8 @@ INSTANTIATE_TEST_SUITE_P(Backends, PathRegeneration, testing::ValuesIn(all_backe
 TEST_P(PathRegeneration, GivesTheImageOfChapterNine) {
     for (const char* name : {"cornell_box", "glass", "studio"}) {
         const Scene scene = load_shipped_scene(name + std::string(".json"));
-        RenderSettings settings{.width = 40, .height = 24, .samples = 21, .max_path_length = 30};
+        RenderSettings settings{
+            .width = 40, .height = 24, .samples = 21, .max_path_length = 30, .dispatch_seconds = 10};
         // One thread renders all samples of a pixel.
         const auto whole = render_both(
             settings, [&](const RenderSettings& s) { return render_with_a_thread_for_each_pixel(scene, s); });
