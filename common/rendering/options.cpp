@@ -170,15 +170,15 @@ bool needs_no_window(const Options& options) {
 
 const std::vector<View>& views() {
     static const std::vector<View> all{
-        {"normals", "view.glsl", "VIEW_NORMALS", DisplayTransform::as_is},
-        {"depth", "view.glsl", "VIEW_DEPTH", DisplayTransform::maximum},
-        {"albedo", "view.glsl", "VIEW_ALBEDO", DisplayTransform::exposure},
-        {"emission", "view.glsl", "VIEW_EMISSION", DisplayTransform::exposure},
-        {"texture-coordinates", "view.glsl", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
-        {"triangles", "view.glsl", "VIEW_TRIANGLES", DisplayTransform::as_is},
-        {"instances", "view.glsl", "VIEW_INSTANCES", DisplayTransform::as_is},
-        {"bvh-steps", "view.glsl", "VIEW_BVH_STEPS", DisplayTransform::maximum},
-        {"idle-lanes", "inside/view_idle_lanes.glsl", "VIEW_IDLE_LANES", DisplayTransform::as_is}};
+        {"normals", "VIEW_NORMALS", DisplayTransform::as_is},
+        {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
+        {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
+        {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
+        {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
+        {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
+        {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
+        {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum},
+        {"idle-lanes", "", DisplayTransform::as_is, "inside/view_idle_lanes.glsl"}};
     return all;
 }
 

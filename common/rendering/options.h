@@ -11,12 +11,13 @@
 
 namespace lab {
 
-// A picture of something else than radiance: what shaders/view.glsl shows when `define` is defined.
+// A picture of something else than radiance: what shaders/view.glsl shows when `define` is defined, or what
+// `observer`, a file in shaders/, finds when it watches the chapter's estimator.
 struct View {
     std::string name;
-    std::string shader;  // in shaders/
     std::string define;
     DisplayTransform display;
+    std::string observer = {};
 };
 const std::vector<View>& views();
 

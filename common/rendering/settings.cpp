@@ -137,9 +137,9 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
     Estimator estimator = estimator_of(chapter);
     if (const auto& view = options.image.view) {
+        if (view->observer.empty()) return {shared / "view.glsl", {view->define}};
         estimator.observed = estimator.file;
-        estimator.file = shared / view->shader;
-        estimator.defines.push_back(view->define);
+        estimator.file = shared / view->observer;
         return estimator;
     }
     if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};

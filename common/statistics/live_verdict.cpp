@@ -93,6 +93,8 @@ Difference LiveVerdict::difference(const Region& region, size_t channel) const {
     for (uint32_t y = corner.y; y < end.y; ++y)
         for (uint32_t x = corner.x; x < end.x; ++x)
             pixels.push_back(differences_[size_t{y} * reference_.mean.width + x][channel]);
+    // A single pixel has no spread: it may be off by anything.
+    if (pixels.size() == 1) return {.standard_error = INFINITY, .degrees_of_freedom = 1};
     Difference difference = difference_from(pixels, 0);
     double variance = square(difference.standard_error);
     // Where light is found by chance, too few finds make the mean and its spread too small together. Rare

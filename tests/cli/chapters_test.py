@@ -36,6 +36,12 @@ class EveryChapter(ProgramTest):
                 self.assertIn("validation     no complaints", out)
                 self.assertIn(f"output/{chapter}.png", out)
 
+    def test_shows_views(self):
+        for chapter in CHAPTERS:
+            for view in ("normals", "idle-lanes"):
+                with self.subTest(chapter=chapter, view=view):
+                    self.render(*TINY, "--view", view, program=BINARIES / chapter)
+
     def test_refuses_glass_if_it_knows_no_dielectrics(self):
         for chapter in (chapter for chapter in CHAPTERS if not description(chapter).get("dielectrics")):
             with self.subTest(chapter=chapter):

@@ -169,6 +169,22 @@ TEST(LiveVerdict, ReadsTheFilmWhenSamplesDouble) {
     EXPECT_EQ(verdict.verdict()->differences[0].degrees_of_freedom, extent * extent - 1);
 }
 
+TEST(LiveVerdict, SaysNothingOfATileOfOnePixel) {
+    // Tiles have 8 x 8 pixels, and a single one has no spread.
+    Reference reference{{9, 9, std::vector<float>(3 * 9 * 9, 0.5f)}, std::nullopt, {}};
+    FilmImage film{9, 9, std::vector<FilmPixel>(9 * 9)};
+    LiveVerdict verdict(std::move(reference), {9, 9});
+    std::mt19937 generator(1);
+    for (FilmPixel& pixel : film.pixels) {
+        std::binomial_distribution<uint32_t> hits(verdict.next_samples(), 0.5);
+        pixel.sum = vec3(static_cast<float>(hits(generator)));
+        pixel.sample_count = verdict.next_samples();
+    }
+    verdict.add(film);
+    EXPECT_FALSE(verdict.verdict()->is_biased) << verdict.text();
+    for (const double z : verdict.verdict()->map.values) EXPECT_LT(std::abs(z), 5);
+}
+
 TEST(LiveVerdict, WaitsForEnoughPaths) {
     LiveVerdict verdict(flat_reference(), glm::uvec2(extent));
     watch(verdict, {1, [](uint32_t, uint32_t) { return 0.1; }}, 64);  // 2^16 paths
