@@ -130,7 +130,7 @@ class HeadlessRender {
         if (reference_) {
             row.error = compare(film.mean(), *reference_);
         } else if (const uint32_t before = last_row_film_.min_samples();
-                   job_.has_independent_halves && before > 0 && samples == 2 * before) {
+                   job_.has_independent_halves() && before > 0 && samples == 2 * before) {
             row.error = estimate_error(last_row_film_.mean(), samples_after(last_row_film_, film).mean());
         }
         rows_.push_back(row);

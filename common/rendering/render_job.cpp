@@ -26,9 +26,8 @@ void check_sample_count(const RenderJob& job) {
             "--first-sample + --samples is above 2^32: there are no more random numbers than that");
 }
 
-// Of low-discrepancy points samples 2^k to 2^(k+1) - 1 share a scramble, counted from 0.
 void check_halves(const RenderJob& job) {
-    if (!job.has_independent_halves && job.options.run.target_error && job.options.run.reference.empty())
+    if (!job.has_independent_halves() && job.options.run.target_error && job.options.run.reference.empty())
         throw UserError(
             "--target-error: with --first-sample this chapter cannot tell its error, since its samples "
             "depend on each other: give a --reference");
@@ -46,6 +45,7 @@ RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_p
     check_scene(chapter, *scene);
     RenderJob job;
     job.estimator = make_estimator(chapter, options);
+    job.low_discrepancy = chapter.low_discrepancy;
     job.scene = std::move(scene);
     job.record.chapter = chapter.name;
     job.record.scene = job.scene->file.filename().string();
@@ -60,7 +60,6 @@ RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_p
         job.record.rays = job.resumed->record.rays;
         check_sample_count(job);
     }
-    job.has_independent_halves = !chapter.low_discrepancy || job.record.first_sample == 0;
     check_halves(job);
     return job;
 }
@@ -74,7 +73,6 @@ void set_options(RenderJob& job, const Chapter& chapter, const Options& options)
     job.record.first_sample = options.samples.first_sample;
     job.record.seconds = 0;
     job.record.rays = 0;
-    job.has_independent_halves = !chapter.low_discrepancy || job.record.first_sample == 0;
     job.resumed.reset();
     check_sample_count(job);
 }

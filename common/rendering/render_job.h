@@ -15,9 +15,12 @@ struct RenderJob {
     RenderParameters parameters{};
     uint32_t samples = 0;  // wanted in every pixel
     FilmRecord record = {};
-    // Whether the first half of 2^k samples is independent of the second, so that they tell the error.
-    bool has_independent_halves = true;
+    bool low_discrepancy = false;          // of the chapter
     std::optional<FilmFile> resumed = {};  // the run that this one continues
+
+    // Whether the first half of 2^k samples is independent of the second, so that they tell the error. Of
+    // low-discrepancy points samples 2^k to 2^(k+1) - 1 share a scramble, counted from 0.
+    bool has_independent_halves() const { return !low_discrepancy || record.first_sample == 0; }
 };
 
 // Everything about the render that needs no device, so that mistakes show before one is asked for. Throws

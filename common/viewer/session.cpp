@@ -228,7 +228,7 @@ void Session::take_snapshots(uint32_t samples, double seconds) {
     FilmImage film = build_->renderer->film().read();
     if (is_for_verdict) verdict_->add(film);
     if (!is_for_error) return;
-    if (build_->job.has_independent_halves && snapshot_.min_samples() > 0 &&
+    if (build_->job.has_independent_halves() && snapshot_.min_samples() > 0 &&
         samples == 2 * snapshot_.min_samples())
         snapshot_error_ =
             std::sqrt(estimate_error(snapshot_.mean(), samples_after(snapshot_, film).mean()).rel_mse);

@@ -8,11 +8,10 @@ SAMPLERS = {"random": "numbers", "Sobol": "sobol", "scrambled": "scrambled"}  # 
 SIZES = [4**k for k in range(7)]
 
 
-def grid(size):
-    """The midpoints of the cells of a grid: [index, axis]."""
-    side = round(size**0.5)
-    axis = (np.arange(side) + 0.5) / side
-    return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+def grid(side, dimensions, offset):
+    """Points of a regular grid on [0,1]^k with `side` of them along each axis."""
+    axis = (np.arange(side) + offset) / side
+    return np.stack(np.meshgrid(*[axis] * dimensions, indexing="ij"), axis=-1).reshape(-1, dimensions)
 
 
 def draw_sets(draw):
@@ -22,7 +21,7 @@ def draw_sets(draw):
 
 def first_points(sets, name, size):
     """The first points of each set; a grid has to be another one for each size."""
-    return grid(size)[None] if name == "grid" else sets[name][:, :size]
+    return grid(round(size**0.5), 2, 0.5)[None] if name == "grid" else sets[name][:, :size]
 
 
 def spectrum(points):

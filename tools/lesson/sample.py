@@ -104,19 +104,13 @@ def estimates(terms):
     return rows
 
 
-def grid(side, dimensions, offset):
-    """Points of a regular grid on [0,1]^k with `side` of them along each axis."""
-    axis = (np.arange(side) + offset) / side
-    return np.stack(np.meshgrid(*[axis] * dimensions, indexing="ij"), axis=-1).reshape(-1, dimensions)
-
-
 def grid_rows(integral, dimensions, limit):
     """Rows (N, error of a grid of corners, error of a grid of midpoints) for as many N as fit."""
     exact, rows = integral.value(dimensions), []
     for side in (2**k for k in range(1, 21)):
         if side**dimensions > limit:
             break
-        errors = [abs(integral.terms(grid(side, dimensions, offset)).mean() - exact) for offset in (0, 0.5)]
+        errors = [abs(integral.terms(point_sets.grid(side, dimensions, offset)).mean() - exact) for offset in (0, 0.5)]
         rows.append((side**dimensions, *errors))
     return rows
 
