@@ -126,7 +126,7 @@ def convergence(folder, images, reports):
         columns = {key: np.mean([[row[key] for row in run] for run in rows], axis=0) for key in ("samples", "seconds", "rel_mse")}
         for axis, key in zip(axes, ("samples", "seconds")):
             axis.plot(columns[key], np.sqrt(columns["rel_mse"]), marker + "-", color=colour, markersize=4, label=f"chapter {number}")
-    for axis, label in zip(axes, ("samples a pixel", "seconds")):
+    for axis, label in zip(axes, ("samples per pixel", "seconds")):
         style_axis(axis, xscale="log", yscale="log", xlabel=label)
     axes[0].set_ylabel("relative error (root of rel_mse)")
     axes[0].legend(frameon=False, fontsize=9)
