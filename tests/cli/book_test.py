@@ -18,7 +18,9 @@ NARROW = 400  # pixels, as wide as a telephone
 INSPECT = r"""(() => {
     const text = document.querySelector("article").cloneNode(true);
     const scrolls = element => element && (/auto|scroll/.test(getComputedStyle(element).overflowX) || scrolls(element.parentElement));
-    const isTooWide = element => element.getBoundingClientRect().right > document.documentElement.clientWidth && !scrolls(element);
+    const isHidden = element => element.closest(".katex-mathml, .katex svg");  // what KaTeX cuts off
+    const isTooWide = element => element.getBoundingClientRect().right > document.documentElement.clientWidth &&
+        !scrolls(element) && !isHidden(element);
     text.querySelectorAll("code, .katex").forEach(element => element.remove());
     return {
         names: [...document.querySelectorAll("[id]")].map(element => element.id),

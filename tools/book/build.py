@@ -18,8 +18,9 @@ READABILITY = "docs/readability.md"
 SECTIONS = {  # of the navigation; what is not there is left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
+    "Explore": ["docs/window.md", "docs/scenes.md"],
     "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/numerics.md", "docs/cluster.md"],
-    "Results": ["docs/results.md"],
+    "Results": ["docs/results.md", "docs/measuring.md"],
     "For teachers": ["docs/teaching.md"],
 }
 START = ["README.md", "docs/first_steps.md"]
@@ -96,7 +97,7 @@ def build(output, is_teacher):
             shutil.copy(file, folder / "docs/katex" / file.relative_to(KATEX))
         nav = []
         for title, paths in sections:
-            entries = [{title_of(path): path} for path in paths]
+            entries = [{"Start" if path == START[0] else title_of(path): path} for path in paths]
             nav += [{title: entries}] if title and entries else entries
         nav.append({"How long the sentences are": READABILITY})
         settings = {"docs_dir": str(folder / "docs"), "site_dir": str(folder / "site"), "nav": nav}
