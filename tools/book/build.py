@@ -105,7 +105,8 @@ def build(output, is_teacher):
         write(folder, "mkdocs.yml", text + "".join(f"{key}: {json.dumps(value)}\n" for key, value in settings.items()))
         process = run_program(["mkdocs", "build", "--strict", "--config-file", folder / "mkdocs.yml"])
         if process.returncode != 0:
-            raise UserError("mkdocs:\n" + "\n".join(line for line in process.stderr.splitlines() if re.search("WARNING|ERROR|[Ee]rror:", line)))
+            lines = re.sub(r"\x1b\[\d*m", "", process.stderr).splitlines()
+            raise UserError("mkdocs:\n" + "\n".join(line for line in lines if re.search("WARNING|[Ee]rror", line)))
         index = read_json(folder / "site/search/search_index.json")
         index["docs"] = [entry for entry in index["docs"] if not SOURCE.search(entry["location"])]
         write(folder, "site/search/search_index.js", f"var __search = {{index: Promise.resolve({json.dumps(index)})}};\n")

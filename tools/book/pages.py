@@ -63,8 +63,10 @@ class Page:
 
 
 def is_source(path):
-    """Whether this is a text that readers want to see."""
+    """Whether this is a text that readers want to see. MkDocs leaves out what is hidden."""
     file = ROOT / path
+    if any(part.startswith(".") for part in path.parts):
+        return False
     if not file.is_file() or not file.resolve().is_relative_to(ROOT) or file.stat().st_size > LARGEST_SOURCE:
         return False
     return b"\0" not in file.read_bytes()
