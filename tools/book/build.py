@@ -13,8 +13,8 @@ from project import CHAPTERS, ROOT, Parser, UserError, read_json, run_program, t
 
 HERE = Path(__file__).parent
 KATEX = Path("/usr/share/javascript/katex")  # of Debian's libjs-katex
-SOURCE = re.compile(r"\.\w+\.html|^(lab|\w+file)\.html")  # pages of sources, which the search leaves out
 READABILITY = "docs/readability.md"
+SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.js"
 SECTIONS = {  # of the navigation; what is not there is left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
@@ -50,7 +50,8 @@ def write(folder, path, text):
 
 
 def collect(folder, sections, is_teacher):
-    """Writes the pages, what they link to and their pictures, each where it stands in the project."""
+    """Writes the pages, what they link to and their pictures, each where it stands in the project. Returns the pages, and the
+    sources as they are named in the site."""
     def is_included(path):
         return (ROOT / path).is_file() and (is_teacher or not str(path).startswith(SOLUTIONS))
 
@@ -65,14 +66,13 @@ def collect(folder, sections, is_teacher):
             continue
         page = Page(path, is_included)
         write(folder, path, page.text)
-        # Sources that are linked are shown, but pages that nobody lists only where they are linked from one that is.
         waiting += page.linked
         for picture in page.pictures:
             if not (ROOT / picture).is_file():
                 raise UserError(f"{path}: there is no picture {picture}")
             (folder / picture).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / picture, folder / picture)
-    return sorted(path for path in done if path.suffix == ".md")
+    return sorted(path for path in done if path.suffix == ".md"), {f"{path}.html" for path in done if path.suffix != ".md"}
 
 
 def readability_page(pages):
@@ -86,32 +86,45 @@ def readability_page(pages):
     return f"# How long the sentences are\n\n{goals} `./lab book` counts them.\n\n" + table(head, rows)
 
 
+def write_settings(file, folder, sections):
+    """The settings of MkDocs, with the folder's pages and their order."""
+    nav = []
+    for title, paths in sections:
+        entries = [{"Start" if path == START[0] else title_of(path): path} for path in paths]
+        nav += [{title: entries}] if title and entries else entries
+    nav.append({"How long the sentences are": READABILITY})
+    text = (HERE / "mkdocs.yml").read_text(encoding="utf-8").replace("theme:\n", f"theme:\n  custom_dir: {HERE / 'theme'}\n")
+    settings = {"docs_dir": str(folder / "docs"), "site_dir": str(folder / "site"), "nav": nav}
+    file.write_text(text + "".join(f"{key}: {json.dumps(value)}\n" for key, value in settings.items()), encoding="utf-8")
+
+
+def finish(site, sources):
+    """Makes the search's index a script, which pages from the disk may load, and removes what only servers need."""
+    index = read_json(site / SEARCH_INDEX)
+    index["docs"] = [entry for entry in index["docs"] if entry["location"].split("#")[0] not in sources]
+    write(site, SEARCH_SCRIPT, f"var __search = {{index: Promise.resolve({json.dumps(index)})}};\n")
+    for unused in (SEARCH_INDEX, "404.html", "sitemap.xml", "sitemap.xml.gz"):
+        (site / unused).unlink(missing_ok=True)
+
+
 def build(output, is_teacher):
+    """Writes the site and returns its pages."""
+    if output.exists() and not (output / SEARCH_SCRIPT).exists():
+        raise UserError(f"{output} exists and is no book: choose another folder")
     sections = navigation(is_teacher)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        pages = collect(folder / "docs", sections, is_teacher)
+        pages, sources = collect(folder / "docs", sections, is_teacher)
         write(folder / "docs", READABILITY, readability_page(pages))
         (folder / "docs/katex/fonts").mkdir(parents=True)
         for file in [KATEX / "katex.min.js", KATEX / "katex.min.css", *KATEX.glob("fonts/*.woff2")]:
             shutil.copy(file, folder / "docs/katex" / file.relative_to(KATEX))
-        nav = []
-        for title, paths in sections:
-            entries = [{"Start" if path == START[0] else title_of(path): path} for path in paths]
-            nav += [{title: entries}] if title and entries else entries
-        nav.append({"How long the sentences are": READABILITY})
-        settings = {"docs_dir": str(folder / "docs"), "site_dir": str(folder / "site"), "nav": nav}
-        text = (HERE / "mkdocs.yml").read_text(encoding="utf-8").replace("  name: material\n", f"  name: material\n  custom_dir: {HERE / 'theme'}\n")
-        write(folder, "mkdocs.yml", text + "".join(f"{key}: {json.dumps(value)}\n" for key, value in settings.items()))
+        write_settings(folder / "mkdocs.yml", folder, sections)
         process = run_program(["mkdocs", "build", "--strict", "--config-file", folder / "mkdocs.yml"])
         if process.returncode != 0:
             lines = re.sub(r"\x1b\[\d*m", "", process.stderr).splitlines()
             raise UserError("mkdocs:\n" + "\n".join(line for line in lines if re.search("WARNING|[Ee]rror", line)))
-        index = read_json(folder / "site/search/search_index.json")
-        index["docs"] = [entry for entry in index["docs"] if not SOURCE.search(entry["location"])]
-        write(folder, "site/search/search_index.js", f"var __search = {{index: Promise.resolve({json.dumps(index)})}};\n")
-        for unused in ("404.html", "sitemap.xml", "sitemap.xml.gz", "search/search_index.json"):
-            (folder / "site" / unused).unlink(missing_ok=True)
+        finish(folder / "site", sources)
         shutil.rmtree(output, ignore_errors=True)
         shutil.copytree(folder / "site", output)
     return pages

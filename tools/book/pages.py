@@ -58,7 +58,7 @@ class Page:
         return text.replace(shown[0], f"""<div class="compare">
 <img src="{shown[2]}{before.name}" alt="the chapter before"><img src="{shown[2]}{now.name}" alt="{shown[1]}">
 <input type="range" value="50" aria-label="where the pictures meet" oninput="parentNode.style.setProperty('--place', value + '%')">
-<small><span>the chapter before</span><span>this chapter</span></small>
+<small><span>the chapter before</span><span>about as many rays</span><span>this chapter</span></small>
 </div>""")
 
 

@@ -19,7 +19,7 @@ PICTURES = ROOT / "docs/pictures"
 CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
 RAYS_PER_PIXEL = 400  # of the chapters' pictures
 SECONDS = 2  # of the renders that are compared at equal time
-HERO_SAMPLES = 4096  # of the picture at the head of the README: hours on a CPU, seconds on a GPU
+HERO_SAMPLES = 16384  # of the picture at the head of the README
 
 
 @dataclass
@@ -152,6 +152,8 @@ def renders_of_bvh_steps():
     return [Render(f"steps_{scene}", CHAPTERS[1], scene, 256, ("--samples", 4, "--view", "bvh-steps")) for scene in ("torus", "instances")]
 
 
+ON_REQUEST = {"hero"}  # takes a GPU minutes and a CPU a day
+
 # Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
 FIGURES = {
     "chapters": (renders_of_chapters, figure_plots.chapters),
@@ -178,7 +180,7 @@ FIGURES = {
 
 def parse():
     parser = Parser("./lab figures", __doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}, but not {', '.join(ON_REQUEST)}")
     parser.add_argument("--output", type=Path, default=PICTURES, metavar="FOLDER", help="default: docs/pictures")
     options = parser.parse_args()
     for name in options.names:
@@ -206,6 +208,6 @@ def make(names, output):
 
 def main():
     options = parse()
-    make(options.names or list(FIGURES), options.output)
+    make(options.names or [name for name in FIGURES if name not in ON_REQUEST], options.output)
     if not options.names:
         tables.write_pages()
