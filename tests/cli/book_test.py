@@ -126,10 +126,13 @@ class BookTest(unittest.TestCase):
             self.assertIn(words, " ".join(found + self.dead(links)), broken)
 
     def test_other_folders_are_not_overwritten(self):
-        result = subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", TOOLS], capture_output=True, text=True)
-        self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r"\Aerror: [^\n]* is no book: choose another folder\n\Z")
-        self.assertTrue((TOOLS / "__main__.py").exists())
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "thesis.txt"
+            file.touch()
+            result = subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", folder], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stderr, r"\Aerror: [^\n]* is no book: choose another folder\n\Z")
+            self.assertTrue(file.exists())
 
     def test_solutions_are_for_teachers(self):
         if not (PROJECT / "docs/solutions").exists():
