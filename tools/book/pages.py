@@ -22,6 +22,7 @@ class Page:
         self.path, self.is_included = Path(path), is_included
         self.linked = []  # pages and sources
         text = re.sub(r"<!-- .*? -->\n?", "", (ROOT / path).read_text(encoding="utf-8"))
+        text = text.replace("<details>", '<details markdown="1">')  # else its text would not be read as Markdown
         self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
         self.text = self.with_comparison(with_lists(LINK.sub(self.link, text)))
 
