@@ -33,7 +33,7 @@ INSPECT = r"""(() => {
     };
 })()"""
 SEARCH = r"""new Promise((found, failed) => {
-    document.querySelector("#__search").checked = true;
+    document.querySelector("#__search").click();
     const input = document.querySelector(".md-search__input"), results = document.querySelector(".md-search-result__list");
     new MutationObserver(() => results.textContent && found(results.textContent)).observe(results, { childList: true });
     setTimeout(() => failed(new Error("nothing found")), 20000);

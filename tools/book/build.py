@@ -99,10 +99,11 @@ def write_settings(file, folder, sections):
 
 
 def finish(site, sources):
-    """Makes the search's index a script, which pages from the disk may load, and removes what only servers need."""
+    """Makes the search's index a script, which pages from the disk may load, and removes what only servers need. Version 8 of
+    the theme, Debian 12's, looks for the index in __search, later ones in __index."""
     index = read_json(site / SEARCH_INDEX)
     index["docs"] = [entry for entry in index["docs"] if entry["location"].split("#")[0] not in sources]
-    write(site, SEARCH_SCRIPT, f"var __search = {{index: Promise.resolve({json.dumps(index)})}};\n")
+    write(site, SEARCH_SCRIPT, f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index)}};\n")
     for unused in (SEARCH_INDEX, "404.html", "sitemap.xml", "sitemap.xml.gz"):
         (site / unused).unlink(missing_ok=True)
 
