@@ -43,15 +43,51 @@ SEARCH = r"""new Promise((found, failed) => {
 })"""
 
 
-@unittest.skipUnless(CHROMIUM, "needs Chromium: apt-get install chromium")
-@unittest.skipUnless(shutil.which("mkdocs") and Path("/usr/share/javascript/katex").exists(), "./lab book installs mkdocs and KaTeX")
-class BookTest(unittest.TestCase):
+class Site:
+    """The site, built once for a class of tests."""
+
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.site = Path(cls.folder.name).resolve() / "book"
+        if not shutil.which("mkdocs") or not Path("/usr/share/javascript/katex").exists():
+            raise unittest.SkipTest("needs MkDocs and KaTeX, which ./lab book installs")
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.site = Path(folder.name).resolve() / "book"
         subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", cls.site], check=True, stdout=subprocess.DEVNULL)
+
+
+class BookTest(Site, unittest.TestCase):
+    def test_lists_and_code_are_those_of_the_pages(self):
+        pages = [PROJECT / "README.md", *PROJECT.glob("docs/*.md"), *PROJECT.glob("chapters/*/README.md")]
+        for page in pages:
+            text, name = page.read_text(encoding="utf-8"), str(page.relative_to(PROJECT))
+            site = self.site / re.sub(r"\.md$", ".html", name.replace("README", "index"))
+            article = re.search(r"<article.*</article>", site.read_text(encoding="utf-8"), re.DOTALL)[0]
+            fences = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
+            rest = fences.sub("", text)
+            self.assertEqual(article.count("<li>"), len(re.findall(r"^ {0,4}(?:\d+\.|[-*]) +\S", rest, re.MULTILINE)), name)
+            self.assertEqual(article.count("<pre"), len(fences.findall(text)) + len(re.findall(r"\n\n {4,}\S", rest)), name)
+
+    def test_other_folders_are_not_overwritten(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "thesis.txt"
+            file.touch()
+            result = subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", folder], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stderr, r"\Aerror: [^\n]* is no book: choose another folder\n\Z")
+            self.assertTrue(file.exists())
+
+    def test_solutions_are_for_teachers(self):
+        if not (PROJECT / "docs/solutions").exists():
+            self.skipTest("there are no solutions")
+        self.assertFalse((self.site / "docs/solutions").exists())
+
+
+@unittest.skipUnless(CHROMIUM, "needs Chromium: apt-get install chromium")
+class BookInBrowserTest(Site, unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
         cls.browser = cls.enterClassContext(Browser())
         cls.browser.resize(NARROW)
 
@@ -88,17 +124,6 @@ class BookTest(unittest.TestCase):
         self.assertGreater(len(links), 100)
         self.assertEqual(self.dead(links), [])
 
-    def test_lists_and_code_are_those_of_the_pages(self):
-        pages = [PROJECT / "README.md", *PROJECT.glob("docs/*.md"), *PROJECT.glob("chapters/*/README.md")]
-        for page in pages:
-            text, name = page.read_text(encoding="utf-8"), str(page.relative_to(PROJECT))
-            site = self.site / re.sub(r"\.md$", ".html", name.replace("README", "index"))
-            article = re.search(r"<article.*</article>", site.read_text(encoding="utf-8"), re.DOTALL)[0]
-            fences = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
-            rest = fences.sub("", text)
-            self.assertEqual(article.count("<li>"), len(re.findall(r"^ {0,4}(?:\d+\.|[-*]) +\S", rest, re.MULTILINE)), name)
-            self.assertEqual(article.count("<pre"), len(fences.findall(text)) + len(re.findall(r"\n\n {4,}\S", rest)), name)
-
     def test_search(self):
         self.browser.visit((self.site / "docs/results.html").as_uri())
         results = self.browser.evaluate(SEARCH)
@@ -125,19 +150,6 @@ class BookTest(unittest.TestCase):
             found, links = self.problems(page)
             self.assertIn(words, " ".join(found + self.dead(links)), broken)
 
-    def test_other_folders_are_not_overwritten(self):
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "thesis.txt"
-            file.touch()
-            result = subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", folder], capture_output=True, text=True)
-            self.assertEqual(result.returncode, 1)
-            self.assertRegex(result.stderr, r"\Aerror: [^\n]* is no book: choose another folder\n\Z")
-            self.assertTrue(file.exists())
-
-    def test_solutions_are_for_teachers(self):
-        if not (PROJECT / "docs/solutions").exists():
-            self.skipTest("there are no solutions")
-        self.assertFalse((self.site / "docs/solutions").exists())
 
 
 class ReadabilityTest(unittest.TestCase):
