@@ -135,7 +135,8 @@ class BookInBrowserTest(Site, unittest.TestCase):
         self.browser.visit((self.site / "chapters/02_cosine_sampling/index.html").as_uri())
         cut = "getComputedStyle(document.querySelectorAll('.compare img')[1]).clipPath"
         self.assertIn("50%", self.browser.evaluate(cut))
-        self.browser.evaluate("(input => { input.value = 30; input.dispatchEvent(new Event('input')); })(document.querySelector('.compare input'))")
+        self.browser.evaluate("const input = document.querySelector('.compare input'); input.value = 30; "
+                              "input.dispatchEvent(new Event('input'));")
         self.assertIn("30%", self.browser.evaluate(cut))
 
     def test_broken_pages_are_found(self):

@@ -81,7 +81,8 @@ def readability_page(pages):
     for path in pages:
         middle, long = readability.measure((ROOT / path).read_text(encoding="utf-8"))
         rows.append([str(path), f"{middle:g}", str(len(long)), str(max((words for words, _ in long), default="–"))])
-    goals = f"The goals are a median of at most {readability.MEDIAN_GOAL} words per sentence, and no sentence above {readability.LONGEST_GOAL}."
+    goals = (f"The goals are a median of at most {readability.MEDIAN_GOAL} words per sentence, and no sentence above "
+             f"{readability.LONGEST_GOAL}.")
     head = ["page", "median", f"sentences above {readability.LONGEST_GOAL} words", "words of the longest one"]
     return f"# How long the sentences are\n\n{goals} `./lab book` counts them.\n\n" + table(head, rows)
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from project import CHAPTERS, ROOT, description
 
 PICTURES = {".jpg", ".png", ".svg", ".gif", ".webp"}
-LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".glsl": "glsl", ".comp": "glsl", ".py": "python", ".json": "json", ".sh": "bash", "": "bash"}
+LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".glsl": "glsl", ".comp": "glsl", ".rgen": "glsl", ".rchit": "glsl", ".rmiss": "glsl",
+             ".py": "python", ".json": "json", "": "bash"}
 LARGEST_SOURCE = 100_000  # bytes; what is larger is data, which nobody reads
 CODE = r"```.*?```|`[^`\n]+`|(?<=\n\n) {4}[^\n]*"
 LINK = re.compile(rf"({CODE})|(?<!!)\[((?:`[^`\n]*`|[^\[\]]|!\[[^\[\]]*\]\([^()]*\))*)\]\(([^()\s]+)\)", re.DOTALL)

@@ -9,7 +9,7 @@ from statistics import median
 
 MEDIAN_GOAL, LONGEST_GOAL = 17, 40  # words per sentence
 LABEL = 2  # so few words are a label, as "Fill in."
-NO_TEXT = [r"\A---\n(?s:.*?)^---\n", r"^( *)(```|~~~)(?s:.*?)^\1\2 *$", r"<!--(?s:.*?)-->", r"^ *\$\$(?s:.*?)\$\$ *$", r"^#.*$", r"^ *\|.*$",
+NO_TEXT = [r"^( *)(```|~~~)(?s:.*?)^\1\2 *$", r"<!--(?s:.*?)-->", r"^ *\$\$(?s:.*?)\$\$ *$", r"^#.*$", r"^ *\|.*$",
            r"^!\[.*?\]\(.*?\)$", r"(?<=\n\n)(?: {4}.*\n|\n(?= {4}))+"]
 ONE_WORD = [r"`[^`]+`", r"\$[^$\n]+\$"]
 
@@ -36,7 +36,8 @@ def count_words(sentence):
 def measure(text):
     """(median of the words per sentence, [(words, sentence) above the goal]) of a page; the median of no sentences is 0."""
     counted = [(count_words(sentence), sentence) for sentence in sentences(text)]
-    return median([words for words, _ in counted] or [0]), sorted((pair for pair in counted if pair[0] > LONGEST_GOAL), reverse=True)
+    long = sorted((pair for pair in counted if pair[0] > LONGEST_GOAL), reverse=True)
+    return median([words for words, _ in counted] or [0]), long
 
 
 def main():

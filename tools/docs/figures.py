@@ -70,8 +70,8 @@ def renders_of_chapters():
 def renders_of_thumbnails():
     """Small pictures of all chapters, for the same number of rays."""
     scenes = {"low_discrepancy_points": "textured", "path_regeneration": "still_life"}
-    return [Render(f"{number:02}", name, scenes.get(name[3:], description(name).get("default_scene", "cornell_box")), 120, (), RAYS_PER_PIXEL)
-            for number, name in CHAPTERS.items()]
+    return [Render(f"{number:02}", name, scenes.get(name[3:], description(name).get("default_scene", "cornell_box")), 120, (),
+                   RAYS_PER_PIXEL) for number, name in CHAPTERS.items()]
 
 
 def renders_of_strategies():

@@ -186,7 +186,8 @@ def headline_table():
     for record in load_records("chapters"):
         device = record["environment"]["device"]
         devices.append(device)
-        for cells in kind_tables(record)["chapter", next(c["scene"] for c in record["cases"] if c["scene"].startswith("cornell_box"))]:
+        scene = next(case["scene"] for case in record["cases"] if case["scene"].startswith("cornell_box"))
+        for cells in kind_tables(record)["chapter", scene]:
             rows.setdefault(cells[0], {})[device] = cells[-1]
         best, gain = next(texts for (scene, _, _), texts in among_chapters(record) if scene == "cornell_box")
         text += f"On {device}, {best} is {gain} times as fast as chapter 1.\n"
