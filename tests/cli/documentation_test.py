@@ -20,7 +20,7 @@ from program import PROJECT as ROOT
 import measure
 from docs import numerics
 
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 COURSE = [CHAPTERS[exercise["chapter"]] for exercise in json.loads((TOOLS / "course/exercises.json").read_text(encoding="utf-8"))]
 CHAPTERS.setdefault(20, CHAPTERS[3])  # the pages call a student's copy of a chapter 20
