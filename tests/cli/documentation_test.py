@@ -116,7 +116,7 @@ class DocumentationTest(unittest.TestCase):
         suites = set(re.findall(r"^TEST(?:_[PF])?\((\w+),", sources(["tests"], {".cpp"}), re.MULTILINE))
         for chapter in COURSE:  # what others add may have pages of another kind
             text = text_of(ROOT / "chapters" / chapter / "README.md")
-            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n## What it costs", "\n## What can go wrong", "\n## Exercises"):
+            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n## What it ", "\n## What can go wrong", "\n## Exercises"):
                 self.assertIn(part, text, chapter)
             kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
             self.assertGreaterEqual(len(kinds), 5, chapter)
