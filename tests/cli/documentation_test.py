@@ -20,7 +20,7 @@ from program import PROJECT as ROOT
 import measure
 from docs import numerics
 
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 COURSE = [CHAPTERS[exercise["chapter"]] for exercise in json.loads((TOOLS / "course/exercises.json").read_text(encoding="utf-8"))]
 CHAPTERS.setdefault(20, CHAPTERS[3])  # the pages call a student's copy of a chapter 20
@@ -116,8 +116,9 @@ class DocumentationTest(unittest.TestCase):
         suites = set(re.findall(r"^TEST(?:_[PF])?\((\w+),", sources(["tests"], {".cpp"}), re.MULTILINE))
         for chapter in COURSE:  # what others add may have pages of another kind
             text = text_of(ROOT / "chapters" / chapter / "README.md")
-            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n## What it costs", "\n## What can go wrong", "\n## Exercises"):
-                self.assertIn(part, text, chapter)
+            for part in (r"    \./lab run ", r"!\[", "<!-- table: ", "## What it (costs|gains, and where it does not)$", "## What can go wrong$",
+                         "## Exercises$"):
+                self.assertRegex(text, rf"(?m)^{part}", chapter)
             kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
             self.assertGreaterEqual(len(kinds), 5, chapter)
             self.assertLessEqual({"Fill in", "Derive", "Measure", "Find the bug", "Explore", "Challenge"}, set(kinds), chapter)
