@@ -116,9 +116,8 @@ class DocumentationTest(unittest.TestCase):
         suites = set(re.findall(r"^TEST(?:_[PF])?\((\w+),", sources(["tests"], {".cpp"}), re.MULTILINE))
         for chapter in COURSE:  # what others add may have pages of another kind
             text = text_of(ROOT / "chapters" / chapter / "README.md")
-            for part in (r"    \./lab run ", r"!\[", "<!-- table: ", "## What it (costs|gains, and where it does not)$", "## What can go wrong$",
-                         "## Exercises$"):
-                self.assertRegex(text, rf"(?m)^{part}", chapter)
+            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n## What it ", "\n## What can go wrong", "\n## Exercises"):
+                self.assertIn(part, text, chapter)
             kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
             self.assertGreaterEqual(len(kinds), 5, chapter)
             self.assertLessEqual({"Fill in", "Derive", "Measure", "Find the bug", "Explore", "Challenge"}, set(kinds), chapter)
