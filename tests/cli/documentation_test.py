@@ -24,6 +24,8 @@ PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.gl
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 COURSE = [CHAPTERS[exercise["chapter"]] for exercise in json.loads((TOOLS / "course/exercises.json").read_text(encoding="utf-8"))]
 CHAPTERS.setdefault(20, CHAPTERS[3])  # the pages call a student's copy of a chapter 20
+SECTIONS = ["From the formula to the code", "The decisive lines", "What it gains, and where it does not", "What can go wrong", "How we know",
+            "Exercises", "Summary"]  # of each chapter's page, in this order
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 SIZE = ("--width", "--height")
 SMALL_RENDER = {"--width": "8", "--height": "8", "--samples": "1", "--backend": "compute", "--output": "picture.png"}
@@ -116,8 +118,9 @@ class DocumentationTest(unittest.TestCase):
         suites = set(re.findall(r"^TEST(?:_[PF])?\((\w+),", sources(["tests"], {".cpp"}), re.MULTILINE))
         for chapter in COURSE:  # what others add may have pages of another kind
             text = text_of(ROOT / "chapters" / chapter / "README.md")
-            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n## What it ", "\n## What can go wrong", "\n## Exercises"):
+            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n<!-- code: ", "Symbols: [table](../../docs/slides.md#symbols)"):
                 self.assertIn(part, text, chapter)
+            self.assertEqual([heading for heading in re.findall(r"^## (.*)$", text, re.MULTILINE) if heading in SECTIONS], SECTIONS, chapter)
             kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
             self.assertGreaterEqual(len(kinds), 5, chapter)
             self.assertLessEqual({"Fill in", "Derive", "Measure", "Find the bug", "Explore", "Challenge"}, set(kinds), chapter)
