@@ -128,6 +128,12 @@ class DocumentationTest(unittest.TestCase):
             named = [name for line in re.findall(r"Done\s+when all tests named ([^.]*)", text) for name in re.findall(r"`(\w+)`", line)]
             self.assertTrue(named and set(named) <= suites, f"{chapter}: tests {named}")
 
+    def test_every_exercise_has_a_solution(self):
+        for chapter in COURSE:  # of exercise 1 it is the chapter's shader
+            exercises = re.findall(r"^(\d+)\. \*([\w ]+)\.\*", text_of(ROOT / "chapters" / chapter / "README.md"), re.MULTILINE)
+            solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "docs/solutions" / f"{chapter}.md"), re.MULTILINE)
+            self.assertEqual(solutions, exercises[1:], chapter)
+
     def test_results_are_what_the_records_say(self):
         subprocess.run([sys.executable, "-B", TOOLS, "tables", "--check"], check=True)
 
