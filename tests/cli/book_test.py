@@ -9,8 +9,9 @@ import unittest
 from pathlib import Path
 from urllib.parse import unquote
 
+from tools_path import PROJECT, TOOLS  # first: it finds the others
+from book import readability
 from browser import CHROMIUM, Browser
-from tools_path import PROJECT, TOOLS
 
 NARROW = 400  # pixels, as wide as a telephone
 # Of a page: the names that links may lead to, where its own links lead, pictures that are missing, formulas that are not typeset, and
@@ -18,7 +19,9 @@ NARROW = 400  # pixels, as wide as a telephone
 INSPECT = r"""(() => {
     const text = document.querySelector("article").cloneNode(true);
     const scrolls = element => element && (/auto|scroll/.test(getComputedStyle(element).overflowX) || scrolls(element.parentElement));
-    const isTooWide = element => element.getBoundingClientRect().right > document.documentElement.clientWidth && !scrolls(element);
+    const isHidden = element => element.closest(".katex-mathml, .katex svg");  // what KaTeX cuts off
+    const isTooWide = element => element.getBoundingClientRect().right > document.documentElement.clientWidth &&
+        !scrolls(element) && !isHidden(element);
     text.querySelectorAll("code, .katex").forEach(element => element.remove());
     return {
         names: [...document.querySelectorAll("[id]")].map(element => element.id),
@@ -85,6 +88,17 @@ class BookTest(unittest.TestCase):
         self.assertGreater(len(links), 100)
         self.assertEqual(self.dead(links), [])
 
+    def test_lists_and_code_are_those_of_the_pages(self):
+        pages = [PROJECT / "README.md", *PROJECT.glob("docs/*.md"), *PROJECT.glob("chapters/*/README.md")]
+        for page in pages:
+            text, name = page.read_text(encoding="utf-8"), str(page.relative_to(PROJECT))
+            site = self.site / re.sub(r"\.md$", ".html", name.replace("README", "index"))
+            article = re.search(r"<article.*</article>", site.read_text(encoding="utf-8"), re.DOTALL)[0]
+            fences = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
+            rest = fences.sub("", text)
+            self.assertEqual(article.count("<li>"), len(re.findall(r"^ {0,4}(?:\d+\.|[-*]) +\S", rest, re.MULTILINE)), name)
+            self.assertEqual(article.count("<pre"), len(fences.findall(text)) + len(re.findall(r"\n\n {4,}\S", rest)), name)
+
     def test_search(self):
         self.browser.visit((self.site / "docs/results.html").as_uri())
         results = self.browser.evaluate(SEARCH)
@@ -115,6 +129,35 @@ class BookTest(unittest.TestCase):
         if not (PROJECT / "docs/solutions").exists():
             self.skipTest("there are no solutions")
         self.assertFalse((self.site / "docs/solutions").exists())
+
+
+class ReadabilityTest(unittest.TestCase):
+    def test_sentences_are_text_without_code_tables_and_formulas(self):
+        text = """# A heading of many words
+
+One two `three. four` five. Six [seven eight](link.md) $a + b$ nine!
+
+| a table | with cells |
+|---|---|
+
+    indented code is no text
+
+1. *Fill in.* Ten eleven twelve.
+2. Thirteen fourteen fifteen
+$$
+x = 1
+$$
+```sh
+code
+```
+"""
+        counts = [readability.count_words(sentence) for sentence in readability.sentences(text)]
+        self.assertEqual(counts, [4, 5, 3, 3])
+        self.assertEqual(readability.measure(text)[0], 3.5)
+
+    def test_long_sentences_are_named(self):
+        words = "word " * readability.LONGEST_GOAL
+        self.assertEqual(readability.measure(f"{words}.\n\n{words}more.\n")[1], [(readability.LONGEST_GOAL + 1, f"{words}more.")])
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ class Browser:
     """Visits pages one by one, and remembers what each has said and loaded."""
 
     def __enter__(self):
-        self.profile = tempfile.TemporaryDirectory()
+        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a child may outlive the browser
         read_commands, self.commands = os.pipe()
         self.answers, write_answers = os.pipe()
         command = [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--remote-debugging-pipe",

@@ -18,8 +18,9 @@ READABILITY = "docs/readability.md"
 SECTIONS = {  # of the navigation; what is not there is left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
+    "Explore": ["docs/window.md", "docs/scenes.md"],
     "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/numerics.md", "docs/cluster.md"],
-    "Results": ["docs/results.md"],
+    "Results": ["docs/results.md", "docs/measuring.md"],
     "For teachers": ["docs/teaching.md"],
 }
 START = ["README.md", "docs/first_steps.md"]
@@ -96,7 +97,7 @@ def build(output, is_teacher):
             shutil.copy(file, folder / "docs/katex" / file.relative_to(KATEX))
         nav = []
         for title, paths in sections:
-            entries = [{title_of(path): path} for path in paths]
+            entries = [{"Start" if path == START[0] else title_of(path): path} for path in paths]
             nav += [{title: entries}] if title and entries else entries
         nav.append({"How long the sentences are": READABILITY})
         settings = {"docs_dir": str(folder / "docs"), "site_dir": str(folder / "site"), "nav": nav}
@@ -104,7 +105,8 @@ def build(output, is_teacher):
         write(folder, "mkdocs.yml", text + "".join(f"{key}: {json.dumps(value)}\n" for key, value in settings.items()))
         process = run_program(["mkdocs", "build", "--strict", "--config-file", folder / "mkdocs.yml"])
         if process.returncode != 0:
-            raise UserError("mkdocs:\n" + "\n".join(line for line in process.stderr.splitlines() if re.search("WARNING|ERROR|[Ee]rror:", line)))
+            lines = re.sub(r"\x1b\[\d*m", "", process.stderr).splitlines()
+            raise UserError("mkdocs:\n" + "\n".join(line for line in lines if re.search("WARNING|[Ee]rror", line)))
         index = read_json(folder / "site/search/search_index.json")
         index["docs"] = [entry for entry in index["docs"] if not SOURCE.search(entry["location"])]
         write(folder, "site/search/search_index.js", f"var __search = {{index: Promise.resolve({json.dumps(index)})}};\n")

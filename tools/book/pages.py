@@ -63,8 +63,10 @@ class Page:
 
 
 def is_source(path):
-    """Whether this is a text that readers want to see."""
+    """Whether this is a text that readers want to see. MkDocs leaves out what is hidden."""
     file = ROOT / path
+    if any(part.startswith(".") for part in path.parts):
+        return False
     if not file.is_file() or not file.resolve().is_relative_to(ROOT) or file.stat().st_size > LARGEST_SOURCE:
         return False
     return b"\0" not in file.read_bytes()
@@ -78,21 +80,23 @@ def source_page(path):
 
 
 def with_lists(text):
-    """What belongs to a list item is indented by four spaces, and a list has an empty line before it: GitHub needs neither."""
-    lines, width, is_code, before = [], 0, False, ""
+    """What belongs to a list item is indented by four spaces. A list, and an item after one of several paragraphs, has an empty
+    line before it. GitHub needs neither."""
+    lines, width, is_code, has_paragraphs, before = [], 0, False, False, ""
     for line in text.split("\n"):
         is_code ^= line.lstrip().startswith("```")
         indent = len(line) - len(line.lstrip(" "))
-        item = ITEM.match(line)
-        if item and not is_code:
-            if before.strip() and not width:
+        item = None if is_code else ITEM.match(line)
+        if item:
+            if before.strip() and (not width or has_paragraphs):
                 lines.append("")
-            width = item.end()
-        elif width and line.strip() and indent < min(width, 2) and (not before.strip() or line.startswith(("#", "|", "```"))):
+            width, has_paragraphs = item.end(), False
+        elif width and line.strip() and indent < 2 and (not before.strip() or line.startswith(("#", "|", "```"))):
             width = 0
-        elif width and indent >= min(width, 2):
+        elif width and indent >= 2:
+            has_paragraphs |= not before.strip()
             inner = line[min(width, indent):]
-            if ITEM.match(inner) and not is_code and before.strip() and not ITEM.match(before.strip()) and not before.startswith(" "):
+            if ITEM.match(inner) and not is_code and before.strip() and not ITEM.match(before.strip()):
                 lines.append("")
             line = "    " + inner
         lines.append(line)

@@ -19,7 +19,7 @@ EXERCISES = read_json(HERE / "exercises.json")
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it names solutions or makes what belongs to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check", "tools/course", "tools/docs"]
+TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/measuring.md", "docs/records/check", "tools/course", "tools/docs"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 

@@ -19,6 +19,7 @@ PICTURES = ROOT / "docs/pictures"
 CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
 RAYS_PER_PIXEL = 400  # of the chapters' pictures
 SECONDS = 2  # of the renders that are compared at equal time
+HERO_SAMPLES = 4096  # of the picture at the head of the README: hours on a CPU, seconds on a GPU
 
 
 @dataclass
@@ -66,6 +67,13 @@ def renders_of_chapters():
             for name in CHAPTERS.values() if not description(name).get("strategies")]
 
 
+def renders_of_thumbnails():
+    """Small pictures of all chapters, for the same number of rays."""
+    scenes = {"low_discrepancy_points": "textured", "path_regeneration": "still_life"}
+    return [Render(f"{number:02}", name, scenes.get(name[3:], description(name).get("default_scene", "cornell_box")), 120, (), RAYS_PER_PIXEL)
+            for number, name in CHAPTERS.items()]
+
+
 def renders_of_strategies():
     """Light that is reflected once, so that nothing but the strategies makes a difference."""
     chapter = chapter_named("multiple_importance_sampling")
@@ -108,16 +116,25 @@ def renders_of_effects():
             Render("reflection", light, "glossy", 256, ("--samples", 256, "--specular"))]
 
 
-def renders_at_equal_time():
+def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
     """As many samples as take the same time by the first record of docs/records/chapters, whatever else runs now."""
-    renders, size = [], 160
+    renders = []
     for case in load_records("chapters")[0]["cases"]:
-        if tables.kind_of(case) == "chapter" and case["scene"].startswith(("cornell_box", "heart_light")):
+        if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):
             seconds = mean_of(last_rows(case["runs"]), "device_seconds") / (case["samples"] * case["width"] * case["height"])
             scene = Path(case["scene_file"]).stem
             options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
             renders.append(Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options))
     return renders
+
+
+def renders_of_noise():
+    return renders_at_equal_time(("cornell_box",), 256)
+
+
+def renders_of_hero():
+    return [Render("hero", chapter_named("path_regeneration"), "still_life", 1600,
+                   ("--samples", HERO_SAMPLES, "--max-path-length", 16), height=900)]
 
 
 def renders_of_convergence():
@@ -138,6 +155,7 @@ def renders_of_bvh_steps():
 # Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
 FIGURES = {
     "chapters": (renders_of_chapters, figure_plots.chapters),
+    "thumbnails": (renders_of_thumbnails, figure_plots.thumbnails),
     "strategies": (renders_of_strategies, figure_plots.strategies),
     "light_probes": (renders_of_light_probes, figure_plots.light_probes),
     "low_discrepancy": (renders_of_low_discrepancy, figure_plots.low_discrepancy),
@@ -145,6 +163,8 @@ FIGURES = {
     "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
     "effects": (renders_of_effects, figure_plots.effects),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
+    "hero": (renders_of_hero, figure_plots.hero),
+    "noise": (renders_of_noise, figure_plots.noise),
     "equal_time": (renders_at_equal_time, figure_plots.equal_time),
     "convergence": (renders_of_convergence, figure_plots.convergence),
     "sampler_points": (list, figure_plots.sampler_points),

@@ -15,7 +15,7 @@ from pathlib import Path
 from statistics import median
 
 from docs.best_table import HEADER as BEST
-from docs.best_table import best_table
+from docs.best_table import among_chapters, best_table
 from docs.code_blocks import fill
 from docs.confusion_table import HEADER as CHECK
 from docs.confusion_table import confusion_table
@@ -180,7 +180,21 @@ def expected_table(width=512, height=512, samples=64):
     return text
 
 
-OWN_TABLES = {"expected": expected_table, "hard cases": case_table, "device arithmetic": device_tables}
+def headline_table():
+    """Whether each chapter pays in the Cornell box, and how much faster the best one is, on each device."""
+    devices, rows, text = [], {}, ""
+    for record in load_records("chapters"):
+        device = record["environment"]["device"]
+        devices.append(device)
+        for cells in kind_tables(record)["chapter", next(c["scene"] for c in record["cases"] if c["scene"].startswith("cornell_box"))]:
+            rows.setdefault(cells[0], {})[device] = cells[-1]
+        best, gain = next(texts for (scene, _, _), texts in among_chapters(record) if scene == "cornell_box")
+        text += f"On {device}, {best} is {gain} times as fast as chapter 1.\n"
+    rows = [[name, *(cells.get(device, "") for device in devices)] for name, cells in rows.items()]
+    return table(["error × time", *devices], rows) + "\n" + text
+
+
+OWN_TABLES = {"expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables}
 
 
 def page_tables(name, page):
