@@ -20,10 +20,12 @@ from program import PROJECT as ROOT
 import measure
 from docs import numerics
 
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 COURSE = [CHAPTERS[exercise["chapter"]] for exercise in json.loads((TOOLS / "course/exercises.json").read_text(encoding="utf-8"))]
 CHAPTERS.setdefault(20, CHAPTERS[3])  # the pages call a student's copy of a chapter 20
+SECTIONS = ["From the formula to the code", "The decisive lines", "What it gains, and where it does not", "What can go wrong", "How we know",
+            "Exercises", "Summary"]  # of each chapter's page, in this order
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 SIZE = ("--width", "--height")
 SMALL_RENDER = {"--width": "8", "--height": "8", "--samples": "1", "--backend": "compute", "--output": "picture.png"}
@@ -116,14 +118,21 @@ class DocumentationTest(unittest.TestCase):
         suites = set(re.findall(r"^TEST(?:_[PF])?\((\w+),", sources(["tests"], {".cpp"}), re.MULTILINE))
         for chapter in COURSE:  # what others add may have pages of another kind
             text = text_of(ROOT / "chapters" / chapter / "README.md")
-            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n## What it costs", "\n## What can go wrong", "\n## Exercises"):
+            for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n<!-- code: ", "Symbols: [table](../../docs/slides.md#symbols)"):
                 self.assertIn(part, text, chapter)
+            self.assertEqual([heading for heading in re.findall(r"^## (.*)$", text, re.MULTILINE) if heading in SECTIONS], SECTIONS, chapter)
             kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
             self.assertGreaterEqual(len(kinds), 5, chapter)
             self.assertLessEqual({"Fill in", "Derive", "Measure", "Find the bug", "Explore", "Challenge"}, set(kinds), chapter)
             self.assertEqual((kinds[0], kinds[-1]), ("Fill in", "Challenge"), chapter)
             named = [name for line in re.findall(r"Done\s+when all tests named ([^.]*)", text) for name in re.findall(r"`(\w+)`", line)]
             self.assertTrue(named and set(named) <= suites, f"{chapter}: tests {named}")
+
+    def test_every_exercise_has_a_solution(self):
+        for chapter in COURSE:  # of exercise 1 it is the chapter's shader
+            exercises = re.findall(r"^(\d+)\. \*([\w ]+)\.\*", text_of(ROOT / "chapters" / chapter / "README.md"), re.MULTILINE)
+            solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "docs/solutions" / f"{chapter}.md"), re.MULTILINE)
+            self.assertEqual(solutions, exercises[1:], chapter)
 
     def test_results_are_what_the_records_say(self):
         subprocess.run([sys.executable, "-B", TOOLS, "tables", "--check"], check=True)
