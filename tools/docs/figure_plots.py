@@ -9,7 +9,7 @@ from lesson import sample
 from lesson.sample_plots import save_point_sets, scatter
 from matplotlib import image, pyplot
 from project import BINARIES, ROOT, UserError, run_program
-from report.plots import COLOURS, MARKERS, encode_srgb, style_axis
+from report.plots import COLOURS, DIFFERENCE_FACTOR, MARKERS, difference_colours, encode_srgb, relative_difference, style_axis
 
 DPI = 100
 GAP, LABEL = 4, 22  # pixels between tiles, height of a label
@@ -36,6 +36,15 @@ def sheet(path, rows):
             axis.axis("off")
             figure.text(*(corner + [0, height + 6]) / size, label, fontsize=9)
     save(figure, path)
+
+
+def right_and_wrong(path, right, wrong):
+    """Two images of a scene beside each other, and where the wrong one is too bright (red) or too dark (blue). Colours are full
+    where a report's are, or where only one pixel in ten differs more."""
+    difference = relative_difference(wrong, right)
+    full = max(1 / DIFFERENCE_FACTOR, np.quantile(np.abs(difference), 0.9))
+    sheet(path, [[("right", encode_srgb(right)), ("wrong", encode_srgb(wrong)),
+                  ("red: too bright, blue: too dark", difference_colours(difference, full))]])
 
 
 def plot(path, size, draw, **labels):
