@@ -52,17 +52,18 @@ class BugTest(ProgramTest):
         for chapter in CHAPTERS:
             checked = {planted["name"] for number, planted, _ in mistakes.catalogue() if number == chapter}
             for found in mistakes.bugs_of(chapter):
-                out = bug.caught_by(found)
-                named = re.match(r"\w+\.(?:\w+/)?(\w+)\.(\w+)", out)
-                if named:
-                    self.assertIn(named.groups(), known, out)
+                test, command = bug.caught_by(found)
+                if test:
+                    self.assertIn(re.fullmatch(r"\w+\.(?:\w+/)?(\w+)\.(\w+)(?:/\w+)?", test).groups(), known)
+                    self.assertEqual(command, f"./lab test -R mistakes.{found.mistake['name']}")
                 else:
-                    self.assertEqual(out, f"./lab check {chapter}")
+                    self.assertEqual(command, f"./lab check {chapter}")
                     self.assertIn(found.mistake["name"], checked)
 
     def test_the_answer_shows_the_lines(self):
         out = self.bug(3, index_of(3, "distance-not-squared"), "--answer")
         self.assertIn("1/r", out)
+        self.assertIn("\ncaught by convergence.", out)
         self.assertRegex(out, r"\n- .*\(distance \* distance\);\n\+ .*distance;\n")
 
     def test_a_render_shows_right_wrong_and_difference(self):

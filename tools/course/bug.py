@@ -14,13 +14,12 @@ from pathlib import Path
 
 import numpy as np
 from check.command import percent
-from check.grading import OPTIONS, SCENES, TOO_MUCH, make_tree, reference_regions
-from check.likely_mistake import SIGNATURES
+from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, make_tree
 from course.mistakes import CATALOGUE, bugs_of, own_shader
 from docs.figure_plots import right_and_wrong
 from lesson import diff
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, read_json, show_progress
-from references.images import find_references, read_rgb
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, show_progress
+from references.images import averaged, find_references, read_rgb
 from report.measurement import new_case, run_case
 from report.numbers import biases
 
@@ -42,34 +41,22 @@ def parse():
 
 @contextmanager
 def program_with(chapter, text):
-    """The program of a chapter in a temporary copy of what it reads, with this text as its shader."""
+    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as its shader."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "path_trace.glsl"
         file.write_text(text, encoding="utf-8")
-        yield make_tree(CHAPTERS[chapter], file, Path(folder) / "tree")[0]
+        yield make_tree(chapter, file, Path(folder) / "tree")[0]
 
 
-def telling_scene(bug):
-    """The name of the reference in which the bug shows most, by what ./lab check knows of it."""
-    scenes = SCENES[bug.chapter][1]
-    known = read_json(SIGNATURES)[str(bug.chapter)].get(bug.mistake["name"])
-    if not known:
-        return scenes[-1]
-    ends = np.cumsum([len(reference_regions(file)["mean"]) for _, file in find_references(scenes)])
-    parts = np.split(np.abs(known["signature"]["differences"]), ends[:-1])
-    shown = [part.mean() + abs(np.log(noise)) / 10 for part, noise in zip(parts, known["signature"]["noise"])]
-    return scenes[int(np.argmax(shown))]
-
-
-def new_render(bug, options, program):
-    """What is to be rendered: in the size of the reference, and its path length."""
-    (pair,) = find_references([options.scene or telling_scene(bug)])
-    return new_case(*pair, f"chapter {bug.chapter}", program, OPTIONS[bug.chapter])
+def new_render(chapter, scene, program):
+    """What is to be rendered: SCALE times as large as the reference, with its path length."""
+    (pair,) = find_references([scene])
+    case = new_case(*pair, f"chapter {chapter}", program, OPTIONS[chapter])
+    return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE}
 
 
 def render(case, samples, options):
-    """Adds a run to a case, SCALE times as large as the reference; returns the image."""
-    case |= {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE}
+    """Adds a run to a case; returns the image."""
     with tempfile.TemporaryDirectory() as folder:
         picture = Path(folder) / "picture.exr"
         report = run_case(case, vars(options), ["--samples", samples, "--seed", 1, "--output", picture])
@@ -77,11 +64,20 @@ def render(case, samples, options):
         return read_rgb(picture)
 
 
+def telling_scene(chapter, programs, options):
+    """Of the scenes of ./lab check the one whose picture the bug changes most: of each tile, with a single sample a pixel."""
+    def change(scene):
+        right, wrong = (averaged(render(new_render(chapter, scene, program), 1, options), SCALE * TILE) for program in programs)
+        return np.abs(wrong - right).mean() / right.mean()
+
+    return max(SCENES[chapter][1], key=change)
+
+
 def verdict(right, wrong):
     """What shows of two cases with so many samples, in a line."""
     tests = biases(wrong["runs"], wrong["reference"], len(COLOURS))
     last, own = (case["runs"][0]["rows"][-1] for case in (wrong, right))
-    means = ", ".join(f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.1g} %" for colour, test in zip(COLOURS, tests))
+    means = ", ".join(f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.2g} %" for colour, test in zip(COLOURS, tests))
     if wrong["invalid_samples"]:
         return f"broken: {wrong['invalid_samples']} samples infinite or not a number"
     if any(test["is_biased"] for test in tests):
@@ -92,40 +88,36 @@ def verdict(right, wrong):
     return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would"
 
 
-def show(bug, index, options):
-    """Renders the right shader and the wrong one, and says what is to be seen."""
+def show(bug, index, scene, programs, options):
+    """Renders with the right shader and with the wrong one, and says what is to be seen."""
     samples, started = options.samples or 2 * SCENES[bug.chapter][0], time.monotonic()
-    texts = {"right": own_shader(bug.chapter).read_text(encoding="utf-8"), "wrong": bug.text}
-    cases, images = {}, {}
-    for done, (name, text) in enumerate(texts.items(), 1):
-        with program_with(bug.chapter, text) as program:
-            cases[name] = new_render(bug, options, program)
-            images[name] = render(cases[name], samples, options)
-        show_progress(f"{name} picture of {cases[name]['scene']}", done, len(texts), started)
+    cases = [new_render(bug.chapter, scene, program) for program in programs]
+    images = []
+    for case in cases:
+        images.append(render(case, samples, options))
+        show_progress(f"{('right', 'wrong')[len(images) - 1]} picture of {case['scene']}", len(images), len(cases), started)
     path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
     path.parent.mkdir(exist_ok=True)
-    right_and_wrong(path, **images)
-    print(f"{'scene':10} {cases['wrong']['scene']}, {samples} samples a pixel\n"
-          f"{'verdict':10} {verdict(**cases)}\n{'question':10} {bug.question}\n{'picture':10} {path.relative_to(ROOT)}")
+    right_and_wrong(path, *images)
+    for name, text in (("scene", f"{cases[0]['scene']}, {samples} samples a pixel"), ("verdict", verdict(*cases)),
+                       ("question", bug.question), ("picture", path.relative_to(ROOT))):
+        print(f"{name:10} {text}")
 
 
-def open_window(bug, options):
+def open_window(bug, scene, program, options):
     """The chapter with the bug, until its window is closed."""
-    with program_with(bug.chapter, bug.text) as program:
-        case = new_render(bug, options, program)
-        command = [program, ROOT / case["scene_file"], "--window", "--max-path-length", case["max_path_length"], *OPTIONS[bug.chapter],
-                   "--backend", options.backend, *(["--device", options.device] if options.device else [])]
-        result = subprocess.run(list(map(str, command)), cwd=Path(program).parent)
+    case = new_render(bug.chapter, scene, program)
+    command = [program, ROOT / case["scene_file"], "--window", "--max-path-length", case["max_path_length"], *OPTIONS[bug.chapter],
+               "--backend", options.backend, *(["--device", options.device] if options.device else [])]
+    result = subprocess.run(list(map(str, command)), cwd=Path(program).parent)
     if result.returncode != 0:
         raise UserError(f"the window of chapter {bug.chapter} ended with exit code {result.returncode}")
 
 
 def caught_by(bug):
-    """What finds the bug, as text: a test that has been seen to fail because of it, or the check."""
-    name, test = bug.mistake["name"], bug.mistake.get("test")
-    if test:
-        return f"{test}: ./lab test -R mistakes.{name} plants it and expects that test to fail"
-    return f"./lab check {bug.chapter}"
+    """The test that has been seen to fail because of the bug, or None, and a command that finds it."""
+    test = bug.mistake.get("test")
+    return test, f"./lab test -R mistakes.{bug.mistake['name']}" if test else f"./lab check {bug.chapter}"
 
 
 def changes(bug):
@@ -137,7 +129,8 @@ def changes(bug):
 def answer(bug):
     print(f"{bug.mistake['name']}: {bug.mistake['explanation']}\n")
     diff.show([f"chapter {bug.chapter}", "with the bug"], changes(bug))
-    print(f"\ncaught by {caught_by(bug)}")
+    test, command = caught_by(bug)
+    print(f"\ncaught by {f'{test}: ' if test else ''}{command}")
 
 
 def main():
@@ -157,7 +150,11 @@ def main():
     bug = bugs[options.bug - 1]
     if options.answer:
         answer(bug)
-    elif options.window:
-        open_window(bug, options)
-    else:
-        show(bug, options.bug, options)
+        return
+    own = own_shader(bug.chapter).read_text(encoding="utf-8")
+    with program_with(CHAPTERS[bug.chapter], own) as right, program_with(CHAPTERS[bug.chapter], bug.text) as wrong:
+        scene = options.scene or telling_scene(bug.chapter, (right, wrong), options)
+        if options.window:
+            open_window(bug, scene, wrong, options)
+        else:
+            show(bug, options.bug, scene, (right, wrong), options)

@@ -125,6 +125,12 @@ def idle_lanes(folder, images, reports):
     sheet(folder / "idle_lanes.jpg", rows_by_scene(images, lambda _, parts: (f"idle {parts.mean():.0%} of the time", parts)))
 
 
+def bugs(folder, images, reports):
+    """A strip for each bug: bugs_NAME.jpg."""
+    for name in dict.fromkeys(render.rpartition("_")[0] for render in images):
+        right_and_wrong(folder / f"bugs_{name}.jpg", images[f"{name}_right"], images[f"{name}_wrong"])
+
+
 def convergence(folder, images, reports):
     """Error against samples and against seconds; means of all runs of a chapter."""
     figure, axes = pyplot.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
