@@ -10,8 +10,7 @@ import learn
 from check.grading import MOST_RUNS, SEED_STEP
 from check.likely_mistake import SIGNATURES, Signature, rank, read_signatures
 from docs.confusion_table import rates
-from course.mistakes import catalogue
-from planting import trials
+from planting import catalogue, trials
 
 KNOWN = json.loads(SIGNATURES.read_text(encoding="utf-8"))
 CHAPTER_3 = read_signatures(KNOWN["3"])

@@ -21,8 +21,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
 from check.likely_mistake import SIGNATURES, rank, read_signatures, signature  # noqa: E402
-from course.mistakes import catalogue, own_shader  # noqa: E402
-from planting import OTHER_SCENES, trials  # noqa: E402
+from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
 from project import (RECORDS, Parser, UserError, add_device_options, commit, number, read_json, show_progress,  # noqa: E402
                      write_json)
 

@@ -1,6 +1,6 @@
 """Shaders with mistakes planted in them: those that ./lab check is to know, and those that it is tried with."""
-from course.mistakes import catalogue, plant
-from project import ROOT, read_json
+from course.mistakes import catalogue, own_shader, plant  # noqa: F401  (tests take them from here)
+from project import CHAPTERS, ROOT, read_json  # noqa: F401
 
 VARIANTS = ROOT / "tests/variants"
 # Scenes that had no part in choosing the numbers in likely_mistake.py, for chapters that begin something: references.

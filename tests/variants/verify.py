@@ -11,7 +11,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path += [str(HERE.parents[1] / "tools"), str(HERE.parent / "mistakes")]
 from check.grading import make_tree  # noqa: E402  (found by the line above)
-from course.mistakes import own_shader  # noqa: E402
+from planting import own_shader  # noqa: E402
 from project import CHAPTERS, Parser, number, read_json, run_program, show_progress  # noqa: E402
 from references.images import read_rgb  # noqa: E402
 
