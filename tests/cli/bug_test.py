@@ -84,6 +84,19 @@ class BugTest(ProgramTest):
         out = self.bug(4, index_of(4, "identical-branches"), "--samples", 4, "--scene", "check_room_2", "--backend", "compute")
         self.assertRegex(out, r"verdict +noisy: \d[\d.]* times")
 
+    def test_a_scene_without_reference_is_compared_with_the_right_picture(self):
+        verdicts = {}
+        for name in ("missing-cosine", "sine-forgotten", "same-number-twice"):
+            out = self.bug(1, index_of(1, name), "--samples", 8, "--scene", "furnace", "--backend", "compute")
+            word, red = re.search(r"verdict +(\w+).* red ([+-][\d.]+).* against the right picture", out).groups()
+            verdicts[name] = word, float(red)
+        # In a furnace either of the first two doubles what each bounce brings, and the directions do not matter.
+        (cosine, too_much), (sine, as_much), (directions, little) = verdicts.values()
+        self.assertEqual((cosine, sine, directions), ("biased", "biased", "nothing"))
+        self.assertGreater(too_much, 100)
+        self.assertAlmostEqual(as_much / too_much, 1, delta=0.1)
+        self.assertLess(abs(little), 5)
+
     def test_the_window_has_the_broken_shader(self):
         chapter = CHAPTERS[3]
         program = self.write(f"binaries/{chapter}", NOTING.format(folder=self.folder, chapter=chapter))

@@ -4,8 +4,10 @@
     ./lab bug 3 2           renders the second one beside the right picture, with the same random numbers: output/bug_3_2.png
     ./lab bug 3 2 --answer  tells what is wrong, in which line, and what catches it
 
-The picture shows right, wrong and their difference: red is too bright, blue too dark. The verdict is that of the reference image.
+The picture shows right, wrong and their difference: red is too bright, blue too dark. The verdict compares its mean with the
+reference image, or with the right picture where the scene has none.
 """
+import math
 import subprocess
 import tempfile
 import time
@@ -19,9 +21,9 @@ from course.mistakes import CATALOGUE, bugs_of, own_shader
 from docs.figure_plots import right_and_wrong
 from lesson import diff
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, show_progress
-from references.images import averaged, find_references, read_rgb
+from references.images import averaged, find_references, read_rgb, scene_file
 from report.measurement import new_case, run_case
-from report.numbers import biases
+from report.numbers import batches, biases
 
 SCALE = 2  # pixels in a row for each of the reference's
 COLOURS = ("red", "green", "blue")
@@ -33,7 +35,7 @@ def parse():
     parser.add_argument("bug", type=number(int, 1), nargs="?", metavar="I", help="number of the bug; default: list them")
     parser.add_argument("--answer", action="store_true", help="tell what is wrong")
     parser.add_argument("--window", action="store_true", help="open the chapter with the bug in its window")
-    parser.add_argument("--scene", help="one that has a reference; default: of those of ./lab check, where the bug shows most")
+    parser.add_argument("--scene", help="name or file; default: of the scenes of ./lab check, where the bug shows most")
     parser.add_argument("--samples", type=number(int, 4), help="a pixel; default: twice those of a run of ./lab check")
     add_device_options(parser)
     return parser.parse_intermixed_args()
@@ -48,11 +50,21 @@ def program_with(chapter, text):
         yield make_tree(chapter, file, Path(folder) / "tree")[0]
 
 
+def find_scene(word):
+    """A scene's file and its reference, or None where there is none."""
+    try:
+        return find_references([word])[0]
+    except UserError:
+        if not scene_file(word).is_file():
+            raise
+        return scene_file(word), None
+
+
 def new_render(chapter, scene, program):
-    """What is to be rendered: SCALE times as large as the reference, with its path length."""
-    (pair,) = find_references([scene])
-    case = new_case(*pair, f"chapter {chapter}", program, OPTIONS[chapter])
-    return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE}
+    """What is to be rendered: with the path length of the reference, and SCALE times as large."""
+    file, reference = find_scene(scene)
+    case = new_case(file, reference, f"chapter {chapter}", program, OPTIONS[chapter])
+    return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE if reference else 1}
 
 
 def render(case, samples, options):
@@ -73,17 +85,25 @@ def telling_scene(chapter, programs, options):
     return max(SCENES[chapter][1], key=change)
 
 
+def as_reference(case):
+    """The mean of a render for scenes that have no reference, as biases() wants it."""
+    counts, means = batches(case["runs"])
+    mean, freedom = counts @ means / counts.sum(), len(counts) - 1
+    return {"mean": mean, "variance": counts @ (means - mean) ** 2 / freedom / counts.sum(), "freedom": freedom}
+
+
 def verdict(right, wrong):
     """What shows of two cases with so many samples, in a line."""
-    tests = biases(wrong["runs"], wrong["reference"], len(COLOURS))
-    last, own = (case["runs"][0]["rows"][-1] for case in (wrong, right))
-    means = ", ".join(f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.2g} %" for colour, test in zip(COLOURS, tests))
     if wrong["invalid_samples"]:
         return f"broken: {wrong['invalid_samples']} samples infinite or not a number"
+    tests = biases(wrong["runs"], wrong["reference"] or as_reference(right), len(COLOURS))
+    means = ", ".join(f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.2g} %" for colour, test in zip(COLOURS, tests))
+    means += "" if wrong["reference"] else " against the right picture, since the scene has no reference"
     if any(test["is_biased"] for test in tests):
         return f"biased: {means}"
+    last, own = (case["runs"][0]["rows"][-1] for case in (wrong, right))
     for key, text in (("rel_mse", "noisy: {:.1f} times the error of the right picture"), ("rays", "expensive: {:.1f} times its rays")):
-        if last[key] > TOO_MUCH * own[key]:
+        if (last[key] or 0) > TOO_MUCH * (own[key] or math.inf):  # a picture without noise has none to compare with
             return f"{text.format(last[key] / own[key])}, the mean agrees: {means}"
     return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would"
 
@@ -107,8 +127,9 @@ def show(bug, index, scene, programs, options):
 def open_window(bug, scene, program, options):
     """The chapter with the bug, until its window is closed."""
     case = new_render(bug.chapter, scene, program)
-    command = [program, ROOT / case["scene_file"], "--window", "--max-path-length", case["max_path_length"], *OPTIONS[bug.chapter],
-               "--backend", options.backend, *(["--device", options.device] if options.device else [])]
+    length = ["--max-path-length", case["max_path_length"]] if case["reference"] else []
+    command = [program, ROOT / case["scene_file"], "--window", *length, *OPTIONS[bug.chapter], "--backend", options.backend,
+               *(["--device", options.device] if options.device else [])]
     result = subprocess.run(list(map(str, command)), cwd=Path(program).parent)
     if result.returncode != 0:
         raise UserError(f"the window of chapter {bug.chapter} ended with exit code {result.returncode}")
