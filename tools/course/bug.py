@@ -36,7 +36,7 @@ def parse():
     parser.add_argument("--answer", action="store_true", help="tell what is wrong")
     parser.add_argument("--window", action="store_true", help="open the chapter with the bug in its window")
     parser.add_argument("--scene", help="name or file; default: of the scenes of ./lab check, where the bug shows most")
-    parser.add_argument("--samples", type=number(int, 4), help="a pixel; default: twice those of a run of ./lab check")
+    parser.add_argument("--samples", type=number(int, 4), help="per pixel; default: twice those of a run of ./lab check")
     add_device_options(parser)
     return parser.parse_intermixed_args()
 
@@ -77,7 +77,7 @@ def render(case, samples, options):
 
 
 def telling_scene(chapter, programs, options):
-    """Of the scenes of ./lab check the one whose picture the bug changes most: of each tile, with a single sample a pixel."""
+    """Of the scenes of ./lab check the one whose picture the bug changes most: of each tile, with a single sample per pixel."""
     def change(scene):
         right, wrong = (averaged(render(new_render(chapter, scene, program), 1, options), SCALE * TILE) for program in programs)
         return np.abs(wrong - right).mean() / right.mean()
@@ -105,7 +105,7 @@ def verdict(right, wrong):
     for key, text in (("rel_mse", "noisy: {:.1f} times the error of the right picture"), ("rays", "expensive: {:.1f} times its rays")):
         if (last[key] or 0) > TOO_MUCH * (own[key] or math.inf):  # a picture without noise has none to compare with
             return f"{text.format(last[key] / own[key])}, the mean agrees: {means}"
-    return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would"
+    return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would show"
 
 
 def show(bug, index, scene, programs, options):
@@ -119,7 +119,7 @@ def show(bug, index, scene, programs, options):
     path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
     path.parent.mkdir(exist_ok=True)
     right_and_wrong(path, *images)
-    for name, text in (("scene", f"{cases[0]['scene']}, {samples} samples a pixel"), ("verdict", verdict(*cases)),
+    for name, text in (("scene", f"{cases[0]['scene']}, {samples} samples per pixel"), ("verdict", verdict(*cases)),
                        ("question", bug.question), ("picture", path.relative_to(ROOT))):
         print(f"{name:10} {text}")
 
