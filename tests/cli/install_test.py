@@ -19,7 +19,7 @@ class InstallTest(unittest.TestCase):
         """All lists at the top of lab but that of ./lab fuzz."""
         lists = dict(re.findall(r"^packages_to_(\w+)='\n(.*?)'$", LAB, re.MULTILINE | re.DOTALL))
         del lists["fuzz"]
-        self.assertEqual(set(lists), {"run", "script", "test", "report"})
+        self.assertEqual(set(lists), {"run", "script", "test", "report", "book"})
         names = [name for text in lists.values() for line in text.splitlines() for name in line.split("|")[0].split()]
         self.assertEqual(lab("install", "--list").stdout.split(), names)
 

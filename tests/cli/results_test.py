@@ -1,9 +1,13 @@
-"""The tables of docs/results.md that compare with peers, from records whose truth is known."""
+"""What the pages get from records and sources: tables that compare with peers, whose truth is known, and blocks of code."""
 
+import tempfile
 import unittest
+from pathlib import Path
+from unittest import mock
 
 import tools_path  # noqa: F401  (first: it finds the others)
-from docs import best_table, peer_table
+from docs import best_table, code_blocks, peer_table
+from project import UserError
 
 SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}
 
@@ -73,6 +77,37 @@ class BestTableTest(unittest.TestCase):
                  self.chapter("strategy both", 0.1), self.chapter("chapter 5", 1.0, "heart_4")]
         self.assertEqual(list(best_table.among_chapters({"cases": cases})),
                          [(("box", 128, 128), ["chapter 3", "16 (16 – 16)"]), (("heart", 128, 128), ["chapter 5", "1"])])
+
+
+class CodeBlockTest(unittest.TestCase):
+    SOURCE = "void f() {\n    for (;;) {\n        a = 1;\n\n        b = 2;\n    }\n}\nfloat b = 2;\n"
+
+    def page(self, phrases, block="old\n"):
+        return f"text\n<!-- code: a.glsl | {phrases} -->\n```glsl\n{block}```\n<!-- end of code -->\nmore\n"
+
+    def filled(self, page):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(code_blocks, "ROOT", Path(folder)):
+            (Path(folder) / "a.glsl").write_text(self.SOURCE)
+            return code_blocks.fill(page, "page.md")
+
+    def test_whole_lines_without_the_first_ones_indentation(self):
+        expected = self.page("for (;;) | b = 2", "for (;;) {\n    a = 1;\n\n    b = 2;\n")
+        self.assertEqual(self.filled(self.page("for (;;) | b = 2")), expected)
+        self.assertEqual(self.filled(expected), expected)
+        self.assertEqual(self.filled(self.page("a = 1 | a = 1")), self.page("a = 1 | a = 1", "a = 1;\n"))
+
+    def test_blocks_are_filled_one_by_one(self):
+        self.assertEqual(self.filled(2 * self.page("a = 1 | 1;")), 2 * self.page("a = 1 | 1;", "a = 1;\n"))
+
+    def test_what_is_not_there_is_named(self):
+        for page, words in ((self.page("b = 2 | }"), "page.md: code of a.glsl: 'b = 2' is in 2 lines"),
+                            (self.page("c = 3 | }"), "'c = 3' is in 0 lines"),
+                            (self.page("float b | a = 1"), "'a = 1' is in no line from 'float b' on"),
+                            (self.page("a = 1 | }").replace("a.glsl", "b.glsl"), "code of b.glsl: there is no such file"),
+                            (self.page("a = 1"), "must be followed by"),
+                            (self.page("a = 1 | }").replace("<!-- end", "<!--"), "must be followed by")):
+            with self.assertRaisesRegex(UserError, words.replace("(", r"\(")):
+                self.filled(page)
 
 
 if __name__ == "__main__":

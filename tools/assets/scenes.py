@@ -323,3 +323,18 @@ def studio():
                  mesh("lacquer_torus", scale=0.34, rotation=turn([1, 0, 0.2], 70), translation=[0.55, 0.46, 0.3])],
                 camera([0, 1.15, 4], [0.02, 0.42, 0], 32), specular=True,
                 background={"light_probe": "../light_probes/softboxes.hdr"})
+
+
+def still_life():
+    """The picture at the head of the README: everything that the chapters know at once."""
+    write_scene("still_life", "Glass, gold, lacquer, pumpkins and a glowing heart on a wooden floor under a mild sun",
+                [mesh("wooden_floor"), mesh("heart", scale=0.5, translation=[0.25, 0.56, -0.75]),
+                 mesh("teal_ball", scale=0.42, translation=[0.62, 0.43, 0.75]),
+                 mesh("clear_torus", scale=0.42, rotation=turn([1, -0.25, -0.3], 62), translation=[-0.35, 0.6, 0.45]),
+                 mesh("gold_ball", scale=0.36, translation=[-1.2, 0.35, 0.8]),
+                 mesh("lacquer_torus", scale=0.3, rotation=turn([1, 0, 0.2], 8), translation=[-0.2, 0.12, 1.35]),
+                 mesh("orange_pumpkin", scale=0.72, rotation=turn([0.05, 1, 0], 200), translation=[-1.7, 0.47, -0.6]),
+                 mesh("orange_pumpkin", scale=0.45, rotation=turn([0.05, 1, 0], 70), translation=[1.42, 0.3, 0.85]),
+                 mesh("green_pumpkin", scale=0.62, rotation=turn([0, 1, 0], 40), translation=[1.65, 0.34, -0.55])],
+                camera([0.1, 1.25, 5.2], [0, 0.54, 0], 27), specular=True,
+                background={"light_probe": "../light_probes/sky.hdr", "intensity": 1.6}, width=800, height=450)

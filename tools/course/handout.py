@@ -11,6 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from docs import code_blocks
 from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_program, show_progress
 
 HERE = Path(__file__).parent
@@ -18,7 +19,8 @@ EXERCISES = read_json(HERE / "exercises.json")
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it names solutions or makes what belongs to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/bugs.md", "docs/numerics.md", "docs/slides.md", "docs/records/check", "tools/course", "tools/docs"]
+TEACHERS = ["docs/teaching.md", "docs/bugs.md", "docs/numerics.md", "docs/slides.md", "docs/measuring.md", "docs/records/check",
+            "tools/course", "tools/docs"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -84,9 +86,14 @@ def write_handout(chapter, folder):
 
 
 def hide(solution, folder):
-    """Takes quotations of the solution out of the pages."""
+    """Takes quotations of the solution out of the pages, and blocks that share a line with it."""
+    lines = {line.strip() for line in solution.splitlines() if re.search(r"\w", line)}
+
+    def shown(block):
+        return block[0] if lines.isdisjoint(line.strip() for line in block[5].splitlines()) else "```glsl\n// TODO\n```"
+
     for page in folder.rglob("*.md"):
-        text = page.read_text(encoding="utf-8")
+        text = code_blocks.BLOCK.sub(shown, page.read_text(encoding="utf-8"))
         page.write_text(re.sub(r"\[`([^`]+)`\](?=\([^)]*\.glsl\))", lambda quote: "[TODO]" if quote[1] in solution and
                                not re.fullmatch(r"\w+(\(\))?", quote[1]) else quote[0], text), encoding="utf-8")
 

@@ -6,9 +6,10 @@ from report.numbers import errors, paired_ratio, with_interval
 HEADER = """
 ## The best chapter of each scene
 
-The chapter that reaches the same error in the least time, how many times faster that is than with the first chapter that was
-measured there, in device time. Against Mitsuba, with its best variant and sampler, the time is that of the clock. The sections
-[Chapters](#chapters) and [Against Mitsuba](#against-mitsuba) say how it was measured.
+Which chapter reaches the same error in the least time? The table names it for each scene. It also says how many times faster
+this chapter is than the first chapter that we measured there, in device time. The last columns compare the best chapter with
+Mitsuba, which uses its best variant and sampler there. That comparison takes the time of the clock. The sections
+[Chapters](#chapters) and [Against Mitsuba](#against-mitsuba) say how we measured.
 
 """
 

@@ -4,11 +4,16 @@ from project import table
 HEADER = """
 ## What ./lab check finds
 
-Mistakes were planted into correct shaders ([mistakes.json](../tests/mistakes/mistakes.json)), and the check had to find and to
-name them (`tests/mistakes/learn.py confusion`; each single answer is in [confusion.json](records/check/confusion.json)): into
-the chapters' own shaders, with other random numbers than it had learnt from and on scenes that it does not use, and into shaders
-that are correct but written in another way ([tests/variants](../tests/variants)). A correct shader is found where it is called
-anything but correct.
+We planted mistakes ([mistakes.json](../tests/mistakes/mistakes.json)) into correct shaders. The check had to find the mistakes and
+to name them. `tests/mistakes/learn.py confusion` makes this test, and [confusion.json](records/check/confusion.json) has each
+single answer. There are three kinds of trials:
+
+- The chapters' own shaders, with other random numbers than the check has learnt from.
+- The same shaders on scenes that the check does not use.
+- Shaders that are correct but written in another way ([tests/variants](../tests/variants)).
+
+A mistake counts as found where the check says anything but correct. In a row of correct shaders, a number above 0 under
+"found" would be a false alarm.
 """
 
 CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "other scenes": "the same on other scenes",

@@ -7,20 +7,27 @@ from project import table
 FEATURES = """
 ## Features
 
-What a scene has not got is neither compiled nor allocated. Here each feature stands alone in a scene of 39,612 diffuse
-triangles without any light, rendered by chapter 6, which knows all of them. The texture is white, and only one triangle is a
-dielectric: so paths stay as they are, and what is measured is the code and the memory accesses. Instructions are those of
-the SPIR-V after SPIRV-Tools' optimiser; time is that of a path relative to the scene without features, the median of five runs
-in turns, in brackets the least and the most.
+A feature that a scene does not have is neither compiled nor allocated. What does each feature cost where it is needed? To find
+out, we add one feature at a time to the same scene. The scene has 39,612 diffuse triangles and no light. Chapter 6 renders it,
+because it knows all features.
+
+The features must not change the paths. So the texture is white, and only one triangle is a dielectric. What remains is the cost of
+the code and of the memory accesses.
+
+Instructions are those of the SPIR-V after SPIRV-Tools' optimiser. The time per path is relative to the scene without features. It
+is the median of five runs that take turns, with the smallest and the largest one in brackets.
 """
 
 GROWTH = """
 ## Growth
 
-How the cost follows the size of the task. The time of a path is relative to the first row, the median of five runs in turns,
-in brackets the least and the most; memory is all that the scene, its acceleration structure and the film take on the device,
-without the bounded buffer of a small image's samples ([Threads and pixels](backends.md#threads-and-pixels)). The exponent is
-the slope in log-log axes, by least squares over all rows.
+How does the cost grow with the size of the task? The time per path is relative to the first row. It is the median of five runs
+that take turns, with the smallest and the largest one in brackets. Memory is all that the scene, its acceleration structure and
+the film take on the device. The buffer for the samples of small images is left out, because its size is bounded
+([Threads and pixels](backends.md#threads-and-pixels)).
+
+The exponent is the slope in a plot with logarithmic axes, by least squares over all rows. An exponent of 1 means that
+twice the size costs twice as much. An exponent of 0 means that the size does not matter.
 """
 
 UNITS = ["bytes", "KiB", "MiB", "GiB"]
@@ -60,7 +67,7 @@ def feature_table(record):
     measured = record["features"]
     head = ["", "buffers"]
     for backend in measured:
-        head += [f"`{backend['backend']}`: instructions", "time of a path"]
+        head += [f"`{backend['backend']}`: instructions", "time per path"]
     rows = []
     for i, row in enumerate(measured[0]["rows"]):
         bare = measured[0]["rows"][0]["bytes"] if i else {}
@@ -100,12 +107,12 @@ def growth_table(measured):
     first = measured[0]
     grows = memory_of(first["rows"][0]) != memory_of(first["rows"][-1])
     builds = first["rows"][0]["structure_bytes"] != first["rows"][-1]["structure_bytes"]
-    head = [first["quantity"], "rays of a path"]
+    head = [first["quantity"], "rays per path"]
     rows = [[f"{row['count']:,}", f"{row['rays_per_path']:.3g}"] for row in first["rows"]]
     slopes = ["exponent", exponent(first["rows"], lambda row: row["rays_per_path"])]
     for backend in measured:
         base = backend["rows"][0]
-        columns = [("time of a path", lambda row: 1 / median(row["paths_per_second"]), lambda row: time_text(row, base))]
+        columns = [("time per path", lambda row: 1 / median(row["paths_per_second"]), lambda row: time_text(row, base))]
         if grows:
             columns.append(("memory", memory_of, lambda row: bytes_text(memory_of(row))))
         if builds:
@@ -135,5 +142,5 @@ def build_rate(record):
         if growth["quantity"] == "triangles" and growth["backend"] == "compute":
             row = growth["rows"][-1]
             return (f"\n`compute` builds its tree on the CPU: {row['count'] / row['structure_seconds'] / 1e6:.3g} million triangles "
-                    f"a second with {record['cpu_threads']} threads.\n")
+                    f"per second with {record['cpu_threads']} threads.\n")
     return ""

@@ -7,8 +7,9 @@ matplotlib.use("agg")
 import numpy as np
 from lesson import sample
 from lesson.sample_plots import save_point_sets, scatter
-from matplotlib import image, pyplot
-from project import BINARIES, ROOT, UserError, run_program
+from matplotlib import font_manager, image, pyplot
+from PIL import Image, ImageDraw, ImageFont
+from project import BINARIES, CHAPTERS, ROOT, UserError, run_program
 from report.plots import COLOURS, DIFFERENCE_FACTOR, MARKERS, difference_colours, encode_srgb, relative_difference, style_axis
 
 DPI = 100
@@ -64,6 +65,11 @@ def chapters(folder, images, reports):
                      pil_kwargs={"optimize": True})
 
 
+def thumbnails(folder, images, reports):
+    for name, radiance in images.items():
+        image.imsave(folder / f"thumbnail_{name}.jpg", encode_srgb(radiance), pil_kwargs=QUALITY)
+
+
 def path_lengths(folder, images, reports):
     """Light after at most, and after exactly, k bounces; exact ones are brightened as much as their label says."""
     exact, up_to = list(images.values()), []
@@ -104,6 +110,26 @@ def rows_by_scene(images, tile):
     return list(rows.values())
 
 
+def hero(folder, images, reports):
+    """The picture at the head of the README, a little darker for its glowing heart."""
+    image.imsave(folder / "hero.jpg", encode_srgb(0.66 * images["hero"]), pil_kwargs=QUALITY)
+
+
+def noise(folder, images, reports):
+    """A chapter after the other for the same time: an animation with a second and a half for each."""
+    frames = []
+    for name, radiance in images.items():
+        number = int(name.rsplit("_", 1)[1])
+        title = CHAPTERS[number][3:].replace("_", " ")
+        frame = Image.new("RGB", (2 * radiance.shape[1], 2 * radiance.shape[0] + 2 * LABEL), "white")
+        pixels = Image.fromarray((255 * encode_srgb(radiance)).round().astype(np.uint8))
+        frame.paste(pixels.resize((frame.width, frame.width), Image.NEAREST), (0, 2 * LABEL))
+        font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 22)
+        ImageDraw.Draw(frame).text((LABEL // 2, LABEL // 2), f"chapter {number}: {title}", "black", font)
+        frames.append(frame)
+    frames[0].save(folder / "noise.webp", save_all=True, append_images=frames[1:], duration=1500, loop=0, quality=80)
+
+
 def by_scene(path, images, reports):
     sheet(path, rows_by_scene(images, lambda name, radiance: (f"{reports[name]['rows'][-1]['samples']:,} samples", encode_srgb(radiance))))
 
@@ -141,7 +167,7 @@ def convergence(folder, images, reports):
         columns = {key: np.mean([[row[key] for row in run] for run in rows], axis=0) for key in ("samples", "seconds", "rel_mse")}
         for axis, key in zip(axes, ("samples", "seconds")):
             axis.plot(columns[key], np.sqrt(columns["rel_mse"]), marker + "-", color=colour, markersize=4, label=f"chapter {number}")
-    for axis, label in zip(axes, ("samples a pixel", "seconds")):
+    for axis, label in zip(axes, ("samples per pixel", "seconds")):
         style_axis(axis, xscale="log", yscale="log", xlabel=label)
     axes[0].set_ylabel("relative error (root of rel_mse)")
     axes[0].legend(frameon=False, fontsize=9)

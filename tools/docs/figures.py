@@ -23,6 +23,7 @@ PICTURES = ROOT / "docs/pictures"
 CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
 RAYS_PER_PIXEL = 400  # of the chapters' pictures
 SECONDS = 2  # of the renders that are compared at equal time
+HERO_SAMPLES = 16384  # of the picture at the head of the README
 
 
 @dataclass
@@ -69,6 +70,13 @@ def renders_of_chapters():
     """All but those whose strategies are compared in a figure of their own."""
     return [Render(name, name, description(name).get("default_scene", "cornell_box"), 320, (), RAYS_PER_PIXEL)
             for name in CHAPTERS.values() if not description(name).get("strategies")]
+
+
+def renders_of_thumbnails():
+    """Small pictures of all chapters, for the same number of rays."""
+    scenes = {"low_discrepancy_points": "textured", "path_regeneration": "still_life"}
+    return [Render(f"{number:02}", name, scenes.get(name[3:], description(name).get("default_scene", "cornell_box")), 120, (), RAYS_PER_PIXEL)
+            for number, name in CHAPTERS.items()]
 
 
 def renders_of_strategies():
@@ -125,16 +133,25 @@ def renders_of_effects():
             Render("reflection", light, "glossy", 256, ("--samples", 256, "--specular"))]
 
 
-def renders_at_equal_time():
+def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
     """As many samples as take the same time by the first record of docs/records/chapters, whatever else runs now."""
-    renders, size = [], 160
+    renders = []
     for case in load_records("chapters")[0]["cases"]:
-        if tables.kind_of(case) == "chapter" and case["scene"].startswith(("cornell_box", "heart_light")):
+        if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):
             seconds = mean_of(last_rows(case["runs"]), "device_seconds") / (case["samples"] * case["width"] * case["height"])
             scene = Path(case["scene_file"]).stem
             options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
             renders.append(Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options))
     return renders
+
+
+def renders_of_noise():
+    return renders_at_equal_time(("cornell_box",), 256)
+
+
+def renders_of_hero():
+    return [Render("hero", chapter_named("path_regeneration"), "still_life", 1600,
+                   ("--samples", HERO_SAMPLES, "--max-path-length", 16), height=900)]
 
 
 def renders_of_convergence():
@@ -152,9 +169,12 @@ def renders_of_bvh_steps():
     return [Render(f"steps_{scene}", CHAPTERS[1], scene, 256, ("--samples", 4, "--view", "bvh-steps")) for scene in ("torus", "instances")]
 
 
+ON_REQUEST = {"hero"}  # takes a GPU minutes and a CPU a day
+
 # Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
 FIGURES = {
     "chapters": (renders_of_chapters, figure_plots.chapters),
+    "thumbnails": (renders_of_thumbnails, figure_plots.thumbnails),
     "strategies": (renders_of_strategies, figure_plots.strategies),
     "light_probes": (renders_of_light_probes, figure_plots.light_probes),
     "low_discrepancy": (renders_of_low_discrepancy, figure_plots.low_discrepancy),
@@ -163,6 +183,8 @@ FIGURES = {
     "effects": (renders_of_effects, figure_plots.effects),
     "bugs": (renders_of_bugs, figure_plots.bugs),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
+    "hero": (renders_of_hero, figure_plots.hero),
+    "noise": (renders_of_noise, figure_plots.noise),
     "equal_time": (renders_at_equal_time, figure_plots.equal_time),
     "convergence": (renders_of_convergence, figure_plots.convergence),
     "sampler_points": (list, figure_plots.sampler_points),
@@ -176,7 +198,7 @@ FIGURES = {
 
 def parse():
     parser = Parser("./lab figures", __doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}, but not {', '.join(ON_REQUEST)}")
     parser.add_argument("--output", type=Path, default=PICTURES, metavar="FOLDER", help="default: docs/pictures")
     options = parser.parse_args()
     for name in options.names:
@@ -204,6 +226,6 @@ def make(names, output):
 
 def main():
     options = parse()
-    make(options.names or list(FIGURES), options.output)
+    make(options.names or [name for name in FIGURES if name not in ON_REQUEST], options.output)
     if not options.names:
         tables.write_pages()

@@ -86,7 +86,7 @@ def speed_table(scene):
         short(case["rays_per_device_second"] / 1e6) if case["rays"] else "–",
         short(case["seconds"]), short(case["device_seconds"]), ranged(case["slope_samples"]), ranged(case["slope_seconds"]),
         ranged(case.get("efficiency")), ranged(case.get("device_efficiency"))] for case in scene["cases"]]
-    head = ["", "samples", "error", "its root", "rays a sample", "Msamples/s", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
+    head = ["", "samples", "error", "its root", "rays per sample", "Msamples/s", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
             "slope against samples", "against seconds", "efficiency", "in device time"]
     return table(head, rows)
 

@@ -35,7 +35,7 @@ def plot_errors(scene, styles):
     """SVG: error against samples and against wall seconds, with 95 % bands."""
     pyplot.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "font.size": 13})
     figure, axes = pyplot.subplots(1, 2, figsize=(13, 5), sharey=True, layout="constrained")
-    for axis, key, label in zip(axes, ("samples", "seconds"), ("samples a pixel", "seconds")):
+    for axis, key, label in zip(axes, ("samples", "seconds"), ("samples per pixel", "seconds")):
         for case in scene["cases"]:
             points = [point for point in case["curve"] if point[key]]
             x, y = [point[key] for point in points], [point["error"] for point in points]

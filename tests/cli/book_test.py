@@ -1,0 +1,185 @@
+"""./lab book: a site that a browser opens from the disk without a complaint."""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from urllib.parse import unquote
+
+from tools_path import PROJECT, TOOLS  # first: it finds the others
+from book import readability
+from browser import CHROMIUM, Browser
+
+NARROW = 400  # pixels, as wide as a telephone
+# Of a page: the names that links may lead to, where its own links lead, pictures that are missing, formulas that are not typeset, and
+# what is wider than the screen and cannot be scrolled by itself.
+INSPECT = r"""(() => {
+    const text = document.querySelector("article").cloneNode(true);
+    const scrolls = element => element && (/auto|scroll/.test(getComputedStyle(element).overflowX) || scrolls(element.parentElement));
+    const isHidden = element => element.closest(".katex-mathml, .katex svg");  // what KaTeX cuts off
+    const isTooWide = element => element.getBoundingClientRect().right > document.documentElement.clientWidth &&
+        !scrolls(element) && !isHidden(element);
+    text.querySelectorAll("code, .katex").forEach(element => element.remove());
+    return {
+        names: [...document.querySelectorAll("[id]")].map(element => element.id),
+        links: [...document.querySelectorAll("a[href]")].map(link => link.href),
+        pictures: [...document.images].filter(image => !image.naturalWidth).map(image => image.src),
+        formulas: [...document.querySelectorAll(".katex-error")].map(error => error.title)
+            .concat(text.textContent.match(/\$[^\s$][^$\n]*\$|\$\$|\\[([]|\\[a-z]{2,}/g) ?? []),
+        wide: [...document.querySelectorAll("article *")].filter(isTooWide).map(element => element.outerHTML.slice(0, 80))
+    };
+})()"""
+SEARCH = r"""new Promise((found, failed) => {
+    document.querySelector("#__search").click();
+    const input = document.querySelector(".md-search__input"), results = document.querySelector(".md-search-result__list");
+    new MutationObserver(() => results.textContent && found(results.textContent)).observe(results, { childList: true });
+    setTimeout(() => failed(new Error("nothing found")), 20000);
+    input.focus();
+    input.value = "roulette";
+    for (const type of ["keyup", "input"]) input.dispatchEvent(new Event(type));
+})"""
+
+
+class Site:
+    """The site, built once for a class of tests."""
+
+    @classmethod
+    def setUpClass(cls):
+        if not shutil.which("mkdocs") or not Path("/usr/share/javascript/katex").exists():
+            raise unittest.SkipTest("needs MkDocs and KaTeX, which ./lab book installs")
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.site = Path(folder.name).resolve() / "book"
+        subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", cls.site], check=True, stdout=subprocess.DEVNULL)
+
+
+class BookTest(Site, unittest.TestCase):
+    def test_lists_and_code_are_those_of_the_pages(self):
+        pages = [PROJECT / "README.md", *PROJECT.glob("docs/*.md"), *PROJECT.glob("chapters/*/README.md")]
+        for page in pages:
+            text, name = page.read_text(encoding="utf-8"), str(page.relative_to(PROJECT))
+            site = self.site / re.sub(r"\.md$", ".html", name.replace("README", "index"))
+            article = re.search(r"<article.*</article>", site.read_text(encoding="utf-8"), re.DOTALL)[0]
+            fences = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
+            rest = fences.sub("", text)
+            self.assertEqual(article.count("<li>"), len(re.findall(r"^ {0,4}(?:\d+\.|[-*]) +\S", rest, re.MULTILINE)), name)
+            self.assertEqual(article.count("<pre"), len(fences.findall(text)) + len(re.findall(r"\n\n {4,}\S", rest)), name)
+
+    def test_other_folders_are_not_overwritten(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "thesis.txt"
+            file.touch()
+            result = subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", folder], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stderr, r"\Aerror: [^\n]* is no book: choose another folder\n\Z")
+            self.assertTrue(file.exists())
+
+    def test_solutions_are_for_teachers(self):
+        if not (PROJECT / "docs/solutions").exists():
+            self.skipTest("there are no solutions")
+        self.assertFalse((self.site / "docs/solutions").exists())
+
+
+@unittest.skipUnless(CHROMIUM, "needs Chromium: apt-get install chromium")
+class BookInBrowserTest(Site, unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser = cls.enterClassContext(Browser())
+        cls.browser.resize(NARROW)
+
+    def problems(self, page):
+        """What is wrong with a page, and where its links lead: {(file, name)}."""
+        self.browser.visit(page.as_uri())
+        seen = self.browser.evaluate(INSPECT)
+        found = self.browser.complaints() + [f"a formula is text: {formula}" for formula in seen["formulas"]]
+        found += [f"from elsewhere: {url}" for url in self.browser.loaded() if not re.match("file:|data:|about:|blob:", url)]
+        found += [f"no picture: {url}" for url in seen["pictures"]]
+        found += [f"too wide: {element}" for element in seen["wide"]]
+        self.names[page] = seen["names"]
+        links = {unquote(link).removeprefix("file://").partition("#")[::2] for link in seen["links"] if link.startswith("file:")}
+        return found, {(Path(file), name) for file, name in links}
+
+    def dead(self, links):
+        return [f"{file}#{name}" for file, name in links if not file.is_file() or
+                name and name not in (self.names.get(file) or re.findall(r'id="([^"]*)"', file.read_text(encoding="utf-8")))]
+
+    def setUp(self):
+        self.names = {}  # page: where its links may lead
+
+    def test_every_page(self):
+        pages = [page for page in self.site.rglob("*.html") if page.name == "index.html" or page.parent.name == "docs"]
+        sources = [page for page in self.site.rglob("*.glsl.html")]
+        self.assertGreater(len(pages), 15)
+        self.assertGreater(len(sources), 10)
+        links = set()
+        for page in [*pages, sources[0]]:
+            with self.subTest(page=str(page.relative_to(self.site))):
+                found, leads = self.problems(page)
+                self.assertEqual(found, [])
+                links |= leads
+        self.assertGreater(len(links), 100)
+        self.assertEqual(self.dead(links), [])
+
+    def test_search(self):
+        self.browser.visit((self.site / "docs/results.html").as_uri())
+        results = self.browser.evaluate(SEARCH)
+        self.assertIn("Russian roulette", results)
+        self.assertNotIn("// Chapter 5", results)  # of its shader
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_slider(self):
+        self.browser.visit((self.site / "chapters/02_cosine_sampling/index.html").as_uri())
+        cut = "getComputedStyle(document.querySelectorAll('.compare img')[1]).clipPath"
+        self.assertIn("50%", self.browser.evaluate(cut))
+        self.browser.evaluate("(input => { input.value = 30; input.dispatchEvent(new Event('input')); })(document.querySelector('.compare input'))")
+        self.assertIn("30%", self.browser.evaluate(cut))
+
+    def test_broken_pages_are_found(self):
+        text = (self.site / "index.html").read_text(encoding="utf-8")
+        page = self.site / "broken.html"
+        for broken, words in (('<a href="nowhere.html">', "nowhere.html"), ('<a href="docs/slides.html#nowhere">', "#nowhere"),
+                              ("$x^2$", "formula"), (r'<span class="arithmatex">\(\frac{\)</span>', "formula"),
+                              ('<img src="nothing.png">', "nothing.png"), ('<img src="http://example.org/a.png">', "from elsewhere"),
+                              ("<script>console.error('broken')</script>", "broken"), ("<script>nothing()</script>", "nothing"),
+                              ('<div style="width: 999px">', "too wide")):
+            page.write_text(text.replace("</article>", f"{broken}</article>"), encoding="utf-8")
+            found, links = self.problems(page)
+            self.assertIn(words, " ".join(found + self.dead(links)), broken)
+
+
+
+class ReadabilityTest(unittest.TestCase):
+    def test_sentences_are_text_without_code_tables_and_formulas(self):
+        text = """# A heading of many words
+
+One two `three. four` five. Six [seven eight](link.md) $a + b$ nine!
+
+| a table | with cells |
+|---|---|
+
+    indented code is no text
+
+1. *Fill in.* Ten eleven twelve.
+2. Thirteen fourteen fifteen
+$$
+x = 1
+$$
+```sh
+code
+```
+"""
+        counts = [readability.count_words(sentence) for sentence in readability.sentences(text)]
+        self.assertEqual(counts, [4, 5, 3, 3])
+        self.assertEqual(readability.measure(text)[0], 3.5)
+
+    def test_long_sentences_are_named(self):
+        words = "word " * readability.LONGEST_GOAL
+        self.assertEqual(readability.measure(f"{words}.\n\n{words}more.\n")[1], [(readability.LONGEST_GOAL + 1, f"{words}more.")])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,146 @@
+"""Builds the book, all pages as a site to be read from the disk: output/book/index.html. It needs no server and loads nothing
+from elsewhere. It says which pages have sentences that are too long (tools/book/readability.py).
+"""
+import json
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
+from book import readability
+from book.pages import Page, source_page
+from project import CHAPTERS, ROOT, Parser, UserError, read_json, run_program, table
+
+HERE = Path(__file__).parent
+KATEX = Path("/usr/share/javascript/katex")  # of Debian's libjs-katex
+READABILITY = "docs/readability.md"
+SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.js"
+SECTIONS = {  # of the navigation; what is not there is left out
+    "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
+    "The lecture": ["docs/slides.md", "docs/bugs.md"],
+    "Explore": ["docs/window.md", "docs/scenes.md"],
+    "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/numerics.md", "docs/cluster.md"],
+    "Results": ["docs/results.md", "docs/measuring.md"],
+    "For teachers": ["docs/teaching.md"],
+}
+START = ["README.md", "docs/first_steps.md"]
+SOLUTIONS = "docs/solutions"  # for teachers only
+
+
+def title_of(path):
+    """The first heading of a page, "1 Uniform sampling" for "Chapter 1: Uniform sampling"."""
+    heading = re.search(r"^# (.*)$", (ROOT / path).read_text(encoding="utf-8"), re.MULTILINE)
+    return re.sub(r"^Chapter (\d+): ", r"\1 ", heading[1] if heading else Path(path).stem)
+
+
+def navigation(is_teacher):
+    """[title, paths] of each section; the first has no title. Pages of docs that no section names come before the teachers'."""
+    sections = {"": START} | {title: list(paths) for title, paths in SECTIONS.items()}
+    known = {path for paths in sections.values() for path in paths}
+    others = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").glob("*.md"))]
+    sections["How it works"] += [path for path in others if path not in known]
+    if is_teacher:
+        sections["For teachers"] += [str(path.relative_to(ROOT)) for path in sorted((ROOT / SOLUTIONS).glob("*.md"))]
+    return [(title, [path for path in paths if (ROOT / path).is_file()]) for title, paths in sections.items()]
+
+
+def write(folder, path, text):
+    (folder / path).parent.mkdir(parents=True, exist_ok=True)
+    (folder / path).write_text(text, encoding="utf-8")
+
+
+def collect(folder, sections, is_teacher):
+    """Writes the pages, what they link to and their pictures, each where it stands in the project. Returns the pages, and the
+    sources as they are named in the site."""
+    def is_included(path):
+        return (ROOT / path).is_file() and (is_teacher or not str(path).startswith(SOLUTIONS))
+
+    waiting, done = [Path(path) for _, paths in sections for path in paths], set()
+    while waiting:
+        path = waiting.pop()
+        if path in done:
+            continue
+        done.add(path)
+        if path.suffix != ".md":
+            write(folder, f"{path}.md", source_page(path))
+            continue
+        page = Page(path, is_included)
+        write(folder, path, page.text)
+        waiting += page.linked
+        for picture in page.pictures:
+            if not (ROOT / picture).is_file():
+                raise UserError(f"{path}: there is no picture {picture}")
+            (folder / picture).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(ROOT / picture, folder / picture)
+    return sorted(path for path in done if path.suffix == ".md"), {f"{path}.html" for path in done if path.suffix != ".md"}
+
+
+def readability_page(pages):
+    """A table of all pages and their sentences, as Markdown."""
+    rows = []
+    for path in pages:
+        middle, long = readability.measure((ROOT / path).read_text(encoding="utf-8"))
+        rows.append([str(path), f"{middle:g}", str(len(long)), str(max((words for words, _ in long), default="–"))])
+    goals = f"The goals are a median of at most {readability.MEDIAN_GOAL} words per sentence, and no sentence above {readability.LONGEST_GOAL}."
+    head = ["page", "median", f"sentences above {readability.LONGEST_GOAL} words", "words of the longest one"]
+    return f"# How long the sentences are\n\n{goals} `./lab book` counts them.\n\n" + table(head, rows)
+
+
+def write_settings(file, folder, sections):
+    """The settings of MkDocs, with the folder's pages and their order."""
+    nav = []
+    for title, paths in sections:
+        entries = [{"Start" if path == START[0] else title_of(path): path} for path in paths]
+        nav += [{title: entries}] if title and entries else entries
+    nav.append({"How long the sentences are": READABILITY})
+    text = (HERE / "mkdocs.yml").read_text(encoding="utf-8").replace("theme:\n", f"theme:\n  custom_dir: {HERE / 'theme'}\n")
+    settings = {"docs_dir": str(folder / "docs"), "site_dir": str(folder / "site"), "nav": nav}
+    file.write_text(text + "".join(f"{key}: {json.dumps(value)}\n" for key, value in settings.items()), encoding="utf-8")
+
+
+def finish(site, sources):
+    """Makes the search's index a script, which pages from the disk may load, and removes what only servers need. Version 8 of
+    the theme, Debian 12's, looks for the index in __search, later ones in __index."""
+    index = read_json(site / SEARCH_INDEX)
+    index["docs"] = [entry for entry in index["docs"] if entry["location"].split("#")[0] not in sources]
+    write(site, SEARCH_SCRIPT, f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index)}};\n")
+    for unused in (SEARCH_INDEX, "404.html", "sitemap.xml", "sitemap.xml.gz"):
+        (site / unused).unlink(missing_ok=True)
+
+
+def build(output, is_teacher):
+    """Writes the site and returns its pages."""
+    if output.exists() and not (output / SEARCH_SCRIPT).exists():
+        raise UserError(f"{output} exists and is no book: choose another folder")
+    sections = navigation(is_teacher)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        pages, sources = collect(folder / "docs", sections, is_teacher)
+        write(folder / "docs", READABILITY, readability_page(pages))
+        (folder / "docs/katex/fonts").mkdir(parents=True)
+        for file in [KATEX / "katex.min.js", KATEX / "katex.min.css", *KATEX.glob("fonts/*.woff2")]:
+            shutil.copy(file, folder / "docs/katex" / file.relative_to(KATEX))
+        write_settings(folder / "mkdocs.yml", folder, sections)
+        process = run_program(["mkdocs", "build", "--strict", "--config-file", folder / "mkdocs.yml"])
+        if process.returncode != 0:
+            lines = re.sub(r"\x1b\[\d*m", "", process.stderr).splitlines()
+            raise UserError("mkdocs:\n" + "\n".join(line for line in lines if re.search("WARNING|[Ee]rror", line)))
+        finish(folder / "site", sources)
+        shutil.rmtree(output, ignore_errors=True)
+        shutil.copytree(folder / "site", output)
+    return pages
+
+
+def main():
+    parser = Parser("./lab book", __doc__)
+    parser.add_argument("--teacher", action="store_true", help="with the solutions of the exercises")
+    parser.add_argument("--output", type=Path, default=ROOT / "output/book", metavar="FOLDER", help="default: output/book")
+    options = parser.parse_args()
+    if not (KATEX / "katex.min.js").is_file() or not shutil.which("mkdocs"):
+        raise UserError("mkdocs and KaTeX are needed: install mkdocs-material, python3-pymdownx and libjs-katex")
+    pages = build(options.output, options.teacher)
+    for path in pages:
+        middle, long = readability.measure((ROOT / path).read_text(encoding="utf-8"))
+        if middle > readability.MEDIAN_GOAL or long:
+            print(f"{path}: median {middle:g} words per sentence, {len(long)} sentences above {readability.LONGEST_GOAL}")
+    print(f"{options.output / 'index.html'}: {len(pages)} pages")

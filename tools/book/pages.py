@@ -1,0 +1,105 @@
+"""Pages as they stand in the repository, made ready for MkDocs: links, lists and comparisons of pictures."""
+import os
+import re
+from pathlib import Path
+
+from project import CHAPTERS, ROOT, description
+
+PICTURES = {".jpg", ".png", ".svg", ".gif", ".webp"}
+LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".glsl": "glsl", ".comp": "glsl", ".py": "python", ".json": "json", ".sh": "bash", "": "bash"}
+LARGEST_SOURCE = 100_000  # bytes; what is larger is data, which nobody reads
+CODE = r"```.*?```|`[^`\n]+`|(?<=\n\n) {4}[^\n]*"
+LINK = re.compile(rf"({CODE})|(?<!!)\[((?:`[^`\n]*`|[^\[\]]|!\[[^\[\]]*\]\([^()]*\))*)\]\(([^()\s]+)\)", re.DOTALL)
+PICTURE = re.compile(r"!\[[^\[\]]*\]\(([^()\s]+)\)|<img [^<>]*src=\"([^\"]+)\"")
+ITEM = re.compile(r"(\d+\.|[-*]) +(?=\S)")
+
+
+class Page:
+    """A page of the book. `path` is relative to the project."""
+
+    def __init__(self, path, is_included):
+        """is_included(path) tells whether a page of this path may be linked."""
+        self.path, self.is_included = Path(path), is_included
+        self.linked = []  # pages and sources
+        text = re.sub(r"<!-- .*? -->\n?", "", (ROOT / path).read_text(encoding="utf-8"))
+        text = text.replace("<details>", '<details markdown="1">')  # else its text would not be read as Markdown
+        self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
+        self.text = self.with_comparison(with_lists(LINK.sub(self.link, text)))
+
+    def resolve(self, target):
+        return Path(os.path.normpath(self.path.parent / target))
+
+    def link(self, match):
+        """A link to a page or to a source, which becomes a page; other links become their text."""
+        code, text, target = match.groups()
+        name, hash_sign, anchor = (target or "").partition("#")
+        if code or not name or "://" in target:
+            return match[0]
+        path = self.resolve(name)
+        if (ROOT / path / "README.md").is_file():
+            path, name = path / "README.md", f"{name.rstrip('/')}/README.md"
+        if path.suffix in PICTURES:
+            self.pictures.append(path)
+            return match[0]
+        if not (is_source(path) if path.suffix != ".md" else self.is_included(path)):
+            return text
+        self.linked.append(path)
+        return f"[{text}]({name}{'' if path.suffix == '.md' else '.md'}{hash_sign}{anchor})"
+
+    def with_comparison(self, text):
+        """Where a chapter shows its picture of the scene that the chapter before renders as well, a slider compares the two."""
+        names = list(CHAPTERS.values())
+        index = names.index(self.path.parent.name) if self.path.parent.name in names else 0
+        before, now = (Path(f"docs/pictures/{names[i]}.png") for i in (max(index - 1, 0), index))
+        scenes = {description(name.stem).get("default_scene", "") for name in (before, now)}
+        shown = re.search(rf"!\[([^\[\]]*)\]\(([^()\s]*){now.name}\)", text)
+        if index == 0 or len(scenes) > 1 or not shown or not (ROOT / before).is_file():
+            return text
+        self.pictures.append(before)
+        return text.replace(shown[0], f"""<div class="compare">
+<img src="{shown[2]}{before.name}" alt="the chapter before"><img src="{shown[2]}{now.name}" alt="{shown[1]}">
+<input type="range" value="50" aria-label="where the pictures meet" oninput="parentNode.style.setProperty('--place', value + '%')">
+<small><span>the chapter before</span><span>about as many rays</span><span>this chapter</span></small>
+</div>""")
+
+
+def is_source(path):
+    """Whether this is a text that readers want to see. MkDocs leaves out what is hidden."""
+    file = ROOT / path
+    if any(part.startswith(".") for part in path.parts):
+        return False
+    if not file.is_file() or not file.resolve().is_relative_to(ROOT) or file.stat().st_size > LARGEST_SOURCE:
+        return False
+    return b"\0" not in file.read_bytes()
+
+
+def source_page(path):
+    """A source as a page."""
+    text = (ROOT / path).read_text(encoding="utf-8")
+    language = LANGUAGES.get(path.suffix, "text")
+    return f"---\nhide: [toc]\n---\n# {path.name}\n\n`{path}`\n\n~~~~~{language}\n{text}~~~~~\n"
+
+
+def with_lists(text):
+    """What belongs to a list item is indented by four spaces. A list, and an item after one of several paragraphs, has an empty
+    line before it. GitHub needs neither."""
+    lines, width, is_code, has_paragraphs, before = [], 0, False, False, ""
+    for line in text.split("\n"):
+        is_code ^= line.lstrip().startswith("```")
+        indent = len(line) - len(line.lstrip(" "))
+        item = None if is_code else ITEM.match(line)
+        if item:
+            if before.strip() and (not width or has_paragraphs):
+                lines.append("")
+            width, has_paragraphs = item.end(), False
+        elif width and line.strip() and indent < 2 and (not before.strip() or line.startswith(("#", "|", "```"))):
+            width = 0
+        elif width and indent >= 2:
+            has_paragraphs |= not before.strip()
+            inner = line[min(width, indent):]
+            if ITEM.match(inner) and not is_code and before.strip() and not ITEM.match(before.strip()):
+                lines.append("")
+            line = "    " + inner
+        lines.append(line)
+        before = line
+    return "\n".join(lines)

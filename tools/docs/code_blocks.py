@@ -1,0 +1,45 @@
+"""Code on the pages, filled from its source. In a page, what stands between the lines
+
+<!-- code: FILE | first phrase | last phrase -->
+```glsl
+...
+```
+<!-- end of code -->
+
+is replaced by lines of FILE, a path from the project's root. They start with the one line that contains the first phrase and end
+with the first line from there on that contains the last one. The first line's indentation is taken off.
+"""
+import re
+
+from project import ROOT, UserError
+
+MARKER = "<!-- code:"
+BLOCK = re.compile(r"(<!-- code: (\S+) \| ([^\n]+?) \| ([^\n]+?) -->\n```\w*\n)(.*?)(```\n<!-- end of code -->)", re.DOTALL)
+
+
+def excerpt(text, first, last, name):
+    """The lines of a text from the first phrase to the last. `name` is for messages."""
+    lines = text.splitlines()
+    places = [number for number, line in enumerate(lines) if first in line]
+    if len(places) != 1:
+        raise UserError(f"{name}: '{first}' is in {len(places)} lines: name a phrase that is in exactly one")
+    end = next((number for number in range(places[0], len(lines)) if last in lines[number]), None)
+    if end is None:
+        raise UserError(f"{name}: '{last}' is in no line from '{first}' on: name a phrase of the block's last line")
+    chosen = lines[places[0]:end + 1]
+    indent = re.match(" *", chosen[0])[0]
+    return "".join(line.removeprefix(indent) + "\n" for line in chosen)
+
+
+def fill(text, page):
+    """The text of a page with its blocks as the sources are now. `page` is for messages."""
+    def filled(block):
+        begin, file, first, last, _, end = block.groups()
+        if not (ROOT / file).is_file():
+            raise UserError(f"{page}: code of {file}: there is no such file")
+        return begin + excerpt((ROOT / file).read_text(encoding="utf-8"), first, last, f"{page}: code of {file}") + end
+
+    if len(BLOCK.findall(text)) != text.count(MARKER):
+        raise UserError(f"{page}: '{MARKER}' must be followed by FILE | first phrase | last phrase -->, a block in ``` and "
+                        "<!-- end of code -->, a line each")
+    return BLOCK.sub(filled, text)
