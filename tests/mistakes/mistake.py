@@ -18,7 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / "tools"), str(ROOT / "tests")]
 import test_report  # noqa: E402  (found by the line above)
-from planting import Stale, plant  # noqa: E402
+from course.mistakes import Stale, plant  # noqa: E402
 from project import BINARIES  # noqa: E402
 
 

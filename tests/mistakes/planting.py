@@ -1,33 +1,10 @@
 """Shaders with mistakes planted in them: those that ./lab check is to know, and those that it is tried with."""
-from project import CHAPTERS, ROOT, UserError, read_json
+from course.mistakes import catalogue, own_shader, plant  # noqa: F401  (tests take them from here)
+from project import CHAPTERS, ROOT, read_json  # noqa: F401
 
 VARIANTS = ROOT / "tests/variants"
 # Scenes that had no part in choosing the numbers in likely_mistake.py, for chapters that begin something: references.
 OTHER_SCENES = {1: ["cornell_box_6", "torus_5"], 3: ["cornell_box_6", "heart_light_4"], 6: ["cornell_box_6", "glass_8"]}
-
-
-class Stale(UserError):
-    """A piece of text to be replaced is not where it was."""
-
-
-def own_shader(chapter):
-    return ROOT / "chapters" / CHAPTERS[chapter] / "path_trace.glsl"
-
-
-def plant(text, find, replace, what):
-    if text.count(find) != 1:
-        raise Stale(f"stale: {what}: {text.count(find)} places with {find!r}")
-    return text.replace(find, replace)
-
-
-def catalogue():
-    """(chapter, mistake, text of the chapter's shader with it) for all mistakes that check is to know."""
-    for mistake in read_json(ROOT / "tests/mistakes/mistakes.json"):
-        for planting in mistake.get("check", {}).get("plantings", []):
-            for chapter in planting["chapters"]:
-                piece = {**mistake, **planting}
-                text = own_shader(chapter).read_text(encoding="utf-8")
-                yield chapter, mistake, plant(text, piece["find"], piece["replace"], f"{mistake['name']} in chapter {chapter}")
 
 
 def variants():

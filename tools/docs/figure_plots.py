@@ -10,7 +10,7 @@ from lesson.sample_plots import save_point_sets, scatter
 from matplotlib import font_manager, image, pyplot
 from PIL import Image, ImageDraw, ImageFont
 from project import BINARIES, CHAPTERS, ROOT, UserError, run_program
-from report.plots import COLOURS, MARKERS, encode_srgb, style_axis
+from report.plots import COLOURS, DIFFERENCE_FACTOR, MARKERS, difference_colours, encode_srgb, relative_difference, style_axis
 
 DPI = 100
 GAP, LABEL = 4, 22  # pixels between tiles, height of a label
@@ -37,6 +37,15 @@ def sheet(path, rows):
             axis.axis("off")
             figure.text(*(corner + [0, height + 6]) / size, label, fontsize=9)
     save(figure, path)
+
+
+def right_and_wrong(path, right, wrong):
+    """Two images of a scene beside each other, and where the wrong one is too bright (red) or too dark (blue). Colours are full
+    where a report's are, or where only one pixel in ten differs more."""
+    difference = relative_difference(wrong, right)
+    full = max(1 / DIFFERENCE_FACTOR, np.quantile(np.abs(difference), 0.9))
+    sheet(path, [[("right", encode_srgb(right)), ("wrong", encode_srgb(wrong)),
+                  ("red: too bright, blue: too dark", difference_colours(difference, full))]])
 
 
 def plot(path, size, draw, **labels):
@@ -140,6 +149,12 @@ def low_discrepancy(folder, images, reports):
 def idle_lanes(folder, images, reports):
     """Black never waits, and white always does."""
     sheet(folder / "idle_lanes.jpg", rows_by_scene(images, lambda _, parts: (f"idle {parts.mean():.0%} of the time", parts)))
+
+
+def bugs(folder, images, reports):
+    """A strip for each bug: bugs_NAME.jpg."""
+    for name in dict.fromkeys(render.rpartition("_")[0] for render in images):
+        right_and_wrong(folder / f"bugs_{name}.jpg", images[f"{name}_right"], images[f"{name}_wrong"])
 
 
 def convergence(folder, images, reports):

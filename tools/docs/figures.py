@@ -4,10 +4,14 @@ docs/numerics.md and the chapter pages from the records. Ctrl-C keeps what is th
 import hashlib
 import os
 import time
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
+from check.grading import OPTIONS, SCENES
+from course.bug import new_render, program_with
 from docs import figure_plots, tables
+from docs.bug_blocks import GALLERY, find_bug
 from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, description, last_line, load_records, read_json,
                      run_program, show_progress)
 from references.images import read_rgb
@@ -33,6 +37,7 @@ class Render:
     options: tuple
     rays_per_pixel: int = 0  # instead of --samples, if not 0
     height: int = 0
+    shader: str = ""  # text, instead of the chapter's own
 
     def file(self, folder):
         """Of the image. Its name changes with whatever is rendered."""
@@ -47,9 +52,9 @@ class Render:
             if self.rays_per_pixel:
                 options = (*options, "--samples", self.samples_for_rays(folder))
             unfinished = file.with_suffix(".unfinished.exr")
-            command = [BINARIES / self.chapter, self.scene, "--width", self.size, "--height", self.height or self.size, *options,
-                       "--backend", "compute", "--quiet", "--output", unfinished, "--report", report]
-            process = run_program(command)
+            with program_with(self.chapter, self.shader) if self.shader else nullcontext(BINARIES / self.chapter) as program:
+                process = run_program([program, self.scene, "--width", self.size, "--height", self.height or self.size, *options,
+                                       "--backend", "compute", "--quiet", "--output", unfinished, "--report", report])
             if process.returncode != 0:
                 raise UserError(f"{self.name}: {last_line(process)}")
             os.replace(unfinished, file)
@@ -102,6 +107,18 @@ def renders_of_idle_lanes():
     """Who waits, in chapters 9 and 10."""
     return renders_of_neighbours(("cornell_box", "glass"), ("low_discrepancy_points", "path_regeneration"),
                                  ("--samples", 4, "--view", "idle-lanes"))
+
+
+def renders_of_bugs():
+    """With and without each bug of the gallery: as ./lab bug renders them, with less noise."""
+    renders = []
+    for name, (chapter, scene) in GALLERY.items():
+        bug, _ = find_bug(name)
+        case = new_render(chapter, scene, CHAPTERS[chapter])
+        options = ("--samples", 4 * SCENES[chapter][0], "--max-path-length", case["max_path_length"], *OPTIONS[chapter])
+        renders += [Render(f"{name}_{which}", CHAPTERS[chapter], Path(case["scene_file"]).stem, case["width"], options,
+                           height=case["height"], shader=text) for which, text in (("right", ""), ("wrong", bug.text))]
+    return renders
 
 
 def renders_of_path_lengths():
@@ -164,6 +181,7 @@ FIGURES = {
     "idle_lanes": (renders_of_idle_lanes, figure_plots.idle_lanes),
     "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
     "effects": (renders_of_effects, figure_plots.effects),
+    "bugs": (renders_of_bugs, figure_plots.bugs),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
     "hero": (renders_of_hero, figure_plots.hero),
     "noise": (renders_of_noise, figure_plots.noise),

@@ -16,6 +16,7 @@ from statistics import median
 
 from docs.best_table import HEADER as BEST
 from docs.best_table import among_chapters, best_table
+from docs.bug_blocks import bug_block
 from docs.code_blocks import fill
 from docs.confusion_table import HEADER as CHECK
 from docs.confusion_table import confusion_table
@@ -28,7 +29,7 @@ from report.numbers import errors, last_rows, mean_of, paired_ratio, with_interv
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
-TABLE = re.compile(r"(<!-- table: ([\w ]+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+TABLE = re.compile(r"(<!-- table: ([\w -]+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 HEADER = """# Results
 
@@ -202,6 +203,8 @@ def page_tables(name, page):
     """The table of the first device, with what it says."""
     if name in OWN_TABLES:
         return OWN_TABLES[name]()
+    if name.startswith("bug "):
+        return bug_block(name.removeprefix("bug "))
     results = os.path.relpath(DOCS / "results.md", page.parent)
     first, *others = load_records("chapters")
     names = ", ".join(record["environment"]["device"] for record in others)

@@ -89,6 +89,15 @@ def visible(rows):
         yield rows[i]
 
 
+def show(names, rows):
+    """Prints rows of compare() under the names of the two files."""
+    colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    rule = "." * min(shutil.get_terminal_size().columns, 120)
+    print("\n".join(paint(mark, name, None, colour) for mark, name in zip("-+", names)))
+    for row in visible(rows):
+        print(paint(*row, colour) if row else paint("@", rule, None, True) if colour else "@")
+
+
 def summary(number, counts, moved):
     text = (f"Chapter {BEFORE[number]} to {number}: {counts['code']} lines of code changed ({counts['words']} words) "
             f"and {counts['comments']} of comments")
@@ -101,14 +110,9 @@ def main():
     word = parser.parse_args().chapter
     if word != "all" and (not word.isdigit() or int(word) not in BEFORE):
         sys.exit(f"error: there is no chapter before '{word}' to compare with: N is one of {', '.join(map(str, BEFORE))} or all")
-    colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
     for number in BEFORE if word == "all" else [int(word)]:
         before, after = map(shader_lines, (BEFORE[number], number))
         rows, counts, moved = compare(before, after)
         if word != "all":
-            names = [f"chapters/{CHAPTERS[n]}/path_trace.glsl" for n in (BEFORE[number], number)]
-            print("\n".join(paint(mark, name, None, colour) for mark, name in zip("-+", names)))
-            for row in visible(rows):
-                rule = "." * min(shutil.get_terminal_size().columns, 120)
-                print(paint(*row, colour) if row else paint("@", rule, None, True) if colour else "@")
+            show([f"chapters/{CHAPTERS[n]}/path_trace.glsl" for n in (BEFORE[number], number)], rows)
         print(summary(number, counts, moved))

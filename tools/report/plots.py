@@ -80,9 +80,18 @@ def picture(radiance):
     return png_uri(encode_srgb(radiance))
 
 
-def difference_picture(radiance, reference):
-    """Red where the luminance is too high, blue where it is too low, white where it is right."""
-    mean = (reference @ LUMINANCE).mean() or 1
-    excess = np.clip(DIFFERENCE_FACTOR * ((radiance - reference) @ LUMINANCE) / mean, -1, 1)[:, :, None]
+def relative_difference(radiance, reference):
+    """Of each pixel's luminance, as part of the reference's mean."""
+    return (radiance - reference) @ LUMINANCE / ((reference @ LUMINANCE).mean() or 1)
+
+
+def difference_colours(difference, full=1 / DIFFERENCE_FACTOR):
+    """Red where a pixel is too bright, blue where it is too dark, white where it is right; at most for a difference of `full`.
+    Numbers in [0, 1]."""
+    excess = np.clip(difference / full, -1, 1)[:, :, None]
     red, blue = np.array([0.70, 0.09, 0.17]), np.array([0.13, 0.40, 0.67])
-    return png_uri(1 - np.abs(excess) * (1 - np.where(excess > 0, red, blue)))
+    return 1 - np.abs(excess) * (1 - np.where(excess > 0, red, blue))
+
+
+def difference_picture(radiance, reference):
+    return png_uri(difference_colours(relative_difference(radiance, reference)))

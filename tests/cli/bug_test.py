@@ -1,0 +1,123 @@
+"""./lab bug: the gallery gives no name away, each bug can be planted, and what is wrong shows."""
+
+import re
+import unittest
+from unittest import mock
+
+from PIL import Image
+from program import PROJECT, ProgramTest  # first: it finds the tools
+from course import bug, mistakes
+from project import CHAPTERS, UserError
+
+# A chapter that keeps its arguments and its shader instead of rendering.
+NOTING = """#!/bin/sh
+echo "$@" >'{folder}/arguments'
+cp "$(dirname "$0")/../chapters/{chapter}/path_trace.glsl" '{folder}/shader'
+"""
+
+
+def index_of(chapter, name):
+    return 1 + [found.mistake["name"] for found in mistakes.bugs_of(chapter)].index(name)
+
+
+class BugTest(ProgramTest):
+    def bug(self, *arguments, **options):
+        """Standard output of ./lab bug."""
+        code, out, err = self.run_tool("bug", *arguments, **options)
+        self.assertEqual(code, 0, err)
+        return out
+
+    def test_lists_questions_and_no_name(self):
+        for chapter in CHAPTERS:
+            out, bugs = self.bug(chapter), mistakes.bugs_of(chapter)
+            self.assertEqual(out.splitlines()[:-1], [f"{index:3}  {found.question}" for index, found in enumerate(bugs, 1)])
+            for found in bugs:
+                self.assertNotIn(found.mistake["name"], out)
+                self.assertNotIn(found.mistake["explanation"], out)
+
+    def test_each_bug_changes_the_chapters_shader_and_no_two_alike(self):
+        for chapter in CHAPTERS:
+            texts = [found.text for found in mistakes.bugs_of(chapter)]
+            self.assertGreaterEqual(len(texts), 5, chapter)
+            self.assertEqual(len({mistakes.own_shader(chapter).read_text(encoding="utf-8"), *texts}), 1 + len(texts))
+
+    def test_a_place_that_is_gone_is_told(self):
+        moved = {"name": "moved", "check": {"plantings": [{"chapters": [3], "find": "no such line", "replace": ""}]}}
+        with mock.patch.object(mistakes, "read_json", return_value=[moved]), self.assertRaisesRegex(mistakes.Stale, "moved in chapter 3"):
+            mistakes.bugs_of(3)
+
+    def test_every_answer_names_what_catches_the_bug(self):
+        text = "\n".join(file.read_text(encoding="utf-8") for file in (PROJECT / "tests").rglob("*.cpp"))
+        known = set(re.findall(r"^TEST(?:_[PF])?\((\w+), (\w+)\)", text, re.MULTILINE))
+        for chapter in CHAPTERS:
+            checked = {planted["name"] for number, planted, _ in mistakes.catalogue() if number == chapter}
+            for found in mistakes.bugs_of(chapter):
+                test, command = bug.caught_by(found)
+                if test:
+                    self.assertIn(re.fullmatch(r"\w+\.(?:\w+/)?(\w+)\.(\w+)(?:/\w+)?", test).groups(), known)
+                    self.assertEqual(command, f"./lab test -R mistakes.{found.mistake['name']}")
+                else:
+                    self.assertEqual(command, f"./lab check {chapter}")
+                    self.assertIn(found.mistake["name"], checked)
+
+    def test_the_answer_shows_the_lines(self):
+        out = self.bug(3, index_of(3, "distance-not-squared"), "--answer")
+        self.assertIn("1/r", out)
+        self.assertIn("\ncaught by convergence.", out)
+        self.assertRegex(out, r"\n- .*\(distance \* distance\);\n\+ .*distance;\n")
+
+    def test_a_render_shows_right_wrong_and_difference(self):
+        index = index_of(3, "wrong-measure")
+        out = self.bug(3, index, "--samples", 4, "--scene", "check_room_2", "--backend", "compute")
+        self.assertRegex(out, r"verdict +biased: red \+\d")
+        self.assertIn(mistakes.bugs_of(3)[index - 1].question, out)
+        self.assertNotIn("wrong-measure", out)
+        picture = Image.open(PROJECT / f"output/bug_3_{index}.png").convert("RGB")
+        self.assertGreater(picture.width, 3 * 256)
+        right, wrong, difference = (picture.crop((i * 260 + 4, 40, i * 260 + 260, 270)) for i in range(3))
+        light = [sum(part.convert("L").getdata()) for part in (right, wrong)]
+        self.assertGreater(light[1], 1.2 * light[0])
+        red, _, blue = (sum(channel.getdata()) for channel in difference.split())
+        self.assertGreater(red, 1.2 * blue)  # too bright
+
+    def test_noise_is_no_bias(self):
+        out = self.bug(4, index_of(4, "identical-branches"), "--samples", 4, "--scene", "check_room_2", "--backend", "compute")
+        self.assertRegex(out, r"verdict +noisy: \d[\d.]* times")
+
+    def test_a_scene_without_reference_is_compared_with_the_right_picture(self):
+        verdicts = {}
+        for name in ("missing-cosine", "sine-forgotten", "same-number-twice"):
+            out = self.bug(1, index_of(1, name), "--samples", 8, "--scene", "furnace", "--backend", "compute")
+            word, red = re.search(r"verdict +(\w+).* red ([+-][\d.]+).* against the right picture", out).groups()
+            verdicts[name] = word, float(red)
+        # In a furnace either of the first two doubles what each bounce brings, and the directions do not matter.
+        (cosine, too_much), (sine, as_much), (directions, little) = verdicts.values()
+        self.assertEqual((cosine, sine, directions), ("biased", "biased", "nothing"))
+        self.assertGreater(too_much, 100)
+        self.assertAlmostEqual(as_much / too_much, 1, delta=0.1)
+        self.assertLess(abs(little), 5)
+
+    def test_the_window_has_the_broken_shader(self):
+        chapter = CHAPTERS[3]
+        program = self.write(f"binaries/{chapter}", NOTING.format(folder=self.folder, chapter=chapter))
+        program.chmod(0o755)
+        self.bug(3, 1, "--window", "--scene", "check_room_2", environment={"LAB_BINARIES": str(program.parent)})
+        arguments = (self.folder / "arguments").read_text()
+        self.assertRegex(arguments, r"check_room\.json --window --max-path-length 2 ")
+        self.assertEqual((self.folder / "shader").read_text(encoding="utf-8"), mistakes.bugs_of(3)[0].text)
+
+    def test_what_there_is_not_is_refused(self):
+        self.assert_tool_refused(["bug"], "N")
+        self.assert_tool_refused(["bug", 99], "no chapter 99")
+        self.assert_tool_refused(["bug", 3, 999], "bugs 1 to", "lists them")
+        self.assert_tool_refused(["bug", 3, 0], "number from 1")
+        self.assert_tool_refused(["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene")
+
+    def test_a_chapter_without_bugs_says_so(self):
+        with mock.patch.object(bug, "bugs_of", return_value=[]), mock.patch("sys.argv", ["bug", "1"]):
+            with self.assertRaisesRegex(UserError, "chapter 1 has no bugs"):
+                bug.main()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,181 @@
+"""The bug gallery: shaders with a mistake in them, to be found by looking.
+
+    ./lab bug 3             lists the bugs of chapter 3, without their names
+    ./lab bug 3 2           renders the second one beside the right picture, with the same random numbers: output/bug_3_2.png
+    ./lab bug 3 2 --answer  tells what is wrong, in which line, and what catches it
+
+The picture shows right, wrong and their difference: red is too bright, blue too dark. The verdict compares its mean with the
+reference image, or with the right picture where the scene has none.
+"""
+import math
+import subprocess
+import tempfile
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from check.command import percent
+from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, make_tree
+from course.mistakes import CATALOGUE, bugs_of, own_shader
+from docs.figure_plots import right_and_wrong
+from lesson import diff
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, show_progress
+from references.images import averaged, find_references, read_rgb, scene_file
+from report.measurement import new_case, run_case
+from report.numbers import batches, biases
+
+SCALE = 2  # pixels in a row for each of the reference's
+COLOURS = ("red", "green", "blue")
+
+
+def parse():
+    parser = Parser("./lab bug", __doc__)
+    parser.add_argument("chapter", type=number(int, 1), metavar="N", help="number of the chapter")
+    parser.add_argument("bug", type=number(int, 1), nargs="?", metavar="I", help="number of the bug; default: list them")
+    parser.add_argument("--answer", action="store_true", help="tell what is wrong")
+    parser.add_argument("--window", action="store_true", help="open the chapter with the bug in its window")
+    parser.add_argument("--scene", help="name or file; default: of the scenes of ./lab check, where the bug shows most")
+    parser.add_argument("--samples", type=number(int, 4), help="per pixel; default: twice those of a run of ./lab check")
+    add_device_options(parser)
+    return parser.parse_intermixed_args()
+
+
+@contextmanager
+def program_with(chapter, text):
+    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as its shader."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "path_trace.glsl"
+        file.write_text(text, encoding="utf-8")
+        yield make_tree(chapter, file, Path(folder) / "tree")[0]
+
+
+def find_scene(word):
+    """A scene's file and its reference, or None where there is none."""
+    try:
+        return find_references([word])[0]
+    except UserError:
+        if not scene_file(word).is_file():
+            raise
+        return scene_file(word), None
+
+
+def new_render(chapter, scene, program):
+    """What is to be rendered: with the path length of the reference, and SCALE times as large."""
+    file, reference = find_scene(scene)
+    case = new_case(file, reference, f"chapter {chapter}", program, OPTIONS[chapter])
+    return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE if reference else 1}
+
+
+def render(case, samples, options):
+    """Adds a run to a case; returns the image."""
+    with tempfile.TemporaryDirectory() as folder:
+        picture = Path(folder) / "picture.exr"
+        report = run_case(case, vars(options), ["--samples", samples, "--seed", 1, "--output", picture])
+        case |= {"runs": [{"seed": 1, "rows": report["rows"]}], "invalid_samples": report["invalid_samples"]}
+        return read_rgb(picture)
+
+
+def telling_scene(chapter, programs, options):
+    """Of the scenes of ./lab check the one whose picture the bug changes most: of each tile, with a single sample per pixel."""
+    def change(scene):
+        right, wrong = (averaged(render(new_render(chapter, scene, program), 1, options), SCALE * TILE) for program in programs)
+        return np.abs(wrong - right).mean() / right.mean()
+
+    return max(SCENES[chapter][1], key=change)
+
+
+def as_reference(case):
+    """The mean of a render for scenes that have no reference, as biases() wants it."""
+    counts, means = batches(case["runs"])
+    mean, freedom = counts @ means / counts.sum(), len(counts) - 1
+    return {"mean": mean, "variance": counts @ (means - mean) ** 2 / freedom / counts.sum(), "freedom": freedom}
+
+
+def verdict(right, wrong):
+    """What shows of two cases with so many samples, in a line."""
+    if wrong["invalid_samples"]:
+        return f"broken: {wrong['invalid_samples']} samples infinite or not a number"
+    tests = biases(wrong["runs"], wrong["reference"] or as_reference(right), len(COLOURS))
+    means = ", ".join(f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.2g} %" for colour, test in zip(COLOURS, tests))
+    means += "" if wrong["reference"] else " against the right picture, since the scene has no reference"
+    if any(test["is_biased"] for test in tests):
+        return f"biased: {means}"
+    last, own = (case["runs"][0]["rows"][-1] for case in (wrong, right))
+    for key, text in (("rel_mse", "noisy: {:.1f} times the error of the right picture"), ("rays", "expensive: {:.1f} times its rays")):
+        if (last[key] or 0) > TOO_MUCH * (own[key] or math.inf):  # a picture without noise has none to compare with
+            return f"{text.format(last[key] / own[key])}, the mean agrees: {means}"
+    return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would show"
+
+
+def show(bug, index, scene, programs, options):
+    """Renders with the right shader and with the wrong one, and says what is to be seen."""
+    samples, started = options.samples or 2 * SCENES[bug.chapter][0], time.monotonic()
+    cases = [new_render(bug.chapter, scene, program) for program in programs]
+    images = []
+    for case in cases:
+        images.append(render(case, samples, options))
+        show_progress(f"{('right', 'wrong')[len(images) - 1]} picture of {case['scene']}", len(images), len(cases), started)
+    path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
+    path.parent.mkdir(exist_ok=True)
+    right_and_wrong(path, *images)
+    for name, text in (("scene", f"{cases[0]['scene']}, {samples} samples per pixel"), ("verdict", verdict(*cases)),
+                       ("question", bug.question), ("picture", path.relative_to(ROOT))):
+        print(f"{name:10} {text}")
+
+
+def open_window(bug, scene, program, options):
+    """The chapter with the bug, until its window is closed."""
+    case = new_render(bug.chapter, scene, program)
+    length = ["--max-path-length", case["max_path_length"]] if case["reference"] else []
+    command = [program, ROOT / case["scene_file"], "--window", *length, *OPTIONS[bug.chapter], "--backend", options.backend,
+               *(["--device", options.device] if options.device else [])]
+    result = subprocess.run(list(map(str, command)), cwd=Path(program).parent)
+    if result.returncode != 0:
+        raise UserError(f"the window of chapter {bug.chapter} ended with exit code {result.returncode}")
+
+
+def caught_by(bug):
+    """The test that has been seen to fail because of the bug, or None, and a command that finds it."""
+    test = bug.mistake.get("test")
+    return test, f"./lab test -R mistakes.{bug.mistake['name']}" if test else f"./lab check {bug.chapter}"
+
+
+def changes(bug):
+    """Rows of the difference from the chapter's own shader, for lesson.diff."""
+    own = own_shader(bug.chapter).read_text(encoding="utf-8")
+    return diff.compare(own.splitlines(), bug.text.splitlines())[0]
+
+
+def answer(bug):
+    print(f"{bug.mistake['name']}: {bug.mistake['explanation']}\n")
+    diff.show([f"chapter {bug.chapter}", "with the bug"], changes(bug))
+    test, command = caught_by(bug)
+    print(f"\ncaught by {f'{test}: ' if test else ''}{command}")
+
+
+def main():
+    options = parse()
+    if options.chapter not in CHAPTERS:
+        raise UserError(f"there is no chapter {options.chapter}: ./lab run lists them")
+    bugs = bugs_of(options.chapter)
+    if not bugs:
+        raise UserError(f"chapter {options.chapter} has no bugs: {CATALOGUE.relative_to(ROOT)} knows none in its shader")
+    if options.bug is None:
+        for index, bug in enumerate(bugs, 1):
+            print(f"{index:3}  {bug.question}")
+        print(f"./lab bug {options.chapter} 1 shows the first one")
+        return
+    if options.bug > len(bugs):
+        raise UserError(f"chapter {options.chapter} has the bugs 1 to {len(bugs)}: ./lab bug {options.chapter} lists them")
+    bug = bugs[options.bug - 1]
+    if options.answer:
+        answer(bug)
+        return
+    own = own_shader(bug.chapter).read_text(encoding="utf-8")
+    with program_with(CHAPTERS[bug.chapter], own) as right, program_with(CHAPTERS[bug.chapter], bug.text) as wrong:
+        scene = options.scene or telling_scene(bug.chapter, (right, wrong), options)
+        if options.window:
+            open_window(bug, scene, wrong, options)
+        else:
+            show(bug, options.bug, scene, (right, wrong), options)

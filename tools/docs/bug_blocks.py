@@ -1,0 +1,41 @@
+"""The bugs that docs/bugs.md shows, and what it says of each from the catalogue of mistakes."""
+import textwrap
+
+from course.bug import caught_by, changes
+from course.mistakes import bugs_of
+from project import UserError
+
+# Name of the mistake: chapter and reference.
+GALLERY = {
+    "missing-cosine": (1, "check_room_6"),
+    "same-number-twice": (2, "check_room_6"),
+    "cosine-twice": (2, "check_room_6"),
+    "distance-not-squared": (3, "cornell_box_6"),
+    "emission-counted-twice": (3, "cornell_box_6"),
+    "no-shadow-ray": (3, "cornell_box_6"),
+    "identical-branches": (4, "cornell_box_6"),
+    "roulette-without-weight": (5, "cornell_box_6"),
+    "radiance-not-scaled": (6, "check_glass_8"),
+    "light-samples-counted-fully": (7, "plates_3"),
+    "sky-through-everything": (8, "sunny_4"),
+    "radiance-replaced": (10, "cornell_box_6"),
+}
+
+
+def find_bug(name):
+    """The bug of the gallery with this name, and its number in the chapter."""
+    if name not in GALLERY:
+        raise UserError(f"there is no bug '{name}' in the gallery: {', '.join(GALLERY)}")
+    chapter, _ = GALLERY[name]
+    return next((bug, index) for index, bug in enumerate(bugs_of(chapter), 1) if bug.mistake["name"] == name)
+
+
+def bug_block(name):
+    """The picture, the question, and as the begin of a folded answer what is wrong, the lines, and what catches it."""
+    bug, index = find_bug(name)
+    rows = [(mark, line) for mark, line, _ in changes(bug) if mark != " "]
+    lines = textwrap.dedent("\n".join(line for _, line in rows)).split("\n")
+    shown = "\n".join(f"{mark} {line}".rstrip() for (mark, _), line in zip(rows, lines))
+    return (f"![Right, wrong and their difference](pictures/bugs_{name}.jpg)\n\n"
+            f"`./lab bug {bug.chapter} {index} --scene {GALLERY[name][1]}` asks: *{bug.question}*\n\n<details><summary>Answer</summary>\n\n"
+            f"```diff\n{shown}\n```\n{bug.mistake['explanation']} `{caught_by(bug)[1]}` catches it.\n")
