@@ -2,8 +2,8 @@
 
 They stand in rooms: assets makes meshes, textures and scenes; references are images of another renderer, and how to read them;
 check grades a shader; report measures speed against error; lesson shows what a chapter changes and what samplers do. What only
-a teacher needs is in docs (tables and figures of the pages) and course (handouts): handouts leave these two out. project.py is
-what all share. Tests import from here, never the other way.
+a teacher needs is in docs (tables, figures and diagrams of the pages) and course (handouts): handouts leave these two out.
+project.py is what all share. Tests import from here, never the other way.
 """
 import sys
 from importlib import import_module
@@ -11,7 +11,7 @@ from importlib import import_module
 import project
 
 TOOLS = {  # name: module
-    "assets": "assets.make", "benchmark": "docs.benchmark", "check": "check.command", "diff": "lesson.diff",
+    "assets": "assets.make", "benchmark": "docs.benchmark", "check": "check.command", "diagrams": "docs.diagrams", "diff": "lesson.diff",
     "figures": "docs.figures", "handout": "course.handout", "peer": "references.peer", "reference": "references.make",
     "report": "report.make", "sample": "lesson.sample", "tables": "docs.tables",
 }
