@@ -162,7 +162,7 @@ def light_patch():
             (at(x, turn(up, omega, 0.45), 0.55), "$θ$", BLUE, (0, 0)), (at(y, turn(facing, back, 0.35), 0.95), "$θ$′", ORANGE, (0, 0)),
             ((0, 0, 1.35), "$n$", GREY, (-14, 4)), (at(y, facing, 1.3), "$n$′", GREY, (-20, 2)),
             (x, "$x$", GREY, (-13, 8)), (y, "$y$", GREY, (14, -4)),
-            (scaled(omega, 0.62), "$ω$", BLUE, (6, 17)), (scaled(omega, 0.6 * distance), "$r$", GREY, (-14, -30)),
+            (scaled(omega, 0.62), "$ω$", BLUE, (6, 17)), (scaled(omega, 0.75 * distance), "$r$", GREY, (-4, -14)),
             (corners[0], "d$A$", ORANGE, (22, -2)), (omega, "d$ω$", BLUE, (-4, -30))):
         across, down = view(place)
         drawing.label((across + offset[0], down + offset[1]), text, colour, 18)
