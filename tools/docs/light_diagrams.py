@@ -120,9 +120,9 @@ def path():
     for k, offset in enumerate(((0, 26), (0, 20), (22, 4), (-4, 20))):
         drawing.dot(points[k], ORANGE if k == 3 else GREY)
         drawing.label((points[k][0] + offset[0], points[k][1] + offset[1]), f"$x_{k}$", ORANGE if k == 3 else GREY, 18)
-    drawing.label((400, 75), "$β_1$ = 1", BLUE, anchor="start")
-    drawing.label((400, 115), "$β_2$ = $β_1$ · $ρ$ cos $θ_1$ / $p$($ω_1$)", GREEN, anchor="start")
-    drawing.label((400, 155), "$β_3$ = $β_2$ · $ρ$ cos $θ_2$ / $p$($ω_2$)", PURPLE, anchor="start")
+    drawing.label((400, 195), "$β_1$ = 1", BLUE, anchor="start")
+    drawing.label((400, 225), "$β_2$ = $β_1$ · $ρ$ cos $θ_1$ / $p$($ω_1$)", GREEN, anchor="start")
+    drawing.label((400, 255), "$β_3$ = $β_2$ · $ρ$ cos $θ_2$ / $p$($ω_2$)", PURPLE, anchor="start")
     drawing.label((320, 313), "radiance of the path = $β_1$ $L_e$($x_1$) + $β_2$ $L_e$($x_2$) + $β_3$ $L_e$($x_3$) + …", ORANGE)
     return drawing
 
