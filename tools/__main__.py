@@ -2,7 +2,7 @@
 
 They stand in rooms: assets makes meshes, textures and scenes; references are images of another renderer, and how to read them;
 check grades a shader; report measures speed against error; lesson shows what a chapter changes and what samplers do; book makes
-a site of the pages. What only a teacher needs is in docs (tables and figures of the pages) and course (handouts, and the bugs of
+a site of the pages. What only a teacher needs is in docs (tables, figures and diagrams of the pages) and course (handouts, and the bugs of
 the catalogue of mistakes): handouts leave these two out. project.py is what all share. Tests import from here, never the other way.
 """
 import sys
@@ -12,7 +12,7 @@ import project
 
 TOOLS = {  # name: module
     "assets": "assets.make", "benchmark": "docs.benchmark", "book": "book.build", "bug": "course.bug", "check": "check.command",
-    "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout", "peer": "references.peer", "reference": "references.make",
+    "diagrams": "docs.diagrams", "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout", "peer": "references.peer", "reference": "references.make",
     "report": "report.make", "sample": "lesson.sample", "tables": "docs.tables",
 }
 
