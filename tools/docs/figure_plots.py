@@ -116,6 +116,15 @@ def idle_lanes(folder, images, reports):
     sheet(folder / "idle_lanes.jpg", rows_by_scene(images, lambda _, parts: (f"idle {parts.mean():.0%} of the time", parts)))
 
 
+def first_steps(folder, images, reports):
+    """A picture of each step's tiles; renders are named step_NUMBER_WHAT."""
+    steps = {}
+    for name, radiance in images.items():
+        steps.setdefault(name.split("_")[1], []).append((name.replace("_", " "), encode_srgb(radiance)))
+    for number, tiles in steps.items():
+        sheet(folder / f"first_steps_{number}.jpg", [tiles])
+
+
 def convergence(folder, images, reports):
     """Error against samples and against seconds; means of all runs of a chapter."""
     figure, axes = pyplot.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
