@@ -70,4 +70,4 @@ def clean_pages(folder, solution):
         text = PIECE.sub(lambda piece: "TODO" if piece[1] in solution and piece[1] not in shaders else piece[0], text)
         # An exercise is done when the check says so.
         text = re.sub(r"Done\s+when all tests named [^,]* pass,\s+and\s+(?=`\./lab check)", "Done when ", text)
-        page.write_text(leave_out_commands(text, rf"\./lab ({needs_tests})\b"), encoding="utf-8")
+        page.write_text(leave_out_commands(text, rf"\./lab\s+({needs_tests})\b"), encoding="utf-8")
