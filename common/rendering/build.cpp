@@ -1,6 +1,7 @@
 #include "rendering/build.h"
 
 #include "rendering/backend_choice.h"
+#include "rendering/settings.h"
 
 namespace lab {
 namespace {
@@ -17,7 +18,9 @@ BuildStage first_difference(const Options& before, const Options& options) {
     if (before.scene != options.scene) return BuildStage::scene;
     const auto samples_lights = [](const Options& o) { return o.estimator.strategy != Strategy::brdf; };
     if (samples_lights(before) != samples_lights(options)) return BuildStage::gpu_scene;
-    if (before.estimator != options.estimator || before.image != options.image) return BuildStage::renderer;
+    if (before.estimator != options.estimator || before.image != options.image ||
+        asks_for_sky(before) != asks_for_sky(options))
+        return BuildStage::renderer;
     return BuildStage::nothing;
 }
 

@@ -86,6 +86,10 @@ vec3 background_of(const Scene& scene, const Options& options) {
     return options.light.background ? to_vector(*options.light.background) : scene.background;
 }
 
+bool asks_for_sky(const Options& options) {
+    return options.light.background && to_vector(*options.light.background) != vec3(0);
+}
+
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
     const uvec2 image_size(options.image.width.value_or(scene.defaults.width),
                            options.image.height.value_or(scene.defaults.height));
@@ -142,8 +146,11 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
         estimator.file = shared / view->observer;
         return estimator;
     }
-    if (options.estimator.split_every_hit) return {shared / "path_trace_every_hit.glsl"};
-    if (options.estimator.strategy == Strategy::light) estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    if (options.estimator.split_every_hit)
+        estimator = {shared / "path_trace_every_hit.glsl"};
+    else if (options.estimator.strategy == Strategy::light)
+        estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
     return estimator;
 }
 

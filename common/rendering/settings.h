@@ -10,6 +10,9 @@ namespace lab {
 CameraPose camera_of(const Scene& scene, const Options& options);
 vec3 background_of(const Scene& scene, const Options& options);
 
+// Whether --background asks for a sky, which the shaders must know where the scene itself has none.
+bool asks_for_sky(const Options& options);
+
 // Throws UserError for options that contradict each other.
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options);
 

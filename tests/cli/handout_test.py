@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import unittest
@@ -11,11 +12,32 @@ from program import BINARIES, PROJECT, TOOLS, ProgramTest
 
 EXERCISES = json.loads((TOOLS / "course/exercises.json").read_text(encoding="utf-8"))
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
+# What other pages could show of chapter 3's solution, and what is for teachers alone.
+QUOTATION = """
+<!-- code: chapters/03_next_event_estimation/path_trace.glsl | V: a shadow ray | * y.emission; -->
+```glsl
+// V: a shadow ray that ends just short of the light.
+if (is_occluded(get_ray_to_point(s, y.position_in_front), 1.0)) return vec3(0.0);
+float geometry = dot(s.normal, omega) * cos_light / (distance * distance);
+```
+<!-- end of code -->
+
+The term is `cos_light / (distance * distance)`. See [the model answer](../solutions/03.md). It is right: run `./lab
+test`.
+Another is [`float later = 1.0;`](../07_multiple_importance_sampling/path_trace.glsl).
+
+<!-- code: chapters/07_multiple_importance_sampling/path_trace.glsl | p_b | p_b -->
+```glsl
+float later = 1.0;
+```
+<!-- end of code -->
+"""
+FOR_TEACHERS = ["docs/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
 
 
 class HandoutTest(ProgramTest):
-    def handout(self, *arguments):
-        command = [sys.executable, "-B", TOOLS, "handout", *arguments]
+    def handout(self, *arguments, tools=TOOLS):
+        command = [sys.executable, "-B", tools, "handout", *arguments]
         return subprocess.run(list(map(str, command)), cwd=self.folder, capture_output=True, text=True,
                               env=os.environ | {"LAB_BINARIES": str(BINARIES)})
 
@@ -39,6 +61,50 @@ class HandoutTest(ProgramTest):
                 if path.suffix in (".glsl", ".md", ".py", ".json"):
                     self.assertNotIn(exercise["last"], path.read_text(encoding="utf-8"), path)
 
+            pages = "".join(page.read_text(encoding="utf-8") for page in tree.rglob("*.md"))
+            for later in (other for other in EXERCISES if other["chapter"] > number):
+                self.assertNotIn(later["last"], pages, f"chapter {later['chapter']} in the handout of chapter {number}")
+
+    def test_holds_the_slides_with_their_symbols_and_the_first_steps(self):
+        for number in (1, 3):
+            tree = self.folder / f"handout_{number}"
+            self.assertEqual(self.handout(number, tree).returncode, 0)
+            slides, steps = ((tree / "docs" / name).read_text(encoding="utf-8") for name in ("slides.md", "first_steps.md"))
+            self.assertIn("\n## Symbols\n", slides)
+            self.assertIn("omega", slides)
+            self.assertGreater(len(list((tree / "docs/diagrams").glob("*.svg"))), 5)
+            # From step 5 on the page shows what exercise 1 of chapter 1 asks for.
+            self.assertEqual(re.findall(r"^## (\d)", steps, re.MULTILINE), list("1234" if number == 1 else "12345678"))
+
+    def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
+        project = self.folder / "project"
+        for name in ("chapters", "shaders", "tools", "docs"):
+            shutil.copytree(PROJECT / name, project / name)
+        for name in ("assets", "common"):
+            (project / name).symlink_to(PROJECT / name)
+        for name in (".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"):
+            shutil.copy(PROJECT / name, project / name)
+        for name in FOR_TEACHERS:
+            self.write(project / name, "planted")
+        page = project / "chapters/03_next_event_estimation/README.md"
+        page.write_text(page.read_text(encoding="utf-8") + QUOTATION.replace("../solutions", "../../docs/solutions"), encoding="utf-8")
+        result = self.handout(3, "lab", tools=project / "tools")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        tree = self.folder / "lab"
+        self.assertEqual([name for name in FOR_TEACHERS if (tree / name).exists()], [])
+        texts = {path.relative_to(tree): path.read_bytes() for path in tree.rglob("*") if path.is_file() and path.parts[0] != "assets"}
+        self.assertEqual([path for path, text in texts.items() if text == b"planted"], [])
+        self.assertTrue((tree / page.relative_to(project)).read_text(encoding="utf-8").endswith("""
+```glsl
+// TODO
+```
+
+The term is TODO. See the model answer.
+Another is code of chapter 7.
+
+(code of chapter 7)
+"""))
+
     def test_no_link_leads_nowhere(self):
         tree = self.folder / "handout"
         self.assertEqual(self.handout(3, tree).returncode, 0)
@@ -61,8 +127,8 @@ class HandoutTest(ProgramTest):
 
     def test_pages_speak_of_what_is_there(self):
         self.assertEqual(self.handout(EXERCISES[-1]["chapter"], "lab").returncode, 0)
-        for page in [self.folder / "lab/README.md", *self.folder.glob("lab/chapters/*/README.md")]:
-            self.assertNotRegex(page.read_text(encoding="utf-8"), r"lab test|lab\s+bug|all\s+tests\s+named|NUMBER|FOLDER|SHADER", page)
+        for page in (self.folder / "lab").rglob("*.md"):
+            self.assertNotRegex(page.read_text(encoding="utf-8"), r"lab\s+(test|figures|handout|bug)\b|all\s+tests\s+named|NUMBER|FOLDER|SHADER", page)
 
     def test_commands_that_need_the_tests_say_so(self):
         self.assertEqual(self.handout(1, "lab").returncode, 0)

@@ -114,6 +114,15 @@ class Sky(RenderTest):
         for name, radiance in zip("RGB", (0.25, 0.5, 3)):
             self.assertEqual(set(picture.channels[name]), {radiance})
 
+    def test_a_scene_without_a_sky_can_be_given_one(self):
+        options = ["--samples=4", "--max-path-length=1"]
+        self.assertEqual(max(self.picture("black", *options, *self.away).pixels()), 0)
+        picture = self.picture("lit", *options, *self.away, "--background=0.25,0.5,3")
+        for name, radiance in zip("RGB", (0.25, 0.5, 3)):
+            self.assertEqual(set(picture.channels[name]), {radiance})
+        # It lights surfaces as well.
+        self.assertGreater(self.picture("box", *options, "--background=1,1,1").mean(), self.picture("no_sky", *options).mean())
+
     def test_a_bare_mesh_is_a_scene(self):
         """Its bounding box sets the camera."""
         dark = self.picture("dark", "--samples=4", "--background=0,0,0", scene="quad.obj")

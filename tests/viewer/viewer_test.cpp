@@ -146,10 +146,11 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
         options.estimator.strategy = Strategy::both, options.estimator.split_every_hit = true;
     });
     EXPECT_NE(session().build().job.record.settings.find("--split-every-hit"), std::string::npos);
-    change(
+    const double black_sky = change(
         [](Options& options) { options.estimator.split_every_hit = false, options.scene.specular = true; });
-    change([](Options& options) { options.light.background = {1, 2, 3}; });
+    const double sky = change([](Options& options) { options.light.background = {1, 2, 3}; });
     EXPECT_EQ(parameters().background, vec3(1, 2, 3));
+    EXPECT_GT(sky, 1.2 * black_sky);
     change([](Options& options) { options.image.width = 33; });
     EXPECT_EQ(session().build().display->picture().width(), 33u);
     for (const View& view : views()) {

@@ -11,16 +11,16 @@ import tempfile
 import time
 from pathlib import Path
 
-from docs import code_blocks
+from course.pages import clean_pages
 from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_program, show_progress
 
 HERE = Path(__file__).parent
 EXERCISES = read_json(HERE / "exercises.json")
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
-# What only teachers need: it names solutions or makes what belongs to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/bugs.md", "docs/numerics.md", "docs/slides.md", "docs/measuring.md", "docs/records/check",
-            "tools/course", "tools/docs"]
+# What only teachers need: it holds or names solutions, or makes what belongs to the whole course.
+TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/measuring.md", "docs/solutions", "docs/bugs*", "docs/pictures/bug*",
+            "docs/records/check", "tools/course", "tools/docs", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -64,58 +64,25 @@ def write_handout(chapter, folder):
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
     for name in FILES:
         shutil.copy(ROOT / name, folder / name)
-    for name in TEACHERS:
-        shutil.rmtree(folder / name) if (folder / name).is_dir() else (folder / name).unlink()
+    for path in [path for pattern in TEACHERS for path in folder.glob(pattern)]:
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
     # Shared shaders that only later chapters include hold what this one asks for.
     for name in included(later) - included(kept):
         (folder / "shaders" / name).unlink()
     # Splitting at every hit repeats the estimators of the chapters that have it.
     if any("split_every_hit" in description(name) for n, name in CHAPTERS.items() if n >= chapter):
         (folder / "shaders/path_trace_every_hit.glsl").unlink()
+    solutions = []
     for exercise in exercises(chapter):
         shader = folder / exercise["file"]
         text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
         shader.write_text(text, encoding="utf-8")
-        hide(solution, folder)
+        solutions.append(solution)
     readme = (HERE / "readme.md").read_text(encoding="utf-8")
     for name, value in (("NUMBER", str(chapter)), ("FOLDER", CHAPTERS[chapter]), ("SHADER", exercises(chapter)[0]["file"])):
         readme = readme.replace(name, value)
     (folder / "README.md").write_text(readme, encoding="utf-8")
-    leave_out_tests(folder)
-    unlink_what_is_missing(folder)
-
-
-def hide(solution, folder):
-    """Takes quotations of the solution out of the pages, and blocks that share a line with it."""
-    lines = {line.strip() for line in solution.splitlines() if re.search(r"\w", line)}
-
-    def shown(block):
-        return block[0] if lines.isdisjoint(line.strip() for line in block[5].splitlines()) else "```glsl\n// TODO\n```"
-
-    for page in folder.rglob("*.md"):
-        text = code_blocks.BLOCK.sub(shown, page.read_text(encoding="utf-8"))
-        page.write_text(re.sub(r"\[`([^`]+)`\](?=\([^)]*\.glsl\))", lambda quote: "[TODO]" if quote[1] in solution and
-                               not re.fullmatch(r"\w+(\(\))?", quote[1]) else quote[0], text), encoding="utf-8")
-
-
-def leave_out_tests(folder):
-    """An exercise is done when the check says so. The bugs to be found are those of the tests."""
-    for page in folder.glob("chapters/*/README.md"):
-        text = page.read_text(encoding="utf-8")
-        text = re.sub(r"Done\s+when all tests named [^,]* pass,\s+and\s+(?=`\./lab check)", "Done when ", text)
-        text = re.sub(r"\s+Tests are run by `\./lab test -R` and\s+their\s+name\.", "", text)
-        text = re.sub(r"\s+Run\s+`\./lab\s+bug [^`]*`[^.]*\.", "", text)
-        page.write_text(text, encoding="utf-8")
-
-
-def unlink_what_is_missing(folder):
-    """Links to files that stay out become plain text."""
-    for page in folder.rglob("*.md"):
-        def shown(link):
-            target = link[2].split("#")[0]
-            return link[0] if "://" in target or (page.parent / target).exists() else link[1]
-
-        page.write_text(re.sub(r"(?<!!)\[([^\[\]]+)\]\(([^()\s]+)\)", shown, page.read_text(encoding="utf-8")), encoding="utf-8")
+    clean_pages(folder, "\n".join(solutions))
 
 
 def run(command, expected, what, **options):

@@ -157,6 +157,15 @@ def bugs(folder, images, reports):
         right_and_wrong(folder / f"bugs_{name}.jpg", images[f"{name}_right"], images[f"{name}_wrong"])
 
 
+def first_steps(folder, images, reports):
+    """A picture of each step's tiles; renders are named step_NUMBER_WHAT."""
+    steps = {}
+    for name, radiance in images.items():
+        steps.setdefault(name.split("_")[1], []).append((name.replace("_", " "), encode_srgb(radiance)))
+    for number, tiles in steps.items():
+        sheet(folder / f"first_steps_{number}.jpg", [tiles])
+
+
 def convergence(folder, images, reports):
     """Error against samples and against seconds; means of all runs of a chapter."""
     figure, axes = pyplot.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")

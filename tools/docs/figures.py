@@ -10,7 +10,7 @@ from pathlib import Path
 
 from check.grading import OPTIONS, SCENES
 from course.bug import new_render, program_with
-from docs import figure_plots, tables
+from docs import figure_plots, first_steps, tables
 from docs.bug_blocks import GALLERY, find_bug
 from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, description, last_line, load_records, read_json,
                      run_program, show_progress)
@@ -37,7 +37,7 @@ class Render:
     options: tuple
     rays_per_pixel: int = 0  # instead of --samples, if not 0
     height: int = 0
-    shader: str = ""  # text, instead of the chapter's own
+    shader: str = ""  # its text, instead of the chapter's own
 
     def file(self, folder):
         """Of the image. Its name changes with whatever is rendered."""
@@ -169,6 +169,22 @@ def renders_of_bvh_steps():
     return [Render(f"steps_{scene}", CHAPTERS[1], scene, 256, ("--samples", 4, "--view", "bvh-steps")) for scene in ("torus", "instances")]
 
 
+def renders_of_first_steps():
+    """The tiles of each step's picture, named step_NUMBER_WHAT. Those that are noisy have 256 samples."""
+    shaders = first_steps.shaders(first_steps.PAGE.read_text(encoding="utf-8"))
+    close = ("--camera-target", "-0.2,0.6,0", "--vertical-fov", 7)
+
+    def tile(step, what="", samples=256, scene="cornell_box", view=()):
+        options = ("--samples", samples, "--max-path-length", 6, *view)
+        shader = shaders[f"{step} broken" if what.endswith("broken") else str(step)]
+        return Render(f"step_{step}{what}", CHAPTERS[1], scene, 256, options, shader=shader)
+
+    return [*(tile(step, samples=16) for step in (1, 2, 3)),
+            *(tile(3, what, 16, "torus", close) for what in ("_torus", "_torus_broken")), tile(4, samples=16),
+            *(tile(step, what) for step in (5, 6, 7) for what in ("", "_broken")),
+            tile(8, "_1_sample", 1), tile(8, "_16_samples", 16), tile(8, "_256_samples"), tile(8, "_broken", 16)]
+
+
 ON_REQUEST = {"hero"}  # takes a GPU minutes and a CPU a day
 
 # Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
@@ -187,6 +203,7 @@ FIGURES = {
     "noise": (renders_of_noise, figure_plots.noise),
     "equal_time": (renders_at_equal_time, figure_plots.equal_time),
     "convergence": (renders_of_convergence, figure_plots.convergence),
+    "first_steps": (renders_of_first_steps, figure_plots.first_steps),
     "sampler_points": (list, figure_plots.sampler_points),
     "point_sets": (list, figure_plots.point_sets),
     "one_over_root_n": (list, figure_plots.one_over_root_n),

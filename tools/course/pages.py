@@ -1,0 +1,73 @@
+"""The pages of a student's tree: without what its exercise asks for, code of later chapters, and what needs the tests."""
+import re
+from itertools import takewhile
+
+QUOTED_BLOCK = re.compile(r"<!-- code: (\S+) \|[^\n]* -->\n(.*?)<!-- end of code -->\n", re.DOTALL)
+FENCED = re.compile(r"^ *```\w+\n.*?^ *```$", re.DOTALL | re.MULTILINE)
+LINK = re.compile(r"(?<!!)\[(`[^`]+`|[^\[\]]+)\]\(([^()\s]+)\)")
+PIECE = re.compile(r"`([^` \n]+( [^` \n]+){2,})`")  # of code, in at least three words
+NAME = re.compile(r"`\w+(\(\))?`")  # alone it gives nothing away
+SHADERS = {".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".h"}
+TODO_LINE = "// TODO"
+
+
+def hide_lines(block, secret):
+    """A block of code with TODO in place of what is secret."""
+    lines = []
+    for line in block.split("\n"):
+        if line.strip() not in secret:
+            lines.append(line)
+        elif not lines[-1].endswith(TODO_LINE):
+            lines.append(line[:len(line) - len(line.lstrip())] + TODO_LINE)
+    return "\n".join(lines)
+
+
+def source_of(target):
+    """What stands for code of a file that stays out."""
+    chapter = re.search(r"\b(\d\d)_", target)
+    return f"code of chapter {int(chapter[1])}" if chapter else "code of a later chapter"
+
+
+def end_before_secrets(text, secret):
+    """The sections of a page up to the first one whose code has something secret."""
+    sections = re.split(r"^(?=## )", text, flags=re.MULTILINE)
+    kept = list(takewhile(lambda section: secret.isdisjoint(map(str.strip, section.splitlines())), sections))
+    return text if len(kept) == len(sections) else "".join(kept) + "The next steps are your exercise.\n"
+
+
+def leave_out_commands(text, missing):
+    """Without the sentences in which the regular expression `missing` finds a command."""
+    paragraphs = text.split("\n\n")
+    for i, paragraph in enumerate(paragraphs):
+        if re.search(missing, paragraph):
+            first, *others = re.split(r"((?<=[.!?])\s+)", paragraph)
+            sentences = [("", first), *zip(others[::2], others[1::2])]
+            paragraphs[i] = "".join(gap + sentence for gap, sentence in sentences if not re.search(missing, sentence)).lstrip()
+    return "\n\n".join(paragraphs)
+
+
+def clean_pages(folder, solution):
+    """Cleans all pages of the tree, in which everything else is as it will be."""
+    shaders = "\n".join(shader.read_text(encoding="utf-8") for shader in folder.rglob("*.glsl"))
+    secret = {line.strip() for line in solution.splitlines()} - set(map(str.strip, shaders.splitlines()))
+    needs_tests = re.search(r"^needs_tests='(.*)'$", (folder / "lab").read_text(encoding="utf-8"), re.MULTILINE)[1]
+    first_steps = folder / "docs/first_steps.md"
+    first_steps.write_text(end_before_secrets(first_steps.read_text(encoding="utf-8"), secret), encoding="utf-8")
+    for page in folder.rglob("*.md"):
+        def shown(link):
+            text, target = link.groups()
+            file = page.parent / target.split("#")[0]
+            is_quotation = file.suffix in SHADERS and text.startswith("`") and not NAME.fullmatch(text)
+            if "://" in target or file.exists():
+                is_gone = is_quotation and text[1:-1].replace("\\|", "|") not in file.read_text(encoding="utf-8")
+                return f"[TODO]({target})" if is_gone else link[0]
+            return source_of(target) if is_quotation else text
+
+        text = page.read_text(encoding="utf-8")
+        text = QUOTED_BLOCK.sub(lambda block: block[2] if (folder / block[1]).exists() else f"({source_of(block[1])})\n", text)
+        text = FENCED.sub(lambda block: hide_lines(block[0], secret), text)
+        text = LINK.sub(shown, text)
+        text = PIECE.sub(lambda piece: "TODO" if piece[1] in solution and piece[1] not in shaders else piece[0], text)
+        # An exercise is done when the check says so.
+        text = re.sub(r"Done\s+when all tests named [^,]* pass,\s+and\s+(?=`\./lab check)", "Done when ", text)
+        page.write_text(leave_out_commands(text, rf"\./lab\s+({needs_tests})\b"), encoding="utf-8")

@@ -1,0 +1,37 @@
+"""The shaders of docs/first_steps.md, taken from the page itself, and a program that renders with one of them."""
+import re
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+from check.grading import make_tree
+from project import CHAPTERS, ROOT, UserError
+
+PAGE = ROOT / "docs/first_steps.md"
+STEP = re.compile(r"^## (\d+)\. (.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
+SHADER = re.compile(r"^```glsl\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+BREAK_IT = re.compile(r"\*Break it:\* change `([^`]+)` to `([^`]+)`")
+
+
+def shaders(text):
+    """Of the page with this text: the shader of each step by its number, and "N broken" with the mistake that step N asks for."""
+    found = {}
+    for number, step in STEP.findall(text):
+        blocks = SHADER.findall(step)
+        if len(blocks) != 1:
+            raise UserError(f"{PAGE.name}: step {number} has {len(blocks)} blocks of glsl instead of one")
+        found[number] = blocks[0]
+        for piece, mistake in BREAK_IT.findall(" ".join(step.split())):
+            if blocks[0].count(piece) != 1:
+                raise UserError(f"{PAGE.name}: step {number} has {blocks[0].count(piece)} places with {piece!r}")
+            found[f"{number} broken"] = blocks[0].replace(piece, mistake)
+    return found
+
+
+@contextmanager
+def program(shader):
+    """Chapter 1's program with this text as its path_trace.glsl."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "path_trace.glsl"
+        file.write_text(shader, encoding="utf-8")
+        yield make_tree(CHAPTERS[1], file, Path(folder) / "lab")[0]
