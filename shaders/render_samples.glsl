@@ -28,6 +28,10 @@ bool is_counted(uint path_length) {
 // With PATH_REGENERATION, which chapter 10 defines, it does the same bounce by bounce.
 #include "path_trace.glsl"
 #ifndef PATH_REGENERATION
+// Other names stand behind these, so that a chapter may have a Path of its own.
+#define Path WholePath
+#define start_path start_whole_path
+#define extend_path trace_whole_path
 struct Path {
     Ray ray;
     vec3 radiance;

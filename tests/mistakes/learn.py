@@ -2,13 +2,15 @@
 """Teaches ./lab check what the mistakes of tests/mistakes/mistakes.json do, and measures how often it names them right.
 
     tests/mistakes/learn.py learn      renders the chapters' own shaders and each mistake planted in them; writes
-                                       levels.json and signatures.json of tools/check
-    tests/mistakes/learn.py confusion  plants each mistake again and lets it be named: with new seeds, in the differently
-                                       written shaders of tests/variants, and on scenes that check does not use; writes
-                                       docs/records/check/confusion.json, which goes on where it was interrupted
+                                       tools/check/knowledge.json
+    tests/mistakes/learn.py confusion  plants each mistake again and lets it be named, with new seeds, on scenes that check does
+                                       not use and in the differently written shaders of tests/variants; checks correct
+                                       shaders as well; writes docs/records/check/confusion.json
 
-With --chapter N either does so for chapter N alone, and what it wrote of the others stays.
+Both do only what has changed since the last time: a shader, what it is rendered with, or a signature. So both go on where they
+were interrupted. --anew does everything again, which is needed where shaders that chapters share have changed.
 """
+import hashlib
 import json
 import sys
 import tempfile
@@ -20,36 +22,27 @@ from threading import Lock
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
-from check.likely_mistake import SIGNATURES, rank, read_signatures, signature  # noqa: E402
+from check.likely_mistake import candidates, read_signatures, signature, surprises  # noqa: E402
 from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
-from project import (RECORDS, Parser, UserError, add_device_options, commit, number, read_json, show_progress,  # noqa: E402
+from project import (RECORDS, Parser, add_device_options, commit, number, read_json, show_progress,  # noqa: E402
                      write_json)
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
-# With seeds that ./lab check never has.
+# Levels have the seeds of a check without --seed, see grading.first_seed(); the others have seeds that no check has.
+LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0), "factor": 1}
 LEARNING = {"runs": 5, "first_seed": 1001, "factor": 2}  # times the samples of a check
-LEVELS = {"runs": 12, "first_seed": 2001, "factor": 1}
-TRYING = {"runs": 12, "first_seed": 3001, "factor": 1}  # as a check does, with seeds that nothing was learnt from
+TRYING = {"runs": grading.RUNS, "first_seed": 3001, "factor": 1}  # as a check does, with seeds that nothing was learnt from
 
 
-def settings():
-    """What the record of trials depends on, as it stands there."""
-    depends = TRYING | {"scenes": grading.SCENES, "options": grading.OPTIONS, "other_scenes": OTHER_SCENES}
-    return json.loads(json.dumps(depends))
+def settings(chapter, plan, scenes=None):
+    """What a verdict depends on besides the shader."""
+    samples, own_scenes = grading.SCENES[chapter]
+    return {"plan": plan, "samples": samples, "scenes": scenes or own_scenes, "options": grading.OPTIONS[chapter]}
 
 
-def settings_of_others(all_settings, chapter):
-    """The same without those of a chapter."""
-    return {key: {number: value for number, value in values.items() if number != str(chapter)} if isinstance(values, dict) else values
-            for key, values in all_settings.items()}
-
-
-def kept_trials(record, chapter, names):
-    """Those of all chapters but the one that is tried anew."""
-    if settings_of_others(record["settings"], chapter) != settings_of_others(settings(), chapter):
-        raise UserError("the settings of other chapters have changed as well: try all of them, without --chapter")
-    return {key: trial for key, trial in record["trials"].items() if key in names}
+def digest(*parts):
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:12]
 
 
 class Workshop:
@@ -58,102 +51,133 @@ class Workshop:
     def __init__(self, options):
         self.options = options
 
-    def settings(self, chapter, plan):
+    def settings(self, chapter, plan, seed=0):
         samples = grading.SCENES[chapter][0] * plan["factor"]
         return {"backend": self.options.backend, "device": self.options.device, "time_limit": 600, "runs": plan["runs"],
-                "samples": samples, "first_seed": plan["first_seed"], "is_quiet": True}
+                "samples": samples, "first_seed": plan["first_seed"] + seed, "is_quiet": True}
 
-    def judge(self, chapter, text, plan, levels=None, scenes=None):
+    def judge(self, chapter, text, plan, levels, scenes, seed=0):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "path_trace.glsl"
             file.write_text(text, encoding="utf-8")
-            return grading.judge(chapter, file, self.settings(chapter, plan), levels, scenes)
+            return grading.judge(chapter, file, self.settings(chapter, plan, seed), levels, scenes)[0]
 
-    def levels(self, chapter, plan, scenes=None):
-        cases = grading.render(chapter, own_shader(chapter), self.settings(chapter, plan), scenes)
+    def levels(self, chapter, scenes):
+        cases = grading.render(chapter, own_shader(chapter), self.settings(chapter, LEVELS), scenes)
         return {case["scene"]: grading.level(case) for case in cases}
 
     def map(self, what, function, items):
-        """The results of all items, with progress."""
-        started, results = time.monotonic(), []
+        """Calls a function for all items, with progress."""
+        started = time.monotonic()
         with ThreadPoolExecutor(self.options.jobs) as pool:
-            for result in pool.map(function, items):
-                results.append(result)
-                show_progress(what, len(results), len(items), started)
-        return results
+            for done, _ in enumerate(pool.map(function, items), 1):
+                show_progress(what, done, len(items), started)
 
 
-def rounded(known):
-    return {"differences": [round(x, 4) for x in known.differences], "errors": [float(f"{x:.2g}") for x in known.errors],
-            "noise": [float(f"{x:.3g}") for x in known.noise], "rays": [float(f"{x:.3g}") for x in known.rays]}
+def percentages(tests):
+    """Text with a number of three digits for each difference; 0 for what is within three standard errors."""
+    return " ".join(f"{100 * test['value']:+.3g}" if abs(test["value"]) > 1.5 * test["half_width"] else "0" for test in tests)
 
 
-def learn(workshop, scenes):
-    """Levels of chapters, and the signatures of their mistakes: chapter -> name -> hint, slide and signature. `scenes` are
-    names of references for each chapter."""
-    levels = dict(zip(scenes, workshop.map("levels", lambda n: workshop.levels(n, LEVELS, scenes[n]), list(scenes))))
-    planted = [item for item in catalogue() if item[0] in scenes]
-    results = workshop.map(
-        "signatures", lambda item: workshop.judge(item[0], item[2], LEARNING, levels[item[0]], scenes[item[0]]), planted)
-    signatures = {chapter: {} for chapter in scenes}
-    for (chapter, mistake, _), result in zip(planted, results):
-        entry = {key: mistake["check"][key] for key in ("hint", "slide")}
-        signatures[chapter][mistake["name"]] = entry | {"signature": rounded(signature(result))}
-    return levels, signatures
+def written(result):
+    """What a mistake does to each scene, as a person can read it: differences in percent, tiles as they lie in the picture."""
+    scenes = {}
+    for scene in result["scenes"]:
+        rows = [[tile for tile in scene["tiles"] if tile["row"] == row]
+                for row in range(scene["tiles"][-1]["row"] + 1)]
+        scenes[scene["scene"]] = {"noise": float(f"{scene['noise'][0] or 1:.3g}"), "rays": float(f"{scene['rays']:.3g}"),
+                                  "image": percentages(scene["image"]), "tiles": list(map(percentages, rows))}
+    return scenes
 
 
-def write_lines(file, knowledge):
-    """JSON with a line for each entry of an entry."""
-    blocks = []
-    for chapter, entries in knowledge.items():
-        lines = ",\n".join(f"  {json.dumps(name)}: {json.dumps(entry, ensure_ascii=False)}" for name, entry in entries.items())
-        blocks.append(f' "{chapter}": {{\n{lines}\n }}')
-    file.write_text("{\n" + ",\n".join(blocks) + "\n}\n", encoding="utf-8")
+def learn(workshop, file, scenes, is_anew):
+    """Fills a file of knowledge: for each chapter the levels of its own shader and what its mistakes do. `scenes` are names of
+    references for each chapter. What is there already and was measured alike stays."""
+    before = read_json(file) if file.exists() and not is_anew else {}
+    knowledge = {str(chapter): {"measured": digest(settings(chapter, LEVELS, names), own_shader(chapter).read_text(encoding="utf-8")),
+                                "levels": None, "mistakes": {}} for chapter, names in scenes.items()}
+    for chapter, entry in knowledge.items():
+        known = before.get(chapter, {})
+        if known.get("measured") == entry["measured"]:
+            entry["levels"] = known["levels"]
+
+    def learn_levels(chapter):
+        knowledge[str(chapter)]["levels"] = workshop.levels(chapter, scenes[chapter])
+
+    workshop.map("levels", learn_levels, [n for n in scenes if not knowledge[str(n)]["levels"]])
+    work, lock = [], Lock()
+    for chapter, mistake, text in catalogue():
+        if chapter in scenes:
+            entry = {key: mistake["check"][key] for key in ("hint", "slide")}
+            entry |= {"measured": digest(settings(chapter, LEARNING, scenes[chapter]), text, knowledge[str(chapter)]["measured"])}
+            known = before.get(str(chapter), {}).get("mistakes", {}).get(mistake["name"], {})
+            entry["scenes"] = known["scenes"] if known.get("measured") == entry["measured"] else {}
+            knowledge[str(chapter)]["mistakes"][mistake["name"]] = entry
+            if not entry["scenes"]:
+                work.append((chapter, text, entry))
+
+    def learn_mistake(item):
+        chapter, text, entry = item
+        result = workshop.judge(chapter, text, LEARNING, knowledge[str(chapter)]["levels"], scenes[chapter])
+        with lock:
+            entry["scenes"] = written(result)
+            write_json(file, knowledge)
+
+    write_json(file, knowledge)
+    workshop.map("signatures", learn_mistake, work)
+    return knowledge
 
 
-def confusion(workshop, chapter):
-    record = read_json(RECORD) if RECORD.exists() else {"is_complete": True}
-    open_trials = trials()
-    if record["is_complete"] or record["settings"] != settings():
-        others = {name for name, trial in open_trials.items() if trial[0] != chapter}
-        kept = kept_trials(record, chapter, others) if chapter else {}
-        record = {"is_complete": False, "commit": commit(), "settings": settings(), "trials": kept}
-        levels, signatures = learn(workshop, {n: scenes for n, scenes in OTHER_SCENES.items() if chapter in (None, n)})
-        record["other_scenes"] = {"levels": levels, "signatures": signatures}
-        write_json(RECORD, record)
-    record = json.loads(json.dumps(record))  # numbers of chapters as keys become text, as in a record that was read
-    others, known, lock = record["other_scenes"], read_json(SIGNATURES), Lock()  # jobs share the record
+def confusion(workshop, is_anew):
+    own = read_json(grading.KNOWLEDGE)
+    record = read_json(RECORD) if RECORD.exists() and not is_anew else {"trials": {}}
+    others = learn(workshop, RECORD.with_name("other_scenes.json"), OTHER_SCENES, is_anew)
+    done, record, lock = record["trials"], {"commit": commit(), "trials": {}}, Lock()
+    work = []
+    for key, (chapter, name, text, seed) in trials().items():
+        is_other = key.startswith("other scenes")
+        scenes, knowledge = (OTHER_SCENES[chapter], others) if is_other else (None, own)
+        knowledge = knowledge[str(chapter)]
+        measured = digest(settings(chapter, TRYING, scenes), text, seed, knowledge["measured"])
+        if done.get(key, {}).get("measured") == measured:
+            record["trials"][key] = done[key]
+        else:
+            work.append((key, chapter, name, text, seed, scenes, knowledge, measured))
 
     def try_naming(item):
-        key, (chapter, name, text) = item
-        place = (others["levels"][str(chapter)], OTHER_SCENES[chapter]) if key.startswith("other scenes") else ()
-        candidates = read_signatures((others["signatures"] if place else known)[str(chapter)])
-        result = workshop.judge(chapter, text, TRYING, *place)
-        names = [] if result["verdict"] == "correct" else rank(signature(result), candidates)
+        key, chapter, name, text, seed, scenes, knowledge, measured = item
+        result = workshop.judge(chapter, text, TRYING, knowledge["levels"], scenes, TRYING["runs"] * seed)
+        trial = {"mistake": name, "verdict": result["verdict"], "named": [], "is_sure": False, "measured": measured} | effect(result)
+        if result["verdict"] != "correct":
+            found = surprises(signature(result), read_signatures(knowledge["mistakes"]))
+            trial |= {"named": list(found)[:3], "is_sure": len(candidates(found)) == 1}
         with lock:
-            record["trials"][key] = {"mistake": name, "verdict": result["verdict"], "named": names[:3]}
+            record["trials"][key] = trial
             write_json(RECORD, record)
 
-    workshop.map("naming", try_naming, [item for item in open_trials.items() if item[0] not in record["trials"]])
-    del record["other_scenes"]  # no more use
-    write_json(RECORD, record | {"is_complete": True})
+    workshop.map("naming", try_naming, work)
+    write_json(RECORD, record)
+
+
+def effect(result):
+    """The largest change of a picture's mean and the largest of its error, both as parts: what a check must find."""
+    sure = [abs(test["value"]) for scene in result["scenes"] for test in scene["image"] if abs(test["value"]) > test["half_width"]]
+    return {"bias": max(sure, default=0.0),
+            "noise": max(scene["noise"][0] or 1.0 for scene in result["scenes"]), "rays": max(scene["rays"] for scene in result["scenes"])}
 
 
 def main():
     parser = Parser("tests/mistakes/learn.py", __doc__)
     parser.add_argument("action", choices=["learn", "confusion"])
     parser.add_argument("--jobs", type=number(int, 1), default=1, help="shaders that are rendered at a time; default: 1")
-    parser.add_argument("--chapter", type=int, choices=grading.SCENES, metavar="N", help="default: all")
+    parser.add_argument("--anew", action="store_true", help="measure everything again")
     add_device_options(parser)
     options = parser.parse_args()
     workshop = Workshop(options)
     if options.action == "confusion":
-        confusion(workshop, options.chapter)
-        return
-    learnt = learn(workshop, {n: scenes for n, (_, scenes) in grading.SCENES.items() if options.chapter in (None, n)})
-    for file, knowledge in zip((grading.LEVELS, SIGNATURES), learnt):
-        before = read_json(file) if options.chapter else {}
-        write_lines(file, before | {str(chapter): entry for chapter, entry in knowledge.items()})
+        confusion(workshop, options.anew)
+    else:
+        learn(workshop, grading.KNOWLEDGE, {n: scenes for n, (_, scenes) in grading.SCENES.items()}, options.anew)
 
 
 if __name__ == "__main__":

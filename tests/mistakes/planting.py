@@ -4,24 +4,33 @@ from project import CHAPTERS, ROOT, read_json  # noqa: F401
 
 VARIANTS = ROOT / "tests/variants"
 # Scenes that had no part in choosing the numbers in likely_mistake.py, for chapters that begin something: references.
-OTHER_SCENES = {1: ["cornell_box_6", "torus_5"], 3: ["cornell_box_6", "heart_light_4"], 6: ["cornell_box_6", "glass_8"]}
+OTHER_SCENES = {1: ["cornell_box_6", "torus_5"], 3: ["cornell_box_6", "heart_light_4"], 5: ["cornell_box_6", "heart_light_4"],
+                6: ["cornell_box_6", "glass_8"], 7: ["cornell_box_6", "glossy_5"], 8: ["cornell_box_6", "studio_4"]}
+CORRECT_CHECKS = 5  # of each correct shader, with other seeds
 
 
 def variants():
-    """(chapter, file, None or name of a mistake, text) for all shaders in tests/variants, and with their first two mistakes."""
+    """(chapter, file, None or name of a mistake, text) for all shaders in tests/variants, and with their first mistake."""
     for variant in read_json(VARIANTS / "variants.json"):
         text = (VARIANTS / variant["file"]).read_text(encoding="utf-8")
         yield variant["chapter"], variant["file"], None, text
-        for mistake in variant["mistakes"][:2]:
+        for mistake in variant["mistakes"][:1]:
             what = f"{mistake['name']} in {variant['file']}"
             yield variant["chapter"], variant["file"], mistake["name"], plant(text, mistake["find"], mistake["replace"], what)
 
 
 def trials():
-    """What check is tried with: condition/place/mistake -> (chapter, name of the mistake or None, text). All mistakes with new
-    seeds, every other one on other scenes, two in each variant: so that two cores need an hour."""
+    """What check is tried with: condition/place/mistake -> (chapter, name of the mistake or None, text, seed). All mistakes with
+    new seeds, every fourth on other scenes, one in each variant, and each correct shader several times."""
     planted = list(catalogue())
-    tried = {"new seeds": planted, "other scenes": [item for item in planted if item[0] in OTHER_SCENES][::2]}
-    result = {f"{condition}/{chapter}/{mistake['name']}": (chapter, mistake["name"], text)
+    tried = {"new seeds": planted, "other scenes": [item for item in planted if item[0] in OTHER_SCENES][::4]}
+    result = {f"{condition}/{chapter}/{mistake['name']}": (chapter, mistake["name"], text, 0)
               for condition, items in tried.items() for chapter, mistake, text in items}
-    return result | {f"variants/{file}/{name or 'correct'}": (chapter, name, text) for chapter, file, name, text in variants()}
+    correct = [(chapter, f"{chapter:02}_path_trace.glsl", own_shader(chapter).read_text(encoding="utf-8")) for chapter in CHAPTERS]
+    for chapter, file, name, text in variants():
+        if name:
+            result[f"variants/{file}/{name}"] = chapter, name, text, 0
+        else:
+            correct.append((chapter, file, text))
+    return result | {f"correct/{file}/seed {seed}": (chapter, None, text, seed)
+                     for chapter, file, text in correct for seed in range(CORRECT_CHECKS)}

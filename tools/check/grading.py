@@ -1,11 +1,12 @@
 """Grades a shader of a chapter: renders scenes that have a reference image and judges bias, noise and cost.
 
 Means of the whole image and of its tiles are tested against the reference. Error and rays are compared with those of the
-chapter's own shader, as recorded in levels.json.
+chapter's own shader, which knowledge.json has.
 """
 import shutil
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -13,37 +14,42 @@ from project import BINARIES, CHAPTERS, ROOT, UserError, description, read_json,
 from references.images import find_references, read_reference, read_rgb
 from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
-from report.numbers import Series, biases, mean_of, ratio
+from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
-LEVELS = Path(__file__).with_name("levels.json")
+KNOWLEDGE = Path(__file__).with_name("knowledge.json")
 # For each chapter: samples of a run, and references that show what its shader does.
 ROOM = ["check_room_2", "check_room_6"]
 SCENES = {
-    1: (48, [*ROOM, "textured_4"]),
-    2: (48, [*ROOM, "textured_4"]),
-    3: (24, [*ROOM, "textured_4"]),
-    4: (10, [*ROOM, "textured_4"]),
-    5: (16, [*ROOM, "textured_4"]),
-    6: (16, [*ROOM, "check_glass_8"]),
-    7: (16, ["check_room_6", "plates_3", "check_glass_8"]),
+    1: (32, [*ROOM, "textured_4"]),
+    2: (32, [*ROOM, "textured_4"]),
+    3: (16, [*ROOM, "textured_4"]),
+    4: (8, [*ROOM, "textured_4"]),
+    5: (10, [*ROOM, "textured_4"]),
+    6: (10, [*ROOM, "check_glass_8"]),
+    7: (12, ["check_room_6", "plates_3", "check_glass_8"]),
     8: (12, ["check_room_6", "textured_4", "sunny_4"]),
-    9: (32, ["check_room_6", "cornell_box_1", "textured_4"]),
-    10: (32, ["check_room_6", "textured_4", "sunny_4"]),
+    9: (16, ["check_room_6", "cornell_box_1", "textured_4"]),
+    10: (16, ["check_room_6", "textured_4", "sunny_4"]),
 }
-# Roulette from the first bounce on and with a cap that matters: otherwise both hardly show.
-ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.35"]
+# Roulette from the first bounce on and with a cap that matters: otherwise both hardly show. With a lower cap few samples
+# would decide a picture, since survivors of eight bounces count 1/cap^8, and no interval would hold.
+ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6"]
 OPTIONS = {number: ROULETTE if "--roulette-start" in description(CHAPTERS[number]).get("options", []) else []
            for number in SCENES if number in CHAPTERS}
 TILE = 16  # pixels
 FALSE_ALARMS = 0.001  # of all checks of correct shaders
 TOO_MUCH = 1.5  # times the error of a sample or its rays
-MOST_RUNS, SEED_STEP = 1000, 10000
+RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
+EARLY_RUNS = 4  # after which a first verdict is worth telling
+JOBS = 2  # renders at a time: while one starts, another renders
+PATIENCE = 10  # a check may take so many times the limit of a single render
 VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first of any scene counts
 
 
 def first_seed(seed):
     """Of the runs of a check with this --seed: checks with different ones share no render. None has the seeds from MOST_RUNS + 1
-    to SEED_STEP: with those the chapters' levels and the signatures of mistakes were measured."""
+    to SEED_STEP: with those the signatures of mistakes were measured. The chapters' levels have the seeds of --seed 0, so that a
+    shader which calls for random numbers in the same order as the chapter's own is compared render by render."""
     return seed * SEED_STEP + 1
 
 
@@ -76,38 +82,52 @@ def reference_regions(file):
             "freedom": reference.freedom}
 
 
-def render(chapter, file, settings, scenes=None):
-    """Cases with their runs, each a row with the means of the regions. `settings`: backend, device, time_limit, runs,
-    samples, first_seed and is_quiet; `scenes` are names of references."""
+def render(chapter, file, settings, scenes=None, watch=lambda cases: None):
+    """Cases with their runs, each a row with the means of the regions. `settings`: backend, device, time_limit, memory_limit,
+    runs, samples, first_seed and is_quiet; `scenes` are names of references; `watch` is called after the first EARLY_RUNS."""
     samples, own_scenes = SCENES[chapter]
-    samples = settings["samples"] or samples
-    with tempfile.TemporaryDirectory() as folder:
+    samples, started = settings["samples"] or samples, time.monotonic()
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(JOBS) as pool:
         program, shader = make_tree(CHAPTERS[chapter], file, Path(folder))
         cases = [new_case(*pair, f"chapter {chapter}", program, OPTIONS[chapter])
                  for pair in find_references(scenes or own_scenes)]
-        picture, total, started = Path(folder) / "picture.exr", settings["runs"] * len(cases), time.monotonic()
-        for run in range(settings["runs"]):
-            for i, case in enumerate(cases):
-                try:
-                    report = run_case(case, settings,
-                                      ["--samples", samples, "--seed", settings["first_seed"] + run, "--output", picture])
-                except UserError as error:
-                    raise UserError(str(error).replace(str(shader.resolve()), str(file))) from None
-                row = report["rows"][-1]
-                row["mean"] = regions(read_rgb(picture))
-                case["runs"].append({"seed": run, "rows": [row]})
-                case["invalid_samples"] = case.get("invalid_samples", 0) + report["invalid_samples"]
+        for case in cases:
+            case |= {"invalid_samples": 0, "picture": 0}
+        work = [(run, i) for run in range(settings["runs"]) for i in range(len(cases))]
+
+        def render_one(item):
+            run, i = item
+            if time.monotonic() - started > PATIENCE * settings["time_limit"]:
+                raise UserError(f"ended after {PATIENCE * settings['time_limit']:g} s in all: on a slow machine allow more by --time-limit")
+            picture = Path(folder) / f"{run}_{i}.exr"
+            report = run_case(cases[i], settings, ["--samples", samples, "--seed", settings["first_seed"] + run, "--output", picture])
+            return report, read_rgb(picture)
+
+        try:
+            for done, ((run, i), (report, image)) in enumerate(zip(work, pool.map(render_one, work)), 1):
+                case, row = cases[i], report["rows"][-1]
+                row["mean"] = regions(image)
+                case["runs"].append({"seed": settings["first_seed"] + run, "rows": [row]})
+                case["invalid_samples"] += report["invalid_samples"]
+                case["picture"] = case["picture"] + image / settings["runs"]
                 if not settings["is_quiet"]:
-                    show_progress(case["scene"], run * len(cases) + i + 1, total, started)
+                    show_progress(case["scene"], done, len(work), started)
+                if done == EARLY_RUNS * len(cases) < len(work):
+                    watch(cases)
+        except BaseException as error:
+            pool.shutdown(cancel_futures=True)
+            if isinstance(error, UserError):
+                raise UserError(str(error).replace(str(shader.resolve()), str(file))) from None
+            raise
     return cases
 
 
 def level(case):
-    """What the technique needs: rel_mse of a single sample, from each run, and rays of a sample."""
-    rows = [run["rows"][-1] for run in case["runs"]]
-    pixels = case["width"] * case["height"]
-    return {"rel_mse": [row["rel_mse"] * row["samples"] for row in rows],
-            "rays": mean_of(rows, "rays") / rows[0]["samples"] / pixels}
+    """What the technique needs: rel_mse of a single sample, for the seed of each run, and rays of a sample."""
+    rows = {run["seed"]: run["rows"][-1] for run in case["runs"]}
+    samples = next(iter(rows.values()))["samples"]
+    return {"rel_mse": {str(seed): float(f"{row['rel_mse'] * samples:.4g}") for seed, row in rows.items()},
+            "rays": float(f"{mean_of(rows.values(), 'rays') / samples / case['width'] / case['height']:.4g}")}
 
 
 def grade(case, recorded, comparisons):
@@ -115,14 +135,17 @@ def grade(case, recorded, comparisons):
     reference, now = reference_regions(ROOT / case["reference_file"]), level(case)
     comparisons *= len(reference["mean"]) * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS
     tests = biases(case["runs"], reference, comparisons)
-    noise = ratio(*(Series(dict(enumerate(level["rel_mse"]))) for level in (now, recorded)))
+    errors = [Series(level["rel_mse"]) for level in (now, recorded)]
+    is_paired = len(now["rel_mse"].keys() & recorded["rel_mse"].keys()) > 1
+    noise = paired_ratio(*errors) if is_paired else ratio(*errors)
     rays = now["rays"] / recorded["rays"]
+    # Noise that is paid for by fewer rays is no fault, and rays that pay by less noise are none either.
     if case["invalid_samples"] or any(test["is_biased"] for test in tests):
         verdict = "biased"
-    elif noise[1] is not None and noise[1] > TOO_MUCH:
+    elif noise[1] is not None and noise[1] * min(rays, 1) > TOO_MUCH:
         verdict = "noisy"
     else:
-        verdict = "expensive" if rays > TOO_MUCH else "correct"
+        verdict = "expensive" if rays * min(noise[0] or 1, 1) > TOO_MUCH else "correct"
     columns = case["width"] // TILE
     tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tests[3:])]
     return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": tests[:3],
@@ -131,15 +154,28 @@ def grade(case, recorded, comparisons):
 
 def read_levels():
     """Chapter -> scene -> level of the chapter's own shader."""
-    return read_json(LEVELS)
+    return {chapter: entry["levels"] for chapter, entry in read_json(KNOWLEDGE).items()}
 
 
-def judge(chapter, file, settings, levels=None, scenes=None):
-    """The verdict on a shader and on each scene; UserError where there is none."""
-    cases = render(chapter, file, settings, scenes)
+def early_bias(cases):
+    """The largest difference from the reference that is sure after a few runs: the name of a scene and the difference as part of
+    the reference, or None and the smallest that would be."""
+    tests = [(test, case["scene"]) for case in cases
+             for test in biases(case["runs"], reference_regions(ROOT / case["reference_file"]),
+                                len(cases) * 3 * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS)[:3]]
+    sure = [(test["value"], scene) for test, scene in tests if test["is_biased"]]
+    if sure:
+        value, scene = max(sure, key=lambda pair: abs(pair[0]))
+        return scene, value
+    return None, max(test["detectable"] for test, _ in tests)
+
+
+def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None):
+    """The verdict on a shader and on each scene, and the mean picture of each scene; UserError where there is none."""
+    cases = render(chapter, file, settings, scenes, watch)
     levels = levels or read_levels()[str(chapter)]
     results = [grade(case, levels[case["scene"]], len(cases)) for case in cases]
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
     return {"chapter": chapter, "file": str(file), "verdict": verdict, "runs": settings["runs"],
             "samples": settings["samples"] or SCENES[chapter][0], "first_seed": settings["first_seed"], "false_alarms": FALSE_ALARMS,
-            "too_much": TOO_MUCH, "picture": None, "likely_mistake": None, "scenes": results}
+            "too_much": TOO_MUCH, "picture": None, "likely_mistake": None, "scenes": results}, [case["picture"] for case in cases]

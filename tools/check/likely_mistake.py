@@ -1,22 +1,24 @@
 """Names the mistake that a shader probably makes, by comparing what it does to the pictures with what each known mistake does.
 
 A signature tells of each scene how much the means of the image and its tiles differ from the reference, as parts of it, and
-how often the chapter's own noise and rays a shader has. signatures.json has those of all known mistakes, written by
+how often the chapter's own noise and rays a shader has. knowledge.json has those of all known mistakes, written by
 tests/mistakes/learn.py.
 """
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
+from check.grading import KNOWLEDGE
 from project import read_json
 
-SIGNATURES = Path(__file__).with_name("signatures.json")
 # Another student's shader has the same mistake but not quite the same signature: parts of a difference, and the least.
 LOOSENESS, LEAST = 0.15, 0.005
-NOISE_LOOSENESS, RAYS_LOOSENESS = 0.4, 0.1  # of their logarithms
+NOISE_LOOSENESS, RAYS_LOOSENESS = 0.2, 0.1  # of their logarithms
 # What a mistake must explain to be named: so much of the surprise of seeing this in a correct shader, and either half of that
 # surprise or all but what chance leaves in each region.
-LEAST_EXPLAINED, CHANCE = 8.0, 0.4
+LEAST_EXPLAINED, CHANCE = 6.0, 0.6
+# It is named alone where the next one would be a surprise larger by so much, or by this part of what both leave unexplained.
+SURE, SURE_PART = 10.0, 0.15
+SIDES = (("top", "middle", "bottom"), ("left", "middle", "right"))
 
 
 @dataclass
@@ -40,33 +42,77 @@ def surprise(seen, known):
     def term(difference, error):
         return 2 * math.log1p((difference / error) ** 2 / 3)
 
-    total = sum(term(a - b, math.hypot(e, f, LOOSENESS * b, LEAST))
-                for a, e, b, f in zip(seen.differences, seen.errors, known.differences, known.errors))
+    total = sum(term(a - b, math.hypot(e, LOOSENESS * b, LEAST))
+                for a, e, b in zip(seen.differences, seen.errors, known.differences))
     for a, b in zip(seen.noise, known.noise):
         total += term(math.log(a / b), NOISE_LOOSENESS)
     return total + sum(term(math.log(a / b), RAYS_LOOSENESS) for a, b in zip(seen.rays, known.rays))
 
 
-def rank(seen, known):
-    """Names of known signatures (name -> Signature), the likeliest first; empty if none explains what is seen."""
+def surprises(seen, known):
+    """Of each known signature (name -> Signature) the surprise, the likeliest first; empty if none explains what is seen."""
     count = len(seen.differences)
     faultless = Signature([0.0] * count, [0.0] * count, [1.0] * len(seen.noise), [1.0] * len(seen.rays))
-    surprises = {name: surprise(seen, other) for name, other in known.items()}
-    names, unexplained = sorted(surprises, key=surprises.get), surprise(seen, faultless)
-    least = min(surprises.values(), default=math.inf)
+    found = {name: surprise(seen, other) for name, other in known.items()}
+    unexplained, least = surprise(seen, faultless), min(found.values(), default=math.inf)
     is_explained = least < unexplained - LEAST_EXPLAINED and least < max(unexplained / 2, CHANCE * count)
-    return names if is_explained else []
+    return dict(sorted(found.items(), key=lambda pair: pair[1])) if is_explained else {}
 
 
-def read_signatures(entries):
-    """Name -> Signature, of a chapter's entries in SIGNATURES."""
-    return {name: Signature(**entry["signature"]) for name, entry in entries.items()}
+def rank(seen, known):
+    """Their names."""
+    return list(surprises(seen, known))
+
+
+def candidates(found):
+    """The names of one mistake, or of two where it is not sure which; `found` is of surprises()."""
+    names = list(found)[:2]
+    if len(names) == 2 and found[names[1]] - found[names[0]] > SURE + SURE_PART * found[names[0]]:
+        return names[:1]
+    return names
+
+
+def percentages(text):
+    return [float(word) / 100 for word in text.split()]
+
+
+def read_signature(scenes):
+    """Of a mistake in KNOWLEDGE: scene -> what it does there."""
+    regions = [percentages(" ".join([scene["image"], *scene["tiles"]])) for scene in scenes.values()]
+    return Signature(sum(regions, []), [], *([scene[key] for scene in scenes.values()] for key in ("noise", "rays")))
+
+
+def read_signatures(mistakes):
+    """Name -> Signature, of a chapter's mistakes in KNOWLEDGE."""
+    return {name: read_signature(entry["scenes"]) for name, entry in mistakes.items()}
+
+
+def place_that_tells(result, seen, first, second):
+    """Where two mistakes differ most, as far as noise lets it be seen: the scene, a place in its picture, and what either
+    does there to the brightness, as part of it."""
+    places = []
+    for scene in result["scenes"]:
+        places += [(scene["scene"], "in the whole picture")] * len(scene["image"])
+        rows, columns = (max(tile[key] for tile in scene["tiles"]) + 1 for key in ("row", "column"))
+        for tile in scene["tiles"]:
+            side = f"{SIDES[0][3 * tile['row'] // rows]} {SIDES[1][3 * tile['column'] // columns]}"
+            places.append((scene["scene"], f"at the {side} of the picture"))
+    contrasts = [abs(a - b) / math.hypot(LEAST, error) for a, b, error in zip(first.differences, second.differences, seen.errors)]
+    index = contrasts.index(max(contrasts))
+    return {"scene": places[index][0], "place": places[index][1], "effects": [first.differences[index], second.differences[index]]}
 
 
 def likely_mistake(result):
-    """Name, hint and slide of the mistake that a shader with this result probably makes, or None."""
+    """The mistakes that a shader with this result probably makes, at most two, each with name, question (hint) and slide; with two
+    also where to look to tell them apart. None where nothing known explains it."""
     if result["verdict"] == "correct":
         return None
-    known = read_json(SIGNATURES)[str(result["chapter"])]
-    names = rank(signature(result), read_signatures(known))
-    return {"name": names[0], **{key: known[names[0]][key] for key in ("hint", "slide")}} if names else None
+    known = read_json(KNOWLEDGE)[str(result["chapter"])]["mistakes"]
+    seen, signatures = signature(result), read_signatures(known)
+    names = candidates(surprises(seen, signatures))
+    if not names:
+        return None
+    found = {"mistakes": [{"name": name, "hint": known[name]["hint"], "slide": known[name]["slide"]} for name in names]}
+    if len(names) == 2:
+        found["tell_apart"] = place_that_tells(result, seen, *(signatures[name] for name in names))
+    return found

@@ -129,7 +129,8 @@ def working_variants():
 def run_case(case, settings, arguments):
     """The report of one run, with the seconds from its start to its end, less those of what a peer renders and discards."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [*peer_command(case["program"])] if case["is_peer"] else [BINARIES / case["program"], "--quiet"]
+        limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
+        command = [*peer_command(case["program"])] if case["is_peer"] else [*limited, BINARIES / case["program"], "--quiet"]
         command += [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
         if case["reference_file"]:
             command += ["--max-path-length", case["max_path_length"]]

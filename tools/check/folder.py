@@ -1,0 +1,82 @@
+"""Grades all shaders of a folder: ./lab check N --all FOLDER."""
+import csv
+import hashlib
+import html
+import json
+import sys
+import time
+
+from check.words import explain, hint_lines
+from project import ROOT, UserError, read_json, write_json
+
+UNGRADED = 2  # exit code
+COLUMNS = ["submission", "verdict", "unfinished_line", "mistakes", "questions", "error", "seconds"]
+PAGE = """<!DOCTYPE html>
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
+<style>body {{ font: 16px sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em }} img {{ max-width: 100% }}
+pre {{ white-space: pre-wrap; background: #8882; padding: 0.6em }}</style>
+<h1>{title}</h1>
+{body}</html>
+"""
+
+
+def submissions(folder):
+    """Name -> file of each shader: NAME.glsl, or NAME/path_trace.glsl."""
+    if not folder.is_dir():
+        raise UserError(f"{folder}: no such folder")
+    files = [*folder.glob("*.glsl"), *folder.glob("*/path_trace.glsl")]
+    found = {file.parent.name if file.name == "path_trace.glsl" and file.parent != folder else file.stem: file for file in files}
+    if len(found) < len(files):
+        raise UserError(f"{folder}: two submissions have the same name: rename one of them")
+    if not found:
+        raise UserError(f"{folder}: has neither files NAME.glsl nor folders NAME with a path_trace.glsl")
+    return dict(sorted(found.items()))
+
+
+def digest(options, file):
+    """Of a shader and of what it is graded with: a result with the same one stays."""
+    settings = [options.chapter, options.seed, options.runs, options.samples, options.teacher, options.time_limit, options.memory_limit]
+    return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes()).hexdigest()
+
+
+def grade_one(options, check, name, file):
+    started = time.monotonic()
+    try:
+        result = check(options, file)
+        row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": result["picture"],
+               "text": explain(result), "questions": " ".join(text for head, text in hint_lines(result) if head in ("ask yourself", "or")),
+               "mistakes": " ".join(each.get("name", "") for each in (result["likely_mistake"] or {"mistakes": []})["mistakes"]), "error": ""}
+    except (UserError, OSError) as error:
+        row = {"verdict": "not graded", "error": str(error), "text": str(error)}
+    return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1)}
+
+
+def write_page(options, rows, path):
+    parts = []
+    for row in rows:
+        picture = f'<img src="{html.escape(row["picture"].split("/", 2)[-1])}" alt="pictures and differences">' if row.get("picture") else ""
+        parts.append(f"<h2>{html.escape(row['submission'])}: {row['verdict']}</h2>\n{picture}<pre>{html.escape(row['text'])}</pre>\n")
+    path.write_text(PAGE.format(title=f"Chapter {options.chapter}: {len(rows)} submissions", body="".join(parts)), encoding="utf-8")
+
+
+def grade_all(options, check):
+    """Grades what has not been graded yet and writes the table and the page after each shader. Returns the exit code."""
+    folder = ROOT / f"output/check_{options.chapter}"
+    folder.mkdir(parents=True, exist_ok=True)
+    record = folder / "results.json"
+    known = read_json(record) if record.exists() else {}
+    options.is_quiet, rows, found = True, [], submissions(options.folder)
+    for done, (name, file) in enumerate(found.items(), 1):
+        key = digest(options, file)
+        if known.get(name, {}).get("digest") != key or known[name]["verdict"] == "not graded":
+            known[name] = grade_one(options, check, name, file) | {"digest": key}
+            write_json(record, known)
+        rows.append(known[name])
+        print(f"{done} of {len(found)}: {name}: {known[name]['verdict']}", flush=True)
+        with open(folder / "results.csv", "w", newline="", encoding="utf-8") as table:
+            writer = csv.DictWriter(table, COLUMNS, extrasaction="ignore")
+            writer.writeheader()
+            writer.writerows(rows)
+        write_page(options, rows, folder / "index.html")
+    print(f"{folder / 'results.csv'}\n{folder / 'index.html'}", file=sys.stderr)
+    return UNGRADED if any(row["verdict"] == "not graded" for row in rows) else 0

@@ -1,0 +1,31 @@
+"""The result of a check as autograders read it; see docs/grading."""
+import re
+
+PART = {"correct": 1.0, "noisy": 0.5, "expensive": 0.5, "biased": 0.0}  # of a scene's points
+
+
+def as_gradescope(scenes, hints, points):
+    """What Gradescope reads from /autograder/results/results.json: a test with points for each scene, with what it found, and the
+    hints as the output of all. `scenes` are triples of name, verdict and words; without any, the submission has no points."""
+    each = points / max(len(scenes), 1)
+    tests = [{"name": name, "score": round(each * PART[verdict], 3), "max_score": round(each, 3),
+              "status": "passed" if verdict == "correct" else "failed", "output": f"{verdict}: {words}", "visibility": "visible"}
+             for name, verdict, words in scenes]
+    if not tests:
+        tests = [{"name": "check", "score": 0, "max_score": points, "status": "failed", "output": hints[0], "visibility": "visible"}]
+    return {"output": "\n".join(hints), "visibility": "visible", "stdout_visibility": "hidden", "tests": tests}
+
+
+def escaped(text):
+    """For a workflow command of GitHub's actions, in which these characters have a meaning."""
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def as_github(verdict, file, line, hints):
+    """Workflow commands that show as annotations of a commit: an error where the shader is not correct, at the file."""
+    if verdict == "correct":
+        return "::notice title=./lab check::correct\n"
+    of_compiler = re.search(r"\.glsl:(\d+):", hints[0]) if hints else None
+    line = line or (of_compiler[1] if of_compiler else 1)
+    place = f"file={file},line={line}," if file else ""
+    return f"::error {place}title=./lab check::{escaped(verdict + ''.join(f'{chr(10)}{hint}' for hint in hints))}\n"

@@ -1,0 +1,61 @@
+"""What a check tells about a shader, in words."""
+from check.grading import early_bias
+from project import CHAPTERS
+
+
+def percent(value):
+    return f"{100 * value:+.2g} %" if abs(value) < 0.1 else f"{100 * value:+.0f} %"
+
+
+def tell_early(cases):
+    """What is sure after the first runs."""
+    scene, value = early_bias(cases)
+    words = f"{scene} is too {'bright' if value > 0 else 'dark'} ({percent(value)})" if scene else \
+        f"no picture is wrong by {100 * min(value, 1):.2g} % or more"
+    print(f"{'so far':14} {words}; the rest is finer", flush=True)
+
+
+def scene_words(scene):
+    """What was found in a scene, as a list of words."""
+    worst = max(scene["image"], key=lambda test: abs(test["value"]))
+    biased = [tile for tile in scene["tiles"] if tile["is_biased"]]
+    words = [f"mean {' '.join(percent(test['value']) for test in scene['image'])} (red, green, blue)"]
+    if any(test["is_biased"] for test in scene["image"]):
+        words.append("too bright" if worst["value"] > 0 else "too dark")
+    if biased:
+        words.append(f"{len(biased)} of {len(scene['tiles'])} tiles differ")
+    if scene["invalid_samples"]:
+        words.append(f"{scene['invalid_samples']} samples infinite or not a number")
+    if scene["verdict"] != "biased":
+        least = max(test["detectable"] for test in scene["image"])
+        words.append(f"a bias from {100 * least:.2g} % would have shown")
+        if scene["noise"][0] is not None:
+            words.append(f"noise x {scene['noise'][0]:.2f} [{scene['noise'][1]:.2f}, {scene['noise'][2]:.2f}]")
+        words.append(f"rays x {scene['rays']:.2f}")
+    return words
+
+
+def hint_lines(result):
+    """Pairs of a word and what leads to the mistake."""
+    if result["unfinished_line"]:
+        return [("unfinished", f"line {result['unfinished_line']} says TODO")]
+    if not result["likely_mistake"]:
+        return []
+    found, lines = result["likely_mistake"], []
+    page = f"chapters/{CHAPTERS[result['chapter']]}/README.md"
+    for first, mistake in zip(("ask yourself", "or"), found["mistakes"]):
+        name = f"{mistake['name']}: " if "name" in mistake else ""
+        lines += [(first, name + mistake["hint"]), ("read again", f"{mistake['slide']} (docs/slides.md), {page}")]
+    if len(found["mistakes"]) > 1:
+        tell = found["tell_apart"]
+        lines.append(("tell apart", f"render {tell['scene'].rstrip('_0123456789')} and look {tell['place']}: the first makes it "
+                      f"{' and the second '.join(map(percent, tell['effects']))} as bright; --runs 48 looks closer"))
+    return lines
+
+
+def explain(result):
+    """The result as text, a line for each scene."""
+    lines = [(scene["scene"], f"{scene['verdict']}: {', '.join(scene_words(scene))}") for scene in result["scenes"]]
+    lines += [("where", result["picture"])] if result["picture"] else []
+    lines += [*hint_lines(result), (f"chapter {result['chapter']}", f"{result['verdict']}: {result['file']}")]
+    return "\n".join(f"{head:14} {text}" for head, text in lines)
