@@ -1,5 +1,6 @@
 """./lab check: verdicts on shaders that are right, wrong, broken or endless."""
 
+import csv
 import json
 import re
 import unittest
@@ -48,8 +49,78 @@ class CheckTest(ProgramTest):
         box = result["scenes"][0]
         self.assertEqual((code, result["verdict"], box["verdict"]), (1, "biased", "biased"))
         self.assertTrue(all(test["is_biased"] and test["value"] > 0.5 for test in box["image"]), box["image"])
-        self.assertEqual(result["likely_mistake"]["name"], "wrong-measure")
+        self.assertIn("area on the light", result["likely_mistake"]["mistakes"][0]["hint"])
+        self.assertNotIn("name", result["likely_mistake"]["mistakes"][0], "only for teachers")
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
+
+    def test_a_teacher_gets_the_name_and_a_student_a_question(self):
+        text = SHADER.read_text(encoding="utf-8")
+        file = self.write("mine.glsl", text.replace("/ (distance * distance)", "/ distance"))
+        for options, is_named in (((), False), (("--teacher",), True)):
+            code, out, err = self.check(3, "--runs", 5, "--samples", 4, *options, file)
+            self.assertEqual(code, 1, err)
+            self.assertRegex(out, r"ask yourself .*twice as far away\?")
+            self.assertRegex(out, r"read again .*Next Event Estimation")
+            self.assertEqual("distance-not-squared" in out, is_named, out)
+
+    def test_tells_early_what_is_sure(self):
+        file = self.write("mine.glsl", SHADER.read_text(encoding="utf-8").replace("* light.inverse_density", ""))
+        for shader, words in ((SHADER, "no picture is wrong by"), (file, "is too ")):
+            _, out, err = self.check(3, "--runs", 5, "--samples", 4, shader)
+            self.assertRegex(out, rf"\Aso far +[^\n]*{words}", err)
+
+    def test_the_chapters_own_noise_is_compared_render_by_render(self):
+        result = json.loads(self.check(3, "--runs", 3, "--json")[1])
+        for scene in result["scenes"]:
+            self.assertAlmostEqual(scene["noise"][1], 1, delta=0.05, msg="the same random numbers")
+            self.assertAlmostEqual(scene["noise"][2], 1, delta=0.05)
+
+    def test_for_gradescope_and_github(self):
+        file = self.write("mine.glsl", SHADER.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
+        few = ("--runs", 5, "--samples", 4)
+        code, out, _ = self.check(3, *few, "--gradescope", "--points", 12, file)
+        result = json.loads(out)
+        self.assertEqual((code, [test["max_score"] for test in result["tests"]]), (1, [4, 4, 4]))
+        self.assertEqual([test["score"] for test in result["tests"]], [0, 0, 4])  # the last scene has no lamps
+        self.assertTrue({test["status"] for test in result["tests"]} <= {"passed", "failed"})
+        self.assertIn("twice as far away", result["output"])
+        code, out, _ = self.check(3, *few, "--github", file)
+        self.assertRegex(out, rf"(?m)^::error file={file},line=1,title=\S+ \S+::biased%0A")
+        broken = self.write("broken.glsl", "// one\nvec3 path_trace(Ray ray, inout uvec2 seed) { return nothing; }\n")
+        self.assertRegex(self.check(3, *few, "--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
+        result = json.loads(self.check(3, *few, "--gradescope", broken)[1])
+        self.assertEqual([(test["score"], test["max_score"]) for test in result["tests"]], [(0, 10)])
+
+    def test_a_folder_is_graded_into_a_table_and_goes_on(self):
+        text = SHADER.read_text(encoding="utf-8")
+        (self.folder / "all/dora").mkdir(parents=True)
+        self.write("all/anna.glsl", text)
+        self.write("all/bob.glsl", "nothing")
+        self.write("all/carl.glsl", ENDLESS)
+        self.write("all/dora/path_trace.glsl", text.replace("/ (distance * distance)", "/ distance"))
+        command = (3, "--all", self.folder / "all", "--runs", 4, "--samples", 4, "--time-limit", 5, "--output", self.folder / "graded")
+        expected = {"anna": "correct", "bob": "not graded", "carl": "not graded", "dora": "biased"}
+        code, out, err = self.check(*command)
+        self.assertEqual(code, 2, err)
+        table = list(csv.DictReader((self.folder / "graded/results.csv").open()))
+        self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
+        page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
+        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["anna.png", "dora.png"])
+        self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
+        first = {row["submission"]: row["seconds"] for row in table}
+        self.check(*command)
+        again = {row["submission"]: row["seconds"] for row in csv.DictReader((self.folder / "graded/results.csv").open())}
+        self.assertEqual([first[name] for name in ("anna", "dora")], [again[name] for name in ("anna", "dora")], "not graded anew")
+
+    def test_a_shader_may_have_a_path_of_its_own(self):
+        text = SHADER.read_text(encoding="utf-8")
+        own = "struct Path { Ray ray; };\nPath start_path(Ray ray) { return Path(ray); }\nvec3 path_trace("
+        self.assertEqual(self.check_few(self.write("mine.glsl", text.replace("vec3 path_trace(", own)))[0], 0)
+
+    def test_memory_is_limited(self):
+        code, _, err = self.check(3, "--memory-limit", 0.1, "--runs", 2, "--samples", 1)
+        self.assertEqual(code, 2)
+        self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")
 
     def test_checks_with_other_seeds_share_no_render(self):
         """Also with more runs: otherwise a false alarm comes back with another --seed."""
@@ -104,7 +175,7 @@ class CheckTest(ProgramTest):
         self.assertRegex(err, r"\Aerror: [^\n]*(ended after 3 s|device)[^\n]*\n\Z")
 
     def test_what_cannot_be_graded(self):
-        for arguments in ((99,), (3, "nothing.glsl"), ("three",)):
+        for arguments in ((99,), (3, "nothing.glsl"), ("three",), (3, "--all", "nowhere"), (3, "--all", ".", SHADER)):
             code, out, err = self.check(*arguments)
             self.assertEqual((code, out), (2, ""))
             self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")

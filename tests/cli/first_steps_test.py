@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from program import CHAPTER, PROJECT, ProgramTest, RenderTest  # first: it finds the tools
 import numpy as np
+from check.grading import program_with
 from docs import figures, first_steps
 from docs.figure_plots import GAP, LABEL
 from PIL import Image
@@ -29,7 +30,7 @@ class FirstStepsTest(RenderTest):
         """What a step, or chapter 1 for None, renders: [height, width, 3]."""
         file = self.folder / "picture.exr"
         command = self.command("--quiet", "--output", file, *arguments, scene=scene, size=(SIZE, SIZE))
-        with first_steps.program(SHADERS[step]) if step else nullcontext(CHAPTER) as program:
+        with program_with(CHAPTER.name, SHADERS[step]) if step else nullcontext(CHAPTER) as program:
             self.render(*command, program=program)
         return read_rgb(file)
 

@@ -29,6 +29,7 @@ from project import (RECORDS, Parser, add_device_options, commit, number, read_j
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
+OTHER_KNOWLEDGE = Path(__file__).with_name("other_scenes.json")  # as grading.KNOWLEDGE, of OTHER_SCENES
 # Levels have the seeds of a check without --seed, see grading.first_seed(); the others have seeds that no check has.
 LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0), "factor": 1}
 LEARNING = {"runs": 5, "first_seed": 1001, "factor": 2}  # times the samples of a check
@@ -90,31 +91,45 @@ def written(result):
     return scenes
 
 
+def planned_knowledge(scenes, before):
+    """What is to be known of each chapter of `scenes`, names of references: the levels of its own shader and what its mistakes do.
+    What `before` has of it and was measured alike is there, the rest is empty. With it a list of what is to be rendered."""
+    knowledge, work = {}, []
+    for chapter, names in scenes.items():
+        known = before.get(str(chapter), {"mistakes": {}})
+        measured = digest(settings(chapter, LEVELS, names), own_shader(chapter).read_text(encoding="utf-8"))
+        levels = known["levels"] if known.get("measured") == measured else None
+        knowledge[str(chapter)] = {"measured": measured, "levels": levels, "mistakes": {}}
+    for chapter, mistake, text in catalogue():
+        if chapter in scenes:
+            entry = {key: mistake["check"][key] for key in ("hint", "slide")}
+            chapters = knowledge[str(chapter)]
+            entry["measured"] = digest(settings(chapter, LEARNING, scenes[chapter]), text, chapters["measured"])
+            known = before.get(str(chapter), {"mistakes": {}})["mistakes"].get(mistake["name"], {})
+            entry["scenes"] = known["scenes"] if known.get("measured") == entry["measured"] else {}
+            chapters["mistakes"][mistake["name"]] = entry
+            if not entry["scenes"]:
+                work.append((chapter, text, entry))
+    return knowledge, work
+
+
+def unmeasured(knowledge, scenes):
+    """What is missing or was measured with something else, as (chapter, name of a mistake or "levels")."""
+    planned, _ = planned_knowledge(scenes, knowledge)
+    missing = [(chapter, "levels") for chapter, entry in planned.items() if not entry["levels"]]
+    return missing + [(chapter, name) for chapter, entry in planned.items() for name, mistake in entry["mistakes"].items()
+                      if not mistake["scenes"]]
+
+
 def learn(workshop, file, scenes, is_anew):
-    """Fills a file of knowledge: for each chapter the levels of its own shader and what its mistakes do. `scenes` are names of
-    references for each chapter. What is there already and was measured alike stays."""
-    before = read_json(file) if file.exists() and not is_anew else {}
-    knowledge = {str(chapter): {"measured": digest(settings(chapter, LEVELS, names), own_shader(chapter).read_text(encoding="utf-8")),
-                                "levels": None, "mistakes": {}} for chapter, names in scenes.items()}
-    for chapter, entry in knowledge.items():
-        known = before.get(chapter, {})
-        if known.get("measured") == entry["measured"]:
-            entry["levels"] = known["levels"]
+    """Fills a file of knowledge with what it lacks."""
+    knowledge, work = planned_knowledge(scenes, read_json(file) if file.exists() and not is_anew else {})
 
     def learn_levels(chapter):
         knowledge[str(chapter)]["levels"] = workshop.levels(chapter, scenes[chapter])
 
     workshop.map("levels", learn_levels, [n for n in scenes if not knowledge[str(n)]["levels"]])
-    work, lock = [], Lock()
-    for chapter, mistake, text in catalogue():
-        if chapter in scenes:
-            entry = {key: mistake["check"][key] for key in ("hint", "slide")}
-            entry |= {"measured": digest(settings(chapter, LEARNING, scenes[chapter]), text, knowledge[str(chapter)]["measured"])}
-            known = before.get(str(chapter), {}).get("mistakes", {}).get(mistake["name"], {})
-            entry["scenes"] = known["scenes"] if known.get("measured") == entry["measured"] else {}
-            knowledge[str(chapter)]["mistakes"][mistake["name"]] = entry
-            if not entry["scenes"]:
-                work.append((chapter, text, entry))
+    lock = Lock()
 
     def learn_mistake(item):
         chapter, text, entry = item
@@ -128,34 +143,40 @@ def learn(workshop, file, scenes, is_anew):
     return knowledge
 
 
+def planned_trials():
+    """Name -> chapter, mistake, text, seed and scenes of a trial, and the digest of all that it depends on."""
+    planned = {}
+    for key, (chapter, name, text, seed) in trials().items():
+        scenes = OTHER_SCENES[chapter] if key.startswith("other scenes") else None
+        own = own_shader(chapter).read_text(encoding="utf-8")
+        planned[key] = {"chapter": chapter, "mistake": name, "text": text, "seed": seed, "scenes": scenes,
+                        "measured": digest(settings(chapter, TRYING, scenes), text, seed, own)}
+    return planned
+
+
 def confusion(workshop, is_anew):
     own = read_json(grading.KNOWLEDGE)
-    record = read_json(RECORD) if RECORD.exists() and not is_anew else {"trials": {}}
-    others = learn(workshop, RECORD.with_name("other_scenes.json"), OTHER_SCENES, is_anew)
-    done, record, lock = record["trials"], {"commit": commit(), "trials": {}}, Lock()
-    work = []
-    for key, (chapter, name, text, seed) in trials().items():
-        is_other = key.startswith("other scenes")
-        scenes, knowledge = (OTHER_SCENES[chapter], others) if is_other else (None, own)
-        knowledge = knowledge[str(chapter)]
-        measured = digest(settings(chapter, TRYING, scenes), text, seed, knowledge["measured"])
-        if done.get(key, {}).get("measured") == measured:
-            record["trials"][key] = done[key]
-        else:
-            work.append((key, chapter, name, text, seed, scenes, knowledge, measured))
+    others = learn(workshop, OTHER_KNOWLEDGE, OTHER_SCENES, is_anew)
+    done = read_json(RECORD)["trials"] if RECORD.exists() and not is_anew else {}
+    planned, lock = planned_trials(), Lock()
+    kept = {key: trial for key, trial in done.items() if key in planned and trial["measured"] == planned[key]["measured"]}
+    record = {"commit": commit(), "trials": kept}
 
     def try_naming(item):
-        key, chapter, name, text, seed, scenes, knowledge, measured = item
-        result = workshop.judge(chapter, text, TRYING, knowledge["levels"], scenes, TRYING["runs"] * seed)
-        trial = {"mistake": name, "verdict": result["verdict"], "named": [], "is_sure": False, "measured": measured} | effect(result)
+        key, trial = item
+        knowledge = (others if trial["scenes"] else own)[str(trial["chapter"])]
+        result = workshop.judge(trial["chapter"], trial["text"], TRYING, knowledge["levels"], trial["scenes"], TRYING["runs"] * trial["seed"])
+        answer = {"mistake": trial["mistake"], "verdict": result["verdict"], "named": [], "is_sure": False,
+                  "measured": trial["measured"], **effect(result)}
         if result["verdict"] != "correct":
             found = surprises(signature(result), read_signatures(knowledge["mistakes"]))
-            trial |= {"named": list(found)[:3], "is_sure": len(candidates(found)) == 1}
+            answer |= {"named": list(found)[:3], "is_sure": len(candidates(found)) == 1}
         with lock:
-            record["trials"][key] = trial
+            record["trials"][key] = answer
             write_json(RECORD, record)
 
-    workshop.map("naming", try_naming, work)
+    workshop.map("naming", try_naming, [item for item in planned.items() if item[0] not in kept])
+    record["trials"] = {key: record["trials"][key] for key in planned}
     write_json(RECORD, record)
 
 

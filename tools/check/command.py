@@ -32,6 +32,7 @@ def parse():
     parser.add_argument("chapter", type=number(int, 1), metavar="N", help="number of the chapter")
     parser.add_argument("file", nargs="?", type=Path, metavar="FILE", help="default: the chapter's path_trace.glsl")
     parser.add_argument("--all", type=Path, metavar="FOLDER", dest="folder", help="grade all shaders in this folder")
+    parser.add_argument("--output", type=Path, metavar="FOLDER", help="for --all; default: output/check_N")
     parser.add_argument("--teacher", action="store_true", help="name the mistake instead of only asking")
     add_device_options(parser)
     parser.add_argument("--seed", type=number(int, 0, 400000), default=0,
@@ -63,8 +64,9 @@ def refuse(options):
         raise UserError("--all grades a folder into results.csv: leave out the file and the form of the output")
 
 
-def check(options, file):
-    """The result of a check; UserError where there is none."""
+def check(options, file, picture=None):
+    """The result of a check; UserError where there is none. What is not correct has a picture, others only where `picture` is
+    the file for it."""
     if not file.is_file():
         raise UserError(f"{file}: no such file")
     watch = (lambda cases: None) if options.is_quiet else tell_early
@@ -75,10 +77,9 @@ def check(options, file):
     if not options.teacher:
         for mistake in (result["likely_mistake"] or {"mistakes": []})["mistakes"]:
             del mistake["name"]
-    if options.folder or not is_correct:
-        name = f"check_{options.chapter}/{file.parent.name if file.stem == 'path_trace' else file.stem}.png" \
-            if options.folder else f"check_{options.chapter}.png"
-        result["picture"] = str(draw(result, pictures, ROOT / "output" / name).relative_to(ROOT))
+    if picture or not is_correct:
+        path = draw(result, pictures, picture or ROOT / f"output/check_{options.chapter}.png")
+        result["picture"] = str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
     return result
 
 

@@ -39,11 +39,11 @@ def digest(options, file):
     return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes()).hexdigest()
 
 
-def grade_one(options, check, name, file):
+def grade_one(options, check, name, file, folder):
     started = time.monotonic()
     try:
-        result = check(options, file)
-        row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": result["picture"],
+        result = check(options, file, folder / f"{name}.png")
+        row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
                "text": explain(result), "questions": " ".join(text for head, text in hint_lines(result) if head in ("ask yourself", "or")),
                "mistakes": " ".join(each.get("name", "") for each in (result["likely_mistake"] or {"mistakes": []})["mistakes"]), "error": ""}
     except (UserError, OSError) as error:
@@ -54,14 +54,14 @@ def grade_one(options, check, name, file):
 def write_page(options, rows, path):
     parts = []
     for row in rows:
-        picture = f'<img src="{html.escape(row["picture"].split("/", 2)[-1])}" alt="pictures and differences">' if row.get("picture") else ""
+        picture = f'<img src="{html.escape(row["picture"])}" alt="pictures and differences">' if row.get("picture") else ""
         parts.append(f"<h2>{html.escape(row['submission'])}: {row['verdict']}</h2>\n{picture}<pre>{html.escape(row['text'])}</pre>\n")
     path.write_text(PAGE.format(title=f"Chapter {options.chapter}: {len(rows)} submissions", body="".join(parts)), encoding="utf-8")
 
 
 def grade_all(options, check):
     """Grades what has not been graded yet and writes the table and the page after each shader. Returns the exit code."""
-    folder = ROOT / f"output/check_{options.chapter}"
+    folder = (options.output or ROOT / f"output/check_{options.chapter}").resolve()
     folder.mkdir(parents=True, exist_ok=True)
     record = folder / "results.json"
     known = read_json(record) if record.exists() else {}
@@ -69,7 +69,7 @@ def grade_all(options, check):
     for done, (name, file) in enumerate(found.items(), 1):
         key = digest(options, file)
         if known.get(name, {}).get("digest") != key or known[name]["verdict"] == "not graded":
-            known[name] = grade_one(options, check, name, file) | {"digest": key}
+            known[name] = grade_one(options, check, name, file, folder) | {"digest": key}
             write_json(record, known)
         rows.append(known[name])
         print(f"{done} of {len(found)}: {name}: {known[name]['verdict']}", flush=True)

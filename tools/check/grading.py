@@ -7,6 +7,7 @@ import shutil
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -61,6 +62,15 @@ def make_tree(chapter, file, tree):
     (tree / "assets").symlink_to(ROOT / "assets")
     (tree / "bin").mkdir()
     return shutil.copy(BINARIES / chapter, tree / "bin" / chapter), shader  # a program looks for shaders above itself
+
+
+@contextmanager
+def program_with(chapter, text):
+    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as its shader."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "path_trace.glsl"
+        file.write_text(text, encoding="utf-8")
+        yield make_tree(chapter, file, Path(folder) / "tree")[0]
 
 
 def regions(image):

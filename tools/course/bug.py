@@ -11,12 +11,11 @@ import math
 import subprocess
 import tempfile
 import time
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from check.command import percent
-from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, make_tree
+from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, program_with
+from check.words import percent
 from course.mistakes import CATALOGUE, bugs_of, own_shader
 from docs.figure_plots import right_and_wrong
 from lesson import diff
@@ -39,15 +38,6 @@ def parse():
     parser.add_argument("--samples", type=number(int, 4), help="per pixel; default: twice those of a run of ./lab check")
     add_device_options(parser)
     return parser.parse_intermixed_args()
-
-
-@contextmanager
-def program_with(chapter, text):
-    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as its shader."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "path_trace.glsl"
-        file.write_text(text, encoding="utf-8")
-        yield make_tree(chapter, file, Path(folder) / "tree")[0]
 
 
 def find_scene(word):

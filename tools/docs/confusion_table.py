@@ -1,51 +1,94 @@
 """What docs/results.md shows of ./lab check: how often it finds mistakes and names them right."""
+from dataclasses import dataclass
+
 from project import table
+from scipy.stats import binomtest
 
 HEADER = """
 ## What ./lab check finds
 
 We planted mistakes ([mistakes.json](../tests/mistakes/mistakes.json)) into correct shaders. The check had to find the mistakes and
 to name them. `tests/mistakes/learn.py confusion` makes this test, and [confusion.json](records/check/confusion.json) has each
-single answer. There are three kinds of trials:
+single answer. There are four kinds of trials:
 
 - The chapters' own shaders, with other random numbers than the check has learnt from.
 - The same shaders on scenes that the check does not use.
-- Shaders that are correct but written in another way ([tests/variants](../tests/variants)).
+- Shaders that are written in another way ([tests/variants](../tests/variants)), with a mistake in each.
+- Correct shaders, the chapters' own and those written in another way. Each was checked with several seeds.
 
-A mistake counts as found where the check says anything but correct. In a row of correct shaders, a number above 0 under
-"found" would be a false alarm.
+A mistake counts as found where the check says anything but correct. It is *large* where it changes the mean of a picture by at
+least 2 % or the error per sample by at least 1.5 times. The check is *sure* where it asks about one mistake and not about two. In
+brackets: the 95 % confidence interval of the rate.
 """
 
 CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "other scenes": "the same on other scenes",
-              "variants": "shaders written in another way"}
+              "variants": "shaders written in another way", "correct": "correct shaders"}
+LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
 
-def rates(record):
-    """For each condition and whether there is a mistake: [tried, found, named right, right among the first two]."""
-    counts = {}
+@dataclass
+class Rate:
+    """Counts of trials. `right` and `near` are of those found: named first, or among the first two."""
+    tried: int = 0
+    found: int = 0
+    large: int = 0
+    found_of_large: int = 0
+    right: int = 0
+    near: int = 0
+    sure: int = 0
+    right_of_sure: int = 0
+
+    def add(self, trial):
+        is_found, is_large = trial["verdict"] != "correct", trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE
+        is_right, is_sure = trial["named"][:1] == [trial["mistake"]], trial["is_sure"]
+        self.tried += 1
+        self.found += is_found
+        self.large += is_large
+        self.found_of_large += is_found and is_large
+        self.right += is_right
+        self.near += trial["mistake"] in trial["named"][:2]
+        self.sure += is_sure
+        self.right_of_sure += is_sure and is_right
+
+
+def rates(record, key_of=lambda key: key.split("/")[0]):
+    """A Rate for each condition, or for each value of another function of a trial's name; None leaves the trial out."""
+    found = {}
     for key, trial in record["trials"].items():
-        count = counts.setdefault((key.split("/")[0], trial["mistake"] is not None), [0, 0, 0, 0])
-        count[0] += 1
-        count[1] += trial["verdict"] != "correct"
-        count[2] += trial["named"][:1] == [trial["mistake"]]
-        count[3] += trial["mistake"] in trial["named"][:2]
-    return counts
+        if key_of(key) is not None:
+            found.setdefault(key_of(key), Rate()).add(trial)
+    return found
+
+
+def part(count, of):
+    """A rate with its interval."""
+    if of == 0:
+        return "–"
+    interval = binomtest(count, of).proportion_ci()
+    return f"{count} of {of} ({100 * interval.low:.0f} – {100 * interval.high:.0f} %)"
+
+
+def row(words, rate):
+    return [words, str(rate.tried), part(rate.found_of_large, rate.large), str(rate.found), part(rate.right, rate.found),
+            part(rate.near, rate.found), part(rate.right_of_sure, rate.sure)]
 
 
 def confusion_table(record):
-    """A table of the rates, and a list of what was not found or took another name."""
-    rows, counts = [], rates(record)
-    for condition, words in CONDITIONS.items():
-        for is_mistake in (False, True):
-            if (condition, is_mistake) in counts:
-                tried, found, right, near = counts[condition, is_mistake]
-                named = [f"{right} ({100 * right / tried:.0f} %)", str(near)] if is_mistake else ["-", "-"]
-                rows.append([f"{words}: {'mistakes' if is_mistake else 'correct'}", str(tried), str(found), *named])
-    text = "\n" + table(["", "tried", "found", "named right", "among the first two"], rows)
+    """A table of the rates, one for each chapter, and a list of what was not found or took another name."""
+    head = ["tried", "large ones found", "found", "named right", "among the first two", "right where it is sure"]
+    conditions = rates(record)
+    correct = conditions.pop("correct")
+    text = f"\nOf {correct.tried} checks of correct shaders {part(correct.found, correct.tried)} were refused.\n\n"
+    text += table(["", *head], [row(words, conditions[key]) for key, words in CONDITIONS.items() if key in conditions])
+    chapters = rates(record, lambda key: int(key.split("/")[1]) if key.startswith("new seeds") else None)
+    text += "\nThe first row for each chapter:\n\n" + table(
+        ["chapter", *head], [row(str(chapter), rate) for chapter, rate in sorted(chapters.items())])
     missed = []
     for key, trial in record["trials"].items():
         if trial["mistake"] and trial["named"][:1] != [trial["mistake"]]:
             condition, place, _ = key.split("/")
             place = f"chapter {place}" if place.isdigit() else place
-            missed.append([f"{place}, {condition}", trial["mistake"], trial["verdict"], ", ".join(trial["named"]) or "-"])
-    return text + "\nNot found, or taken for another:\n\n" + table(["where", "mistake", "verdict", "named"], missed, left=4)
+            effect = f"{100 * trial['bias']:.2g} %, × {trial['noise']:.2g}"
+            missed.append([f"{place}, {condition}", trial["mistake"], effect, trial["verdict"], ", ".join(trial["named"]) or "-"])
+    head = ["where", "mistake", "change of mean and error", "verdict", "named"]
+    return text + "\nNot found, or taken for another:\n\n" + table(head, missed, left=5)

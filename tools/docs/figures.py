@@ -8,8 +8,8 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from check.grading import OPTIONS, SCENES
-from course.bug import new_render, program_with
+from check.grading import OPTIONS, SCENES, program_with
+from course.bug import new_render
 from docs import figure_plots, first_steps, tables
 from docs.bug_blocks import GALLERY, find_bug
 from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, description, last_line, load_records, read_json,

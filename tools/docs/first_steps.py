@@ -1,11 +1,7 @@
-"""The shaders of docs/first_steps.md, taken from the page itself, and a program that renders with one of them."""
+"""The shaders of docs/first_steps.md, taken from the page itself."""
 import re
-import tempfile
-from contextlib import contextmanager
-from pathlib import Path
 
-from check.grading import make_tree
-from project import CHAPTERS, ROOT, UserError
+from project import ROOT, UserError
 
 PAGE = ROOT / "docs/first_steps.md"
 STEP = re.compile(r"^## (\d+)\. (.*?)(?=^## |\Z)", re.DOTALL | re.MULTILINE)
@@ -26,12 +22,3 @@ def shaders(text):
                 raise UserError(f"{PAGE.name}: step {number} has {blocks[0].count(piece)} places with {piece!r}")
             found[f"{number} broken"] = blocks[0].replace(piece, mistake)
     return found
-
-
-@contextmanager
-def program(shader):
-    """Chapter 1's program with this text as its path_trace.glsl."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "path_trace.glsl"
-        file.write_text(shader, encoding="utf-8")
-        yield make_tree(CHAPTERS[1], file, Path(folder) / "lab")[0]
