@@ -13,9 +13,9 @@ from project import read_json
 # Another student's shader has the same mistake but not quite the same signature: parts of a difference, and the least.
 LOOSENESS, LEAST = 0.15, 0.005
 NOISE_LOOSENESS, RAYS_LOOSENESS = 0.2, 0.1  # of their logarithms
-# What a mistake must explain to be named: so much of the surprise of seeing this in a correct shader, and either half of that
-# surprise or all but what chance leaves in each region.
-LEAST_EXPLAINED, CHANCE = 6.0, 0.6
+# What a mistake must explain to be named: so much of the surprise of seeing this in a correct shader, and it must leave less than
+# this part of that surprise, or no more than chance leaves in each region.
+LEAST_EXPLAINED, MOST_LEFT, CHANCE = 6.0, 0.6, 0.6
 # It is named alone where the next one would be a surprise larger by so much, or by this part of what both leave unexplained.
 SURE, SURE_PART = 10.0, 0.15
 SIDES = (("top", "middle", "bottom"), ("left", "middle", "right"))
@@ -55,7 +55,7 @@ def surprises(seen, known):
     faultless = Signature([0.0] * count, [0.0] * count, [1.0] * len(seen.noise), [1.0] * len(seen.rays))
     found = {name: surprise(seen, other) for name, other in known.items()}
     unexplained, least = surprise(seen, faultless), min(found.values(), default=math.inf)
-    is_explained = least < unexplained - LEAST_EXPLAINED and least < max(unexplained / 2, CHANCE * count)
+    is_explained = least < unexplained - LEAST_EXPLAINED and least < max(MOST_LEFT * unexplained, CHANCE * count)
     return dict(sorted(found.items(), key=lambda pair: pair[1])) if is_explained else {}
 
 
