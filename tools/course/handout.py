@@ -20,7 +20,7 @@ FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it holds or names solutions, or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/measuring.md", "docs/solutions", "docs/bugs*", "docs/pictures/bug*",
-            "docs/records/check", "tools/course", "tools/docs", "tools/lesson/bug*"]
+            "docs/records/check", "docs/grading", "tools/course", "tools/docs", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
