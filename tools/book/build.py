@@ -21,7 +21,7 @@ SECTIONS = {  # of the navigation; what is not there is left out
     "Explore": ["docs/window.md", "docs/scenes.md"],
     "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/numerics.md", "docs/cluster.md"],
     "Results": ["docs/results.md", "docs/measuring.md"],
-    "For teachers": ["docs/teaching.md"],
+    "For teachers": ["docs/teaching.md", "docs/grading/README.md"],
 }
 START = ["README.md", "docs/first_steps.md"]
 SOLUTIONS = "docs/solutions"  # for teachers only
