@@ -1,7 +1,5 @@
 #include "app/run_chapter.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <iostream>
 
@@ -9,6 +7,7 @@
 #include "error.h"
 #include "files/file.h"
 #include "gpu/failure.h"
+#include "platform.h"
 #include "rendering/settings.h"
 #include "viewer/viewer.h"
 
@@ -60,7 +59,7 @@ std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& optio
     const bool is_forced = options.run.window == WindowChoice::always;
     if (options.run.window == WindowChoice::never) return nullptr;
     if (!is_forced &&
-        (!Window::has_display() || !isatty(STDOUT_FILENO) || needs_no_window(options) || options.run.quiet))
+        (!has_display() || !is_terminal(stdout) || needs_no_window(options) || options.run.quiet))
         return nullptr;
     try {
         return std::make_unique<Window>(chapter.name, window_size(image_size));
@@ -120,6 +119,7 @@ void run(const Chapter& chapter, const Options& options) {
 }  // namespace
 
 int run_chapter(const std::string& name, int argument_count, char** arguments) {
+    prepare_terminal();
     try {
         const Chapter chapter = load_chapter(name);
         const auto options = parse_options(chapter, argument_count, arguments);
