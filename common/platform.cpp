@@ -1,6 +1,7 @@
 #include "platform.h"
 
 #include <cstdlib>
+#include <string>
 #include <thread>
 
 #ifdef _WIN32
@@ -20,6 +21,11 @@
 #endif
 
 namespace lab {
+
+static std::string variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
 
 #ifdef _WIN32
 
@@ -54,6 +60,8 @@ std::filesystem::path running_program() {
     return name;
 }
 
+std::filesystem::path user_folder() { return variable("USERPROFILE"); }
+
 int process_id() { return _getpid(); }
 
 size_t processor_count() { return std::thread::hardware_concurrency(); }
@@ -86,11 +94,7 @@ size_t processor_count() { return std::thread::hardware_concurrency(); }
 const char* const vulkan_driver =
     "libvulkan1 and a driver such as mesa-vulkan-drivers (it also has a CPU device)";
 
-bool has_display() {
-    for (const char* variable : {"DISPLAY", "WAYLAND_DISPLAY"})
-        if (const char* value = std::getenv(variable); value && *value) return true;
-    return false;
-}
+bool has_display() { return !variable("DISPLAY").empty() || !variable("WAYLAND_DISPLAY").empty(); }
 
 std::filesystem::path running_program() {
     std::error_code ignored;
@@ -106,6 +110,8 @@ size_t processor_count() {
 void prepare_terminal() {}
 
 bool is_terminal(std::FILE* stream) { return isatty(fileno(stream)); }
+
+std::filesystem::path user_folder() { return variable("HOME"); }
 
 int process_id() { return getpid(); }
 

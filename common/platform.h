@@ -20,6 +20,9 @@ bool has_display();
 // Its file, or empty where that is not known.
 std::filesystem::path running_program();
 
+// The user's own folder, or empty where nobody says which it is.
+std::filesystem::path user_folder();
+
 int process_id();
 
 // Processors that the program may use.

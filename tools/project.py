@@ -16,6 +16,7 @@ VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"
 GPU_VARIANT = "cuda_ad_rgb"
 SAMPLERS = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]  # of Mitsuba
 BAR_WIDTH = 24
+INSTALL = "./lab install" if os.name == "posix" else "python -m pip install numpy scipy matplotlib pillow"
 
 
 class UserError(Exception):

@@ -31,6 +31,19 @@ void print_devices() {
     }
 }
 
+// Pictures that nobody has named go to the user's folder where nothing can be written in this one.
+void choose_outputs(RunOptions& options) {
+    const std::filesystem::path folder = user_folder();
+    if (!options.has_default_outputs || folder.empty()) return;
+    try {
+        check_writable(options.outputs.front());
+    } catch (const UserError& error) {
+        for (auto& file : options.outputs) file = folder / "path_tracing_lab" / file.filename();
+        std::cerr << "note: " << error.what() << ": pictures go to "
+                  << options.outputs.front().parent_path().string() << "\n";
+    }
+}
+
 // Fails before anything is rendered if a result could not be kept later.
 void check_outputs(const RunOptions& options) {
     for (const auto& file : options.outputs) check_writable(file);
@@ -99,7 +112,8 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }
 
-void run(const Chapter& chapter, const Options& options) {
+void run(const Chapter& chapter, Options options) {
+    choose_outputs(options.run);
     check_outputs(options.run);
     const auto scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
     RenderJob job = make_job(chapter, options, scene);

@@ -16,11 +16,8 @@ namespace {
 std::filesystem::path cache_folder() {
     if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
         return std::filesystem::path(folder) / "path_tracing_lab";
-    if (const char* folder = std::getenv("LOCALAPPDATA"); folder && *folder)  // on Windows
-        return std::filesystem::path(folder) / "path_tracing_lab";
-    if (const char* home = std::getenv("HOME"); home && *home)
-        return std::filesystem::path(home) / ".cache" / "path_tracing_lab";
-    return {};
+    const std::filesystem::path home = user_folder();
+    return home.empty() ? home : home / ".cache" / "path_tracing_lab";
 }
 
 // The last eight bytes of an entry are the hash of the others.

@@ -13,7 +13,9 @@ std::filesystem::path project_folder() {
         return std::filesystem::path();
     }();
     if (found.empty())
-        throw UserError("cannot find the folder shaders/ above the program: keep build/ in the project");
+        throw UserError(
+            "cannot find the folder shaders/ above the program: unpack the whole archive, and keep build/ in "
+            "it");
     return found;
 }
 

@@ -84,7 +84,7 @@ TEST(HostileNames, LeadToAnyRegularFile) {
     const TestFolder folder, elsewhere;
     write_png(elsewhere / "a.png", picture(1, 1, 7));
     elsewhere.write("a.mtl", "newmtl m\nmap_Kd a.png\n");
-    const std::string absolute = (elsewhere / "").string(),
+    const std::string absolute = (elsewhere / "").generic_string(),
                       upwards = "../" + (elsewhere / "").parent_path().filename().string() + "/";
     for (const std::string& path : {absolute, upwards}) {
         folder.write("a.mtl", "newmtl m\nmap_Kd " + path + "a.png\n");

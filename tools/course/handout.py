@@ -11,6 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from package.make import pack
 from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_program, show_progress
 
 HERE = Path(__file__).parent
@@ -18,7 +19,7 @@ EXERCISES = read_json(HERE / "exercises.json")
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it names solutions or makes what belongs to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check", "tools/course", "tools/docs"]
+TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/slides.md", "docs/records/check", "tools/course", "tools/docs", "tools/package"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -135,6 +136,7 @@ def main():
     parser = Parser("./lab handout", __doc__)
     parser.add_argument("chapter", type=number(int, 1), nargs="?", metavar="N", help="the last chapter")
     parser.add_argument("folder", type=Path, nargs="?", metavar="DIR", help="to be made; must not exist")
+    parser.add_argument("--windows", action="store_true", help="write DIR.zip, with programs to unpack and run on Windows")
     parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
     options = parser.parse_intermixed_args()
     known = [chapter for chapter in CHAPTERS if exercises(chapter)]
@@ -143,8 +145,14 @@ def main():
     if options.verify == bool(options.folder):
         parser.error("give N and DIR, or --verify")
     if not options.verify:
-        if options.folder.exists():
-            raise UserError(f"{options.folder} exists already: choose another folder")
+        result = options.folder.with_name(options.folder.name + ".zip") if options.windows else options.folder
+        if result.exists():
+            raise UserError(f"{result} exists already: choose another name")
+        if options.windows:
+            with tempfile.TemporaryDirectory() as folder:
+                write_handout(options.chapter, Path(folder) / "lab")
+                pack("windows", result, Path(folder) / "lab")
+            return
         write_handout(options.chapter, options.folder)
         print(f"{options.folder}: chapters 1 to {options.chapter}; cd there, ./lab run {options.chapter} and ./lab check {options.chapter}")
         return
