@@ -71,7 +71,7 @@ bool write_to_disk(std::FILE* stream) { return _commit(_fileno(stream)) == 0; }
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to, std::error_code& error) {
     for (int attempt = 0; attempt < 20; ++attempt) {
         std::filesystem::rename(from, to, error);
-        if (error.value() != ERROR_SHARING_VIOLATION && error.value() != ERROR_ACCESS_DENIED) return;
+        if (error != std::errc::permission_denied) return;
         Sleep(50);
     }
 }

@@ -14,7 +14,7 @@ set rest=
 if "%command%"=="" goto ask
 if "%command%"=="help" goto help
 if "%command%"=="run" goto run
-for %%c in (check report sample diff bug merge) do if "%command%"=="%%c" goto %%c
+for %%c in (check report sample diff merge) do if "%command%"=="%%c" goto %%c
 echo lab: no command '%command%'; lab help lists them >&2
 exit /b 1
 
@@ -57,7 +57,6 @@ exit /b %errorlevel%
 :report
 :sample
 :diff
-:bug
 set python=
 for %%p in (py.exe python.exe) do if not defined python if not "%%~$PATH:p"=="" set "python=%%p"
 if not defined python (
@@ -77,5 +76,4 @@ echo   check N [FILE]          grades a shader of chapter N: correct, biased or 
 echo   diff N                  the lesson of chapter N: how its path_trace.glsl differs from the one before
 echo   sample NAME [...]       plots points of a sampler and what they integrate
 echo   report [SCENE or N ...] speed against error of chapters and scenes
-echo   bug [...]               practises finding mistakes in shaders
 exit /b 0

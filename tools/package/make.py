@@ -7,11 +7,12 @@ import io
 import lzma
 import os
 import tarfile
+import tempfile
 import zipfile
 from pathlib import Path
 
 from package import windows_programs
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, run_program
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, last_line, run_program
 
 HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
@@ -26,7 +27,7 @@ BOOK = ROOT / "output/book"
 def tree_files(tree):
     """Path in the archive -> bytes, of what is the same on all systems."""
     files = {}
-    for path in sorted([*(path for folder in FOLDERS for path in (tree / folder).rglob("*")), *(tree / name for name in FILES)]):
+    for path in [*(path for folder in FOLDERS for path in (tree / folder).rglob("*")), *(tree / name for name in FILES)]:
         name = path.relative_to(tree).as_posix()
         if path.is_file() and "__pycache__" not in name and not name.startswith(tuple(f"{folder}/" for folder in LEFT_OUT)):
             files[name] = path.read_bytes()
@@ -57,10 +58,11 @@ def linux_files(chapters):
 
 def stripped(program):
     """A program without what only a debugger reads."""
-    result = run_program(["strip", "-o", "/dev/stdout", program], text=False)
-    if result.returncode:
-        raise UserError(f"{program} cannot be packed: {result.stderr.decode()}")
-    return result.stdout
+    with tempfile.NamedTemporaryFile() as copy:
+        result = run_program(["strip", "-o", copy.name, program])
+        if result.returncode:
+            raise UserError(f"{program} cannot be packed: {last_line(result)}")
+        return Path(copy.name).read_bytes()
 
 
 def is_program(name):
