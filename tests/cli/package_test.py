@@ -10,7 +10,8 @@ from program import PROJECT, ProgramTest
 
 class LinuxArchive(ProgramTest):
     def test_runs_in_another_folder_without_a_compiler(self):
-        subprocess.run([PROJECT / "lab", "package", "linux"], check=True, capture_output=True)
+        code, _, err = self.run_tool("package", "linux")
+        self.assertEqual(code, 0, err)
         with tarfile.open(PROJECT / "output/path_tracing_lab-linux.tar.xz") as archive:
             archive.extractall(self.folder / "Übung 1")
         folder = self.folder / "Übung 1/path_tracing_lab-linux"

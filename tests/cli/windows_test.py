@@ -50,9 +50,9 @@ def setUpModule():
                  "WINEPREFIX": str(folder / "prefix"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="})
     (folder / "prefix").mkdir()
     unittest.addModuleCleanup(subprocess.run, ["wineserver", "-k"], env=os.environ | wine)
-    # Wine's own programs stay, so that ours start fast. They must not hold a pipe that a test reads to its end.
-    program = PROGRAMS / f"{CHAPTER.name}.exe"
-    for command in (["wineserver", "-p"], ["wine", "wineboot", "-i"], ["wine", program, "--list-devices"]):
+    # Wine's own programs must not be started by one of ours: they would hold a pipe that a test reads to its end. The desktop
+    # stays as long as a window is on it.
+    for command in (["wineserver", "-p"], ["wine", "wineboot", "-i"], ["wine", "start", "/min", "notepad"]):
         subprocess.run(command, env=os.environ | wine, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
