@@ -5,6 +5,7 @@
 #include <thread>
 
 #ifdef _WIN32
+#include <fcntl.h>
 #include <io.h>
 #include <process.h>
 #include <windows.h>
@@ -51,6 +52,8 @@ bool is_terminal(std::FILE* stream) {
     DWORD mode = 0;
     return GetConsoleMode(reinterpret_cast<HANDLE>(_get_osfhandle(_fileno(stream))), &mode);
 }
+
+void make_binary(std::FILE* stream) { _setmode(_fileno(stream), _O_BINARY); }
 
 bool has_display() { return true; }
 
@@ -108,6 +111,8 @@ size_t processor_count() {
 #endif
 
 void prepare_terminal() {}
+
+void make_binary(std::FILE*) {}
 
 bool is_terminal(std::FILE* stream) { return isatty(fileno(stream)); }
 

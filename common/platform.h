@@ -14,6 +14,9 @@ void prepare_terminal();
 // Whether people read what is written there.
 bool is_terminal(std::FILE* stream);
 
+// From now on bytes are written as they are: Windows gives lines other ends.
+void make_binary(std::FILE* stream);
+
 // Whether windows can be shown.
 bool has_display();
 

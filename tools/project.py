@@ -19,6 +19,11 @@ BAR_WIDTH = 24
 INSTALL = "./lab install" if os.name == "posix" else "python -m pip install numpy scipy matplotlib pillow"
 
 
+def program_file(name):
+    """That of a program that the lab has built."""
+    return (BINARIES / name).with_suffix("" if os.name == "posix" else ".exe")
+
+
 class UserError(Exception):
     """Bad input: one line that says what is wrong, where, and what to do."""
 

@@ -150,6 +150,13 @@ class WindowsPrograms(RenderTest):
         self.assertEqual(process.returncode, 0, err)
         self.assertIn("--resume", out)
 
+    def test_points_are_those_of_linux(self):
+        command = ["cosine", "--count=4096"]
+        windows = subprocess.run(["wine", PROGRAMS / "sample_points.exe", *command], env=os.environ | wine, check=True,
+                                 capture_output=True)
+        linux = subprocess.run([CHAPTER.with_name("sample_points"), *command], check=True, capture_output=True)
+        self.assertEqual(windows.stdout, linux.stdout)
+
     def test_a_handout_has_its_chapters_and_a_todo(self):
         subprocess.run([sys.executable, "-B", TOOLS, "handout", "3", self.folder / "lab_3", "--windows"], check=True)
         with zipfile.ZipFile(self.folder / "lab_3.zip") as archive:
