@@ -1,7 +1,5 @@
 // Work on all threads of the processor that the program may use.
 #pragma once
-#include <sched.h>
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -10,13 +8,9 @@
 #include <thread>
 #include <vector>
 
-namespace lab {
+#include "platform.h"
 
-// How many threads that is.
-inline size_t thread_count() {
-    cpu_set_t processors;
-    return sched_getaffinity(0, sizeof processors, &processors) == 0 ? CPU_COUNT(&processors) : 1;
-}
+namespace lab {
 
 // Calls work(begin, end) for pieces of `piece` numbers that cover 0, 1, ..., count - 1; the last one may be
 // shorter. The pieces do not depend on the number of threads. Throws again what a call has thrown first.
@@ -38,7 +32,7 @@ void in_parallel(size_t count, size_t piece, const Work& work) {
     };
     {
         std::vector<std::jthread> helpers;
-        const size_t threads = piece_count > 1 ? std::min(piece_count, thread_count()) : 1;
+        const size_t threads = piece_count > 1 ? std::min(piece_count, processor_count()) : 1;
         try {
             while (helpers.size() + 1 < threads) helpers.emplace_back(take_pieces);
         } catch (const std::system_error&) {  // no more threads are to be had: those that run do the work

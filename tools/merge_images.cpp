@@ -17,7 +17,7 @@ int main(int argument_count, char** arguments) {
         lab::check_writable(output, {".exr"});
         const lab::FilmFile merged = lab::merge_films(parts);
         lab::write_film(output, merged.image, merged.record);
-        std::printf("%s: samples %u to %u\n", output.c_str(), merged.record.first_sample,
+        std::printf("%s: samples %u to %u\n", output.string().c_str(), merged.record.first_sample,
                     merged.record.first_sample + merged.image.min_samples() - 1);
         return 0;
     } catch (const CLI::CallForHelp&) {

@@ -16,6 +16,12 @@ VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"
 GPU_VARIANT = "cuda_ad_rgb"
 SAMPLERS = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]  # of Mitsuba
 BAR_WIDTH = 24
+INSTALL = "./lab install" if os.name == "posix" else "python -m pip install numpy scipy matplotlib pillow"
+
+
+def program_file(name):
+    """That of a program that the lab has built."""
+    return (BINARIES / name).with_suffix("" if os.name == "posix" else ".exe")
 
 
 class UserError(Exception):

@@ -1,16 +1,18 @@
 #include "app/progress.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 
+#include "platform.h"
 #include "rendering/numbers_text.h"
 
 namespace lab {
 
 Progress::Progress(uint32_t target_samples, double first_samples, bool quiet)
-    : target_samples_(target_samples), first_samples_(first_samples), quiet_(quiet), terminal_(isatty(2)) {}
+    : target_samples_(target_samples),
+      first_samples_(first_samples),
+      quiet_(quiet),
+      terminal_(is_terminal(stderr)) {}
 
 Progress::~Progress() {
     if (printed_ && terminal_) std::fputs("\r\033[K", stderr);

@@ -1,7 +1,5 @@
 #include "app/run_chapter.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <iostream>
 
@@ -9,6 +7,7 @@
 #include "error.h"
 #include "files/file.h"
 #include "gpu/failure.h"
+#include "platform.h"
 #include "rendering/settings.h"
 #include "viewer/viewer.h"
 
@@ -29,6 +28,19 @@ void print_devices() {
                         missing.empty() ? "works" : ("lacks " + missing).c_str());
         }
         std::printf("   largest image %zu megapixels\n", Film::max_pixels(device) / 1000000);
+    }
+}
+
+// Pictures that nobody has named go to the user's folder where nothing can be written in this one.
+void choose_outputs(RunOptions& options) {
+    const std::filesystem::path folder = user_folder();
+    if (!options.has_default_outputs || folder.empty()) return;
+    try {
+        check_writable(options.outputs.front());
+    } catch (const UserError& error) {
+        for (auto& file : options.outputs) file = folder / "path_tracing_lab" / file.filename();
+        std::cerr << "note: " << error.what() << ": pictures go to "
+                  << options.outputs.front().parent_path().string() << "\n";
     }
 }
 
@@ -60,7 +72,7 @@ std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& optio
     const bool is_forced = options.run.window == WindowChoice::always;
     if (options.run.window == WindowChoice::never) return nullptr;
     if (!is_forced &&
-        (!Window::has_display() || !isatty(STDOUT_FILENO) || needs_no_window(options) || options.run.quiet))
+        (!has_display() || !is_terminal(stdout) || needs_no_window(options) || options.run.quiet))
         return nullptr;
     try {
         return std::make_unique<Window>(chapter.name, window_size(image_size));
@@ -100,7 +112,8 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }
 
-void run(const Chapter& chapter, const Options& options) {
+void run(const Chapter& chapter, Options options) {
+    choose_outputs(options.run);
     check_outputs(options.run);
     const auto scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
     RenderJob job = make_job(chapter, options, scene);
@@ -120,6 +133,7 @@ void run(const Chapter& chapter, const Options& options) {
 }  // namespace
 
 int run_chapter(const std::string& name, int argument_count, char** arguments) {
+    prepare_terminal();
     try {
         const Chapter chapter = load_chapter(name);
         const auto options = parse_options(chapter, argument_count, arguments);

@@ -1,7 +1,5 @@
 #include "files/cache.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -9,6 +7,7 @@
 #include <iterator>
 
 #include "files/hash.h"
+#include "platform.h"
 
 namespace lab {
 namespace {
@@ -17,9 +16,8 @@ namespace {
 std::filesystem::path cache_folder() {
     if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
         return std::filesystem::path(folder) / "path_tracing_lab";
-    if (const char* home = std::getenv("HOME"); home && *home)
-        return std::filesystem::path(home) / ".cache" / "path_tracing_lab";
-    return {};
+    const std::filesystem::path home = user_folder();
+    return home.empty() ? home : home / ".cache" / "path_tracing_lab";
 }
 
 // The last eight bytes of an entry are the hash of the others.
@@ -48,7 +46,7 @@ void write_cache(const std::string& name, const std::vector<uint8_t>& contents) 
     if (folder.empty()) return;
     std::error_code ignored;
     std::filesystem::create_directories(folder, ignored);
-    const auto temporary = folder / (name + "." + std::to_string(getpid()));
+    const auto temporary = folder / (name + "." + std::to_string(process_id()));
     const uint64_t sum = checksum(contents.data(), contents.size());
     std::ofstream stream(temporary, std::ios::binary);
     stream.write(reinterpret_cast<const char*>(contents.data()),
@@ -56,7 +54,7 @@ void write_cache(const std::string& name, const std::vector<uint8_t>& contents) 
     stream.write(reinterpret_cast<const char*>(&sum), sizeof sum);
     stream.close();
     if (stream)
-        std::filesystem::rename(temporary, folder / name, ignored);
+        rename_file(temporary, folder / name, ignored);
     else
         std::filesystem::remove(temporary, ignored);
 }

@@ -1,7 +1,5 @@
 #include "files/file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
@@ -10,6 +8,7 @@
 #include <fstream>
 
 #include "error.h"
+#include "platform.h"
 
 namespace lab {
 namespace {
@@ -22,18 +21,18 @@ fs::path temporary_name(const fs::path& file) {
     fs::path name = ".";
     name += file.filename();
     name += '.';
-    name += std::to_string(getpid());
+    name += std::to_string(process_id());
     name += ".tmp";
     return file.parent_path() / name;
 }
 
 // Whether all bytes reached the file: a full disk may show only when it is flushed and closed.
 bool write_bytes(const fs::path& file, std::string_view bytes) {
-    std::FILE* stream = std::fopen(file.c_str(), "wb");
+    std::FILE* stream = std::fopen(file.string().c_str(), "wb");
     if (!stream) return false;
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
     // On the disk before the rename is: else a power failure could leave the new name with no contents.
-    const bool flushed = std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
+    const bool flushed = std::fflush(stream) == 0 && write_to_disk(stream);
     const int error = errno;
     const bool closed = std::fclose(stream) == 0;
     if (!written || !flushed) errno = error;
@@ -68,9 +67,14 @@ std::string read_file(const fs::path& file, uint64_t max_bytes) {
 
 void write_file(const fs::path& file, std::string_view bytes) {
     const fs::path temporary = temporary_name(file);
-    if (write_bytes(temporary, bytes) && std::rename(temporary.c_str(), file.c_str()) == 0) return;
-    const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
+    std::error_code error;
+    if (!write_bytes(temporary, bytes))
+        error = {errno, std::generic_category()};
+    else
+        rename_file(temporary, file, error);
+    if (!error) return;
+    const std::string reason = error.message();
+    fs::remove(temporary, error);
     throw UserError(file.string() + ": cannot be written: " + reason);
 }
 
@@ -91,7 +95,7 @@ void check_writable(const fs::path& file, const std::vector<std::string>& ending
     const fs::path temporary = temporary_name(file);
     const bool writable = write_bytes(temporary, "");
     const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
+    fs::remove(temporary, error);
     if (!writable) throw UserError(name + ": cannot be written: " + reason);
 }
 

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "files/cache.h"
 #include "files/hash.h"
+#include "platform.h"
 
 namespace lab {
 namespace {
@@ -32,6 +33,11 @@ std::string kind_text(vk::PhysicalDeviceType type) {
         default:
             return "other";
     }
+}
+
+bool contains(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name) {
+    return std::any_of(extensions.begin(), extensions.end(),
+                       [&](const auto& extension) { return extension.extensionName.data() == name; });
 }
 
 // What a device must offer. The ray tracing structures count only where the extensions are there.
@@ -101,11 +107,7 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         auto& missing = description.missing[backend];
         missing = missing_everywhere(device, features);
         for (const char* wanted : extensions_for(backend))
-            if (std::none_of(extensions.begin(), extensions.end(),
-                             [&](const vk::ExtensionProperties& extension) {
-                                 return std::strcmp(extension.extensionName, wanted) == 0;
-                             }))
-                missing.emplace_back(wanted);
+            if (!contains(extensions, wanted)) missing.emplace_back(wanted);
         if (backend != Backend::compute &&
             !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
             missing.emplace_back("bufferDeviceAddress");
@@ -127,15 +129,25 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
         layers.push_back(validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
-    return {context, vk::InstanceCreateInfo({}, &application, layers, extensions)};
+    // Drivers that have most of Vulkan, such as macOS's, show only where one asks for them.
+    vk::InstanceCreateFlags flags;
+    if (contains(context.enumerateInstanceExtensionProperties(),
+                 VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
+        extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+        flags = vk::InstanceCreateFlagBits::eEnumeratePortabilityKHR;
+    }
+    try {
+        return {context, vk::InstanceCreateInfo(flags, &application, layers, extensions)};
+    } catch (const vk::SystemError&) {
+        throw DeviceError(std::string("no Vulkan driver: install ") + vulkan_driver);
+    }
 }
 
 vk::raii::Context load_vulkan() {
     try {
         return {};
     } catch (const std::exception&) {
-        throw DeviceError(
-            "the Vulkan loader is missing: install libvulkan1 and a driver such as mesa-vulkan-drivers");
+        throw DeviceError(std::string("Vulkan is missing: install ") + vulkan_driver);
     }
 }
 
@@ -145,9 +157,7 @@ std::vector<vk::raii::PhysicalDevice> enumerate_devices(const vk::raii::Instance
         for (auto& device : vk::raii::PhysicalDevices(instance)) devices.push_back(std::move(device));
     } catch (const vk::SystemError&) {
     }
-    if (devices.empty())
-        throw DeviceError(
-            "no Vulkan device: install a driver, for example mesa-vulkan-drivers (it also has a CPU device)");
+    if (devices.empty()) throw DeviceError(std::string("no Vulkan device: install ") + vulkan_driver);
     return devices;
 }
 
@@ -187,13 +197,9 @@ std::string to_string(Backend backend) {
     return "compute";
 }
 
-Device::Device(const DeviceOptions& options) : context_(load_vulkan()) {
-    try {
-        instance_ = create_instance(context_, options.validation, options.instance_extensions);
-    } catch (const vk::SystemError&) {
-        throw DeviceError(
-            "no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
-    }
+Device::Device(const DeviceOptions& options)
+    : context_(load_vulkan()),
+      instance_(create_instance(context_, options.validation, options.instance_extensions)) {
     if (options.validation) {
         // The C structure: Vulkan-Hpp changed the callback's parameter types between releases.
         VkDebugUtilsMessengerCreateInfoEXT info{};
@@ -231,11 +237,8 @@ void Device::choose_queue_family() {
                families[family].timestampValidBits > 0;
     };
     if (*surface_) {
-        const auto extensions = physical_.enumerateDeviceExtensionProperties();
         const bool has_swapchain =
-            std::any_of(extensions.begin(), extensions.end(), [](const vk::ExtensionProperties& extension) {
-                return std::strcmp(extension.extensionName, VK_KHR_SWAPCHAIN_EXTENSION_NAME) == 0;
-            });
+            contains(physical_.enumerateDeviceExtensionProperties(), VK_KHR_SWAPCHAIN_EXTENSION_NAME);
         for (uint32_t family = 0; has_swapchain && family < families.size(); ++family)
             if (computes(family) && families[family].queueFlags & vk::QueueFlagBits::eGraphics &&
                 physical_.getSurfaceSupportKHR(family, *surface_)) {
@@ -262,6 +265,8 @@ void Device::create_device() {
         if (description_.supports(backend))
             for (const char* extension : extensions_for(backend)) extensions.insert(extension);
     if (*surface_) extensions.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    constexpr const char* portability = "VK_KHR_portability_subset";  // must be named where a device has it
+    if (contains(physical_.enumerateDeviceExtensionProperties(), portability)) extensions.insert(portability);
     if (has_acceleration_structures()) {
         vulkan12.bufferDeviceAddress = true;
         features.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure = true;
@@ -359,14 +364,9 @@ void wait_for_writes(const vk::raii::CommandBuffer& commands) {
 
 std::vector<DeviceDescription> list_devices() {
     const vk::raii::Context context = load_vulkan();
+    const vk::raii::Instance instance = create_instance(context, false);
     std::vector<DeviceDescription> descriptions;
-    try {
-        const vk::raii::Instance instance = create_instance(context, false);
-        for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device));
-    } catch (const vk::SystemError&) {
-        throw DeviceError(
-            "no Vulkan driver: install one, for example mesa-vulkan-drivers (it also has a CPU device)");
-    }
+    for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device));
     return descriptions;
 }
 

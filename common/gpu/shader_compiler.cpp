@@ -39,8 +39,8 @@ class Includer {
             }
             const fs::path included = find(name[1].str(), file, number);
             if (seen_.insert(fs::weakly_canonical(included)).second)
-                text += "#line 1 \"" + included.string() + "\"\n" + expand(included);
-            text += "#line " + std::to_string(number + 1) + " \"" + file.string() + "\"\n";
+                text += "#line 1 \"" + included.generic_string() + "\"\n" + expand(included);
+            text += "#line " + std::to_string(number + 1) + " \"" + file.generic_string() + "\"\n";
         }
         return text;
     }
@@ -53,8 +53,8 @@ class Includer {
         if (const auto named = named_.find(name); named != named_.end()) return named->second;
         if (const auto beside = includer.parent_path() / name; fs::exists(beside)) return beside;
         if (const auto shared = project_folder() / "shaders" / name; fs::exists(shared)) return shared;
-        throw UserError(includer.string() + ":" + std::to_string(line) + ": cannot find the include file \"" +
-                        name + "\"");
+        throw UserError(includer.generic_string() + ":" + std::to_string(line) +
+                        ": cannot find the include file \"" + name + "\"");
     }
 
     const std::map<std::string, fs::path>& named_;
@@ -95,7 +95,7 @@ std::vector<uint32_t> compile(const ShaderSource& source, const std::string& tex
     if (!initialised) throw UserError("glslang could not be initialised");
     const EShLanguage stage = language(source.stage);
     glslang::TShader shader(stage);
-    const std::string name = source.file.string();
+    const std::string name = source.file.generic_string();  // GLSL has escapes in quotes
     const char* texts[] = {text.c_str()};
     const int lengths[] = {static_cast<int>(text.size())};
     const char* names[] = {name.c_str()};

@@ -17,7 +17,8 @@ std::string deflate_all(std::string_view bytes, int window_bits, int flush) {
     z_stream stream{};
     if (deflateInit2(&stream, level, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY) != Z_OK)
         throw std::bad_alloc();
-    std::string result(deflateBound(&stream, bytes.size()) + 16, '\0');  // 16: more than a flush adds
+    std::string result(deflateBound(&stream, static_cast<uLong>(bytes.size())) + 16,
+                       '\0');  // 16: more than a flush adds
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream.avail_in = static_cast<uInt>(bytes.size());
     stream.next_out = reinterpret_cast<Bytef*>(result.data());

@@ -1,6 +1,6 @@
 // Eight-bit images through stb_image, and the writers of stb_image_write.
-#include <stb/stb_image.h>
-#include <stb/stb_image_write.h>
+#include <stb_image.h>
+#include <stb_image_write.h>
 
 #include <algorithm>
 #include <cstring>

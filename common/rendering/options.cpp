@@ -216,8 +216,8 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
         if (known.name == view) options.image.view = &known;
     if (options.run.outputs.empty()) {
         const std::string stem = chapter.name + (options.image.view ? "_" + options.image.view->name : "");
-        options.run.outputs = {std::filesystem::path("output") / (stem + ".png"),
-                               std::filesystem::path("output") / (stem + ".exr")};
+        options.run.has_default_outputs = true;
+        options.run.outputs = {"output/" + stem + ".png", "output/" + stem + ".exr"};
     }
     return options;
 }

@@ -84,6 +84,7 @@ struct RunOptions {
     std::string device;
     bool list_devices = false;
     std::vector<std::filesystem::path> outputs;
+    bool has_default_outputs = false;  // whether nobody has named them
     std::filesystem::path reference;
     std::filesystem::path report;
     std::optional<double> target_error;  // square root of rel_mse

@@ -24,7 +24,7 @@ bool has_same_samples(const Options& a, const Options& b) {
 
 // Names of files in messages start at the project's folder.
 std::string shortened(std::string message) {
-    const std::string folder = project_folder().string() + "/";
+    const std::string folder = project_folder().generic_string() + "/";
     for (size_t at = message.find(folder); at != std::string::npos; at = message.find(folder))
         message.erase(at, folder.size());
     return message;

@@ -4,17 +4,12 @@
 #include <GLFW/glfw3.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "error.h"
+#include "platform.h"
 
 namespace lab {
 namespace {
-
-bool is_set(const char* variable) {
-    const char* value = std::getenv(variable);
-    return value && *value;
-}
 
 // GLFW's last error, for messages.
 std::string glfw_error() {
@@ -24,8 +19,6 @@ std::string glfw_error() {
 }
 
 }  // namespace
-
-bool Window::has_display() { return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"); }
 
 Window::Window(const std::string& title, uvec2 size) {
     if (!has_display())

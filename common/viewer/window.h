@@ -14,9 +14,6 @@ namespace lab {
 
 class Window {
   public:
-    // Whether the environment names a display; does not touch GLFW.
-    static bool has_display();
-
     // Throws UserError if no window can be opened. There is at most one at a time.
     Window(const std::string& title, uvec2 size);
     ~Window();

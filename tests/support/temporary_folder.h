@@ -1,9 +1,10 @@
 // A folder for the time that a test needs it.
 #pragma once
-#include <cstdlib>
+#include <atomic>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
+
+#include "platform.h"
 
 namespace lab {
 
@@ -11,9 +12,9 @@ namespace lab {
 class TemporaryFolder {
   public:
     explicit TemporaryFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
-        std::string name = (parent / "lab_test_XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-        path_ = name;
+        static std::atomic<int> count = 0;
+        do path_ = parent / ("lab_test_" + std::to_string(process_id()) + "_" + std::to_string(count++));
+        while (!std::filesystem::create_directory(path_));
     }
     ~TemporaryFolder() {
         std::error_code ignored;

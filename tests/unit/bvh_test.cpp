@@ -2,59 +2,15 @@
 #include "tracing/bvh.h"
 
 #include <gtest/gtest.h>
-#include <sched.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <random>
 
+#include "bvh_triangles.h"
 #include "error.h"
-#include "parallel.h"
 
 namespace lab {
 namespace {
-
-BvhTriangle make_triangle(const vec3& a, const vec3& b, const vec3& c, size_t id) {
-    const mat3 rows = glm::transpose(mat3(a, b, c));
-    return {rows[0], 0, rows[1], static_cast<uint32_t>(id), rows[2], 0};
-}
-
-// Triangles of size `extent` in a cube of size 1, times `scale`.
-std::vector<BvhTriangle> random_triangles(size_t count, float extent, float scale = 1) {
-    std::mt19937 generator(1);
-    std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
-    const auto point = [&] {
-        const float x = uniform(generator), y = uniform(generator);
-        return vec3(x, y, uniform(generator));
-    };
-    std::vector<BvhTriangle> triangles;
-    for (size_t i = 0; i < count; ++i) {
-        const vec3 centre = point();
-        const vec3 a = centre + extent * point(), b = centre + extent * point(),
-                   c = centre + extent * point();
-        triangles.push_back(make_triangle(scale * a, scale * b, scale * c, i));
-    }
-    return triangles;
-}
-
-// A height field of 2 width^2 triangles.
-std::vector<BvhTriangle> height_field(size_t width) {
-    const auto vertex = [&](size_t i, size_t j) {
-        const float x = static_cast<float>(i) / static_cast<float>(width);
-        const float z = static_cast<float>(j) / static_cast<float>(width);
-        return vec3(x, 0.1f * std::sin(9 * x) * std::cos(7 * z), z);
-    };
-    std::vector<BvhTriangle> triangles;
-    for (size_t i = 0; i < width; ++i)
-        for (size_t j = 0; j < width; ++j) {
-            triangles.push_back(
-                make_triangle(vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1), triangles.size()));
-            triangles.push_back(
-                make_triangle(vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j), triangles.size()));
-        }
-    return triangles;
-}
 
 bool contains(const Bounds& outer, const Bounds& inner) {
     return glm::all(glm::lessThanEqual(outer.low, inner.low)) &&
@@ -128,16 +84,6 @@ void expect_valid(const std::vector<BvhTriangle>& input, const Bvh& bvh) {
         EXPECT_EQ(std::memcmp(&triangle, &input.at(triangle.triangle), sizeof(triangle)), 0);
 }
 
-template <typename T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-void expect_same(const Bvh& a, const Bvh& b) {
-    EXPECT_TRUE(same_bytes(a.nodes, b.nodes));
-    EXPECT_TRUE(same_bytes(a.triangles, b.triangles));
-}
-
 TEST(BvhBuilder, HoldsAnyNumberOfTriangles) {
     for (const size_t count : {0, 1, 2, 3, 4, 5, 8, 9, 100, 1000, 150'000}) {
         SCOPED_TRACE(count);
@@ -199,22 +145,6 @@ TEST(BvhBuilder, StatesTheDeepestStack) {
 TEST(BvhBuilder, FindsGoodSplits) {
     EXPECT_LT(build_bvh(height_field(200)).surface_area_cost, 15);
     EXPECT_LT(build_bvh(random_triangles(50'000, 0.01f)).surface_area_cost, 50);
-}
-
-// Large enough for all threads to share the first splits.
-TEST(BvhBuilder, DoesNotDependOnTheNumberOfThreads) {
-    const auto triangles = height_field(300);
-    const Bvh parallel = build_bvh(triangles);
-    cpu_set_t all, one;
-    ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
-    CPU_ZERO(&one);
-    CPU_SET(sched_getcpu(), &one);
-    ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
-    EXPECT_EQ(thread_count(), 1u);
-    const Bvh serial = build_bvh(triangles);
-    sched_setaffinity(0, sizeof(all), &all);
-    expect_same(parallel, serial);
-    expect_same(parallel, build_bvh(triangles));
 }
 
 Scene two_instances() {

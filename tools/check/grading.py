@@ -3,6 +3,7 @@
 Means of the whole image and of its tiles are tested against the reference. Error and rays are compared with those of the
 chapter's own shader, which knowledge.json has.
 """
+import os
 import shutil
 import tempfile
 import time
@@ -11,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import BINARIES, CHAPTERS, ROOT, UserError, description, read_json, show_progress
+from project import BINARIES, CHAPTERS, ROOT, UserError, description, program_file, read_json, show_progress
 from references.images import find_references, read_reference, read_rgb
 from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
@@ -59,9 +60,16 @@ def make_tree(chapter, file, tree):
     shutil.copytree(ROOT / "shaders", tree / "shaders")
     shutil.copytree(ROOT / "chapters" / chapter, tree / "chapters" / chapter)
     shader = Path(shutil.copy(file, tree / "chapters" / chapter / "path_trace.glsl"))
-    (tree / "assets").symlink_to(ROOT / "assets")
+    share(ROOT / "assets", tree / "assets")
+    if (libraries := BINARIES.parent / "lib").exists():  # of an archive that ./lab package made
+        share(libraries, tree / "lib")
     (tree / "bin").mkdir()
-    return shutil.copy(BINARIES / chapter, tree / "bin" / chapter), shader  # a program looks for shaders above itself
+    return shutil.copy(program_file(chapter), tree / "bin"), shader  # a program looks for shaders above itself
+
+
+def share(folder, place):
+    """Windows lets few people make links."""
+    place.symlink_to(folder) if os.name == "posix" else shutil.copytree(folder, place)
 
 
 @contextmanager

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 from course.pages import clean_pages
+from package.make import pack
 from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_program, show_progress
 
 HERE = Path(__file__).parent
@@ -20,7 +21,7 @@ FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it holds or names solutions, or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/measuring.md", "docs/solutions", "docs/bugs*", "docs/pictures/bug*",
-            "docs/records/check", "docs/grading", "tools/course", "tools/docs", "tools/lesson/bug*"]
+            "docs/records/check", "docs/grading", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -110,6 +111,7 @@ def main():
     parser = Parser("./lab handout", __doc__)
     parser.add_argument("chapter", type=number(int, 1), nargs="?", metavar="N", help="the last chapter")
     parser.add_argument("folder", type=Path, nargs="?", metavar="DIR", help="to be made; must not exist")
+    parser.add_argument("--windows", action="store_true", help="write DIR.zip, with programs to unpack and run on Windows")
     parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
     options = parser.parse_intermixed_args()
     known = [chapter for chapter in CHAPTERS if exercises(chapter)]
@@ -118,8 +120,14 @@ def main():
     if options.verify == bool(options.folder):
         parser.error("give N and DIR, or --verify")
     if not options.verify:
-        if options.folder.exists():
-            raise UserError(f"{options.folder} exists already: choose another folder")
+        result = options.folder.with_name(options.folder.name + ".zip") if options.windows else options.folder
+        if result.exists():
+            raise UserError(f"{result} exists already: choose another name")
+        if options.windows:
+            with tempfile.TemporaryDirectory() as folder:
+                write_handout(options.chapter, Path(folder) / "lab")
+                pack("windows", result, Path(folder) / "lab")
+            return
         write_handout(options.chapter, options.folder)
         print(f"{options.folder}: chapters 1 to {options.chapter}; cd there, ./lab run {options.chapter} and ./lab check {options.chapter}")
         return

@@ -9,10 +9,10 @@ from typing import Callable
 
 import numpy as np
 from lesson import point_sets, sample_plots
-from project import BINARIES, ROOT, Parser, UserError, number, run_program
+from project import ROOT, Parser, UserError, number, program_file, run_program
 from report.numbers import CONFIDENCE, two_sided
 
-PROGRAM = BINARIES / "sample_points"
+PROGRAM = program_file("sample_points")
 BINS = 16
 
 

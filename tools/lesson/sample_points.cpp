@@ -8,6 +8,7 @@
 #include "error.h"
 #include "files/project_folder.h"
 #include "gpu/compute_kernel.h"
+#include "platform.h"
 #include "rendering/renderer.h"
 #include "rendering/settings.h"
 #include "shaders/interface.h"
@@ -79,6 +80,7 @@ int main(int argument_count, char** arguments) {
         const Sampler& sampler = samplers.at(name);
         const auto points =
             sample(sampler, sampler.columns > 0 ? sampler.columns : dimensions, count, samples, seed, device);
+        make_binary(stdout);
         std::cout.write(reinterpret_cast<const char*>(points.data()),
                         static_cast<std::streamsize>(points.size() * sizeof(float)));
         return std::cout ? 0 : 1;

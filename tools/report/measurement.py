@@ -13,7 +13,7 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import (BINARIES, CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, last_line, read_json,
+from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, last_line, program_file, read_json,
                      run_program, show_progress, write_json)
 from references.images import averaged, read_reference, read_rgb, rel_mse
 
@@ -130,7 +130,7 @@ def run_case(case, settings, arguments):
     """The report of one run, with the seconds from its start to its end, less those of what a peer renders and discards."""
     with tempfile.TemporaryDirectory() as folder:
         limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
-        command = [*peer_command(case["program"])] if case["is_peer"] else [*limited, BINARIES / case["program"], "--quiet"]
+        command = [*peer_command(case["program"])] if case["is_peer"] else [*limited, program_file(case["program"]), "--quiet"]
         command += [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
         if case["reference_file"]:
             command += ["--max-path-length", case["max_path_length"]]
@@ -171,9 +171,9 @@ def measure_large(case, rows, picture):
     rows[-1]["rel_mse"] = rel_mse(averaged(read_rgb(picture), case["scale"]), read_reference(ROOT / case["reference_file"]))
 
 
-def devices_text(program):
+def devices_text(chapter):
     """The devices of this machine, as a chapter lists them."""
-    return run_program([BINARIES / program, "--list-devices"]).stdout
+    return run_program([program_file(chapter), "--list-devices"]).stdout
 
 
 def driver_of(program, device):

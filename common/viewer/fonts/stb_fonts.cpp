@@ -4,6 +4,6 @@
 #define STB_TRUETYPE_IMPLEMENTATION
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb/stb_rect_pack.h>
-#include <stb/stb_truetype.h>
+#include <stb_rect_pack.h>
+#include <stb_truetype.h>
 #pragma GCC diagnostic pop

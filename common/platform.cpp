@@ -1,0 +1,153 @@
+#include "platform.h"
+
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#ifdef _WIN32
+#include <fcntl.h>
+#include <io.h>
+#include <process.h>
+#include <windows.h>
+
+#include <cwchar>
+#else
+#include <unistd.h>
+#endif
+#ifdef __linux__
+#include <sched.h>
+#endif
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#endif
+
+namespace lab {
+
+static std::string variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+#ifdef _WIN32
+
+const char* const vulkan_driver =
+    "the newest driver of your graphics card from nvidia.com, amd.com or intel.com";
+
+void prepare_terminal() {
+    SetConsoleOutputCP(CP_UTF8);
+    for (const DWORD stream : {STD_OUTPUT_HANDLE, STD_ERROR_HANDLE}) {
+        DWORD mode = 0;
+        if (GetConsoleMode(GetStdHandle(stream), &mode))
+            SetConsoleMode(GetStdHandle(stream), mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING);
+    }
+    DWORD process = 0;
+    if (GetConsoleProcessList(&process, 1) == 1 && is_terminal(stdout))
+        std::atexit([] {
+            std::printf("\nThe Enter key closes this window.\n");
+            std::getchar();
+        });
+}
+
+bool is_terminal(std::FILE* stream) {
+    DWORD mode = 0;
+    return GetConsoleMode(reinterpret_cast<HANDLE>(_get_osfhandle(_fileno(stream))), &mode);
+}
+
+void make_binary(std::FILE* stream) { _setmode(_fileno(stream), _O_BINARY); }
+
+bool has_display() { return true; }
+
+std::filesystem::path running_program() {
+    std::wstring name(32768, L'\0');  // no name is longer
+    name.resize(GetModuleFileNameW(nullptr, name.data(), static_cast<DWORD>(name.size())));
+    return name;
+}
+
+std::filesystem::path user_folder() { return variable("USERPROFILE"); }
+
+int process_id() { return _getpid(); }
+
+size_t processor_count() { return std::thread::hardware_concurrency(); }
+
+bool write_to_disk(std::FILE* stream) { return _commit(_fileno(stream)) == 0; }
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to, std::error_code& error) {
+    for (int attempt = 0; attempt < 20; ++attempt) {
+        std::filesystem::rename(from, to, error);
+        if (error != std::errc::permission_denied) return;
+        Sleep(50);
+    }
+}
+
+#else
+
+#ifdef __APPLE__
+const char* const vulkan_driver = "MoltenVK (brew install vulkan-loader molten-vk)";
+
+bool has_display() { return true; }
+
+std::filesystem::path running_program() {
+    char name[4096];
+    uint32_t size = sizeof name;
+    return _NSGetExecutablePath(name, &size) == 0 ? std::filesystem::weakly_canonical(name) : "";
+}
+
+size_t processor_count() { return std::thread::hardware_concurrency(); }
+#else
+const char* const vulkan_driver =
+    "libvulkan1 and a driver such as mesa-vulkan-drivers (it also has a CPU device)";
+
+bool has_display() { return !variable("DISPLAY").empty() || !variable("WAYLAND_DISPLAY").empty(); }
+
+std::filesystem::path running_program() {
+    std::error_code ignored;
+    return std::filesystem::read_symlink("/proc/self/exe", ignored);
+}
+
+size_t processor_count() {
+    cpu_set_t processors;
+    return sched_getaffinity(0, sizeof processors, &processors) == 0 ? CPU_COUNT(&processors) : 1;
+}
+#endif
+
+void prepare_terminal() {}
+
+void make_binary(std::FILE*) {}
+
+bool is_terminal(std::FILE* stream) { return isatty(fileno(stream)); }
+
+std::filesystem::path user_folder() { return variable("HOME"); }
+
+int process_id() { return getpid(); }
+
+bool write_to_disk(std::FILE* stream) { return fsync(fileno(stream)) == 0; }
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to, std::error_code& error) {
+    std::filesystem::rename(from, to, error);
+}
+
+#endif
+
+}  // namespace lab
+
+#ifdef _WIN32
+// GCC 12 reads the names of files by this function, which knows no UTF-8 in Microsoft's library (GCC 13 has
+// no need of it). Bytes that are not UTF-8 stand for themselves. A character outside the first 65536 is two
+// of Windows': the second waits in the state.
+extern "C" size_t __wrap_mbrtowc(wchar_t* result, const char* text, size_t size, mbstate_t* state) {
+    wchar_t characters[2];
+    if (*state != 0) {
+        *result = static_cast<wchar_t>(*state);
+        *state = 0;
+        return 1;
+    }
+    const auto first = static_cast<unsigned char>(*text);
+    const int bytes = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 1;
+    const int count = static_cast<size_t>(bytes) <= size
+                          ? MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, text, bytes, characters, 2)
+                          : 0;
+    *result = count > 0 ? characters[0] : first;
+    if (count == 2) *state = characters[1];
+    return count == 0 ? 1 : static_cast<size_t>(count == 2 ? bytes - 1 : bytes) * (first != 0);
+}
+#endif

@@ -1,0 +1,30 @@
+"""./lab package linux: the archive runs in another folder, without a compiler. windows_test tries that for Windows."""
+
+import os
+import subprocess
+import tarfile
+import unittest
+
+from program import PROJECT, ProgramTest
+
+
+class LinuxArchive(ProgramTest):
+    def test_runs_in_another_folder_without_a_compiler(self):
+        code, _, err = self.run_tool("package", "linux")
+        self.assertEqual(code, 0, err)
+        with tarfile.open(PROJECT / "output/path_tracing_lab-linux.tar.xz") as archive:
+            archive.extractall(self.folder / "Übung 1")
+        folder = self.folder / "Übung 1/path_tracing_lab-linux"
+        for name in ("cmake", "g++"):
+            self.write(f"bin/{name}", "#!/bin/sh\nexit 1\n").chmod(0o755)
+        environment = {"PATH": f"{self.folder}/bin:{os.environ['PATH']}"}
+        code, _, err = self.run_program("run", "1", "quad.json", "--width=8", "--height=8", "--samples=1", program=folder / "lab",
+                                        environment=environment)
+        self.assertEqual((code, err), (0, ""))
+        self.assertTrue((self.folder / "output/01_uniform_sampling.png").exists())
+        libraries = subprocess.run(["ldd", folder / "build/bin/01_uniform_sampling"], capture_output=True, text=True).stdout
+        self.assertIn(f"{folder}/build/lib/libglfw.so.3", libraries.replace("/bin/..", ""))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,74 @@
+// What can be tried on Linux only: a full disk, fewer processors, and files that are no files.
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+
+#include "bvh_triangles.h"
+#include "files/file.h"
+#include "image/image.h"
+#include "platform.h"
+#include "scene/scene.h"
+#include "test_files.h"
+
+namespace lab {
+namespace {
+
+// Large enough for all threads to share the first splits.
+TEST(BvhBuilder, DoesNotDependOnTheNumberOfThreads) {
+    const auto triangles = height_field(300);
+    const Bvh parallel = build_bvh(triangles);
+    cpu_set_t all, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
+    CPU_ZERO(&one);
+    CPU_SET(sched_getcpu(), &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+    EXPECT_EQ(processor_count(), 1u);
+    const Bvh serial = build_bvh(triangles);
+    sched_setaffinity(0, sizeof(all), &all);
+    expect_same(parallel, serial);
+    expect_same(parallel, build_bvh(triangles));
+}
+
+TEST(WriteFile, FullDiskKeepsTheOlderFile) {
+    const TestFolder folder;
+    folder.write("a.exr", "older contents");
+    // A limit on the size of files stands for a full disk.
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit limit{10000, before.rlim_max};
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const std::string message = user_error([&] { write_file(folder / "a.exr", std::string(100'000, 'x')); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "cannot be written", message);
+    EXPECT_EQ(file_bytes(folder / "a.exr"), "older contents");
+    EXPECT_EQ(folder.file_count(), 1u) << "a temporary file was left behind";
+}
+
+TEST(CheckWritable, RefusesAFolderOfTheSystem) {
+    EXPECT_USER_ERROR(check_writable("/proc/a.png"), "cannot be written");
+}
+
+// Reading one would wait for ever.
+TEST(ReadFile, RefusesPipesAndDevices) {
+    const TestFolder folder;
+    mkfifo((folder / "pipe").c_str(), 0600);
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const std::string name : {"/dev/zero", "/dev/stdin", "pipe"}) {
+        EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib " + name + "\n" + triangle)),
+                          "not a regular file");
+        folder.write("a.mtl", "newmtl m\nmap_Kd " + name + "\n");
+        EXPECT_USER_ERROR(load_scene(folder.write("b.obj", "mtllib a.mtl\nusemtl m\n" + triangle)),
+                          "not a regular file");
+        EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\":[{\"file\":\"" + name + "\"}]}")),
+                          "not a regular file");
+        EXPECT_USER_ERROR(read_exr(folder / name), "not a regular file");
+        EXPECT_USER_ERROR(read_texture(folder / name), "not a regular file");
+    }
+}
+
+}  // namespace
+}  // namespace lab

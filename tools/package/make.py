@@ -1,0 +1,110 @@
+"""Packs programs, shaders, scenes, pages and tools for machines without a compiler: output/path_tracing_lab-SYSTEM.
+
+windows: a .zip to unpack and run on Windows 10 or 11, built here. linux: a .tar.xz for the distribution of this machine.
+The same sources make the same archive.
+"""
+import io
+import lzma
+import os
+import tarfile
+import tempfile
+import zipfile
+from pathlib import Path
+
+from package import windows_programs
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, last_line, run_program
+
+HERE = Path(__file__).parent
+NAME = "path_tracing_lab"
+FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
+FILES = ["LICENSE", "README.md"]
+LEFT_OUT = ["tools/course", "tools/package"]  # they need the sources
+PROGRAMS = ["merge_images", "sample_points"]  # besides the chapters
+DATE = 1980, 1, 1, 0, 0, 0  # the date of all files, so that archives can be compared
+BOOK = ROOT / "output/book"
+
+
+def tree_files(tree):
+    """Path in the archive -> bytes, of what is the same on all systems."""
+    files = {}
+    for path in [*(path for folder in FOLDERS for path in (tree / folder).rglob("*")), *(tree / name for name in FILES)]:
+        name = path.relative_to(tree).as_posix()
+        if path.is_file() and "__pycache__" not in name and not name.startswith(tuple(f"{folder}/" for folder in LEFT_OUT)):
+            files[name] = path.read_bytes()
+    if tree == ROOT and BOOK.exists():
+        files |= {f"book/{path.relative_to(BOOK).as_posix()}": path.read_bytes() for path in BOOK.rglob("*") if path.is_file()}
+    return files
+
+
+def windows_files(chapters):
+    windows_programs.build([*chapters, *PROGRAMS])
+    # Windows' command interpreter needs its own ends of lines.
+    files = {"lab.cmd": (HERE / "lab.cmd").read_bytes().replace(b"\n", b"\r\n")}
+    return files | {f"build/bin/{name}.exe": (windows_programs.PROGRAMS / f"{name}.exe").read_bytes()
+                    for name in [*chapters, *PROGRAMS]}
+
+
+def linux_files(chapters):
+    """The programs, and the libraries that a system without a compiler may lack."""
+    files, libraries = {"lab": (ROOT / "lab").read_bytes()}, {}
+    for name in [*chapters, *PROGRAMS]:
+        files[f"build/bin/{name}"] = stripped(BINARIES / name)
+        for line in run_program(["ldd", BINARIES / name]).stdout.splitlines():
+            library, _, place = line.strip().partition(" => ")
+            if place and library.split(".so")[0] not in ("libc", "libm", "libdl", "libpthread", "libgcc_s", "libstdc++"):
+                libraries[f"build/lib/{library}"] = Path(place.split()[0])
+    return files | {name: place.read_bytes() for name, place in libraries.items()}
+
+
+def stripped(program):
+    """A program without what only a debugger reads."""
+    with tempfile.NamedTemporaryFile() as copy:
+        result = run_program(["strip", "-o", copy.name, program])
+        if result.returncode:
+            raise UserError(f"{program} cannot be packed: {last_line(result)}")
+        return Path(copy.name).read_bytes()
+
+
+def is_program(name):
+    return name == "lab" or name.startswith("build/bin/")
+
+
+def write_zip(archive, folder, files):
+    with zipfile.ZipFile(archive, "w") as stream:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(f"{folder}/{name}", DATE)
+            entry.external_attr = (0o755 if is_program(name) else 0o644) << 16
+            entry.create_system = 3  # whose permissions these are: Unix
+            stream.writestr(entry, files[name], zipfile.ZIP_DEFLATED)
+
+
+def write_tar(archive, folder, files):
+    # Chapters' programs differ little: with a long memory, xz stores them once.
+    filters = [{"id": lzma.FILTER_LZMA2, "preset": 2, "dict_size": 1 << 26}]
+    with lzma.open(archive, "wb", filters=filters) as compressed, tarfile.open(fileobj=compressed, mode="w") as stream:
+        for name in sorted(files):
+            entry = tarfile.TarInfo(f"{folder}/{name}")
+            entry.size, entry.mode = len(files[name]), 0o755 if is_program(name) else 0o644
+            stream.addfile(entry, io.BytesIO(files[name]))
+
+
+SYSTEMS = {"windows": (windows_files, write_zip, ".zip"), "linux": (linux_files, write_tar, ".tar.xz")}
+
+
+def pack(system, archive, tree=ROOT):
+    """Writes an archive of a tree of the lab, the whole one or a handout; it is complete or not there."""
+    system_files, write, _ = SYSTEMS[system]
+    chapters = [name for name in CHAPTERS.values() if (tree / "chapters" / name).exists()]
+    files = tree_files(tree) | system_files(chapters)
+    archive.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = archive.with_name(archive.name + ".unfinished")
+    write(unfinished, archive.name.removesuffix(SYSTEMS[system][2]), files)
+    os.replace(unfinished, archive)
+    print(f"{archive}: {archive.stat().st_size / 1e6:.1f} MB, {len(chapters)} chapters")
+
+
+def main():
+    parser = Parser("./lab package", __doc__)
+    parser.add_argument("system", choices=SYSTEMS)
+    system = parser.parse_args().system
+    pack(system, ROOT / "output" / f"{NAME}-{system}{SYSTEMS[system][2]}")
