@@ -15,7 +15,7 @@ LOOSENESS, LEAST = 0.15, 0.005
 NOISE_LOOSENESS, RAYS_LOOSENESS = 0.2, 0.1  # of their logarithms
 # What a mistake must explain to be named: so much of the surprise of seeing this in a correct shader, and it must leave less than
 # this part of that surprise, or no more than chance leaves in each region.
-LEAST_EXPLAINED, MOST_LEFT, CHANCE = 6.0, 0.6, 0.6
+LEAST_EXPLAINED, MOST_LEFT, CHANCE = 6.0, 0.45, 0.6
 # It is named alone where the next one would be a surprise larger by so much, or by this part of what both leave unexplained.
 SURE, SURE_PART = 10.0, 0.15
 SIDES = (("top", "middle", "bottom"), ("left", "middle", "right"))

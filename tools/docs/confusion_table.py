@@ -78,7 +78,7 @@ def confusion_table(record):
     head = ["tried", "large ones found", "found", "named right", "among the first two", "right where it is sure"]
     conditions = rates(record)
     correct = conditions.pop("correct")
-    text = f"\nOf {correct.tried} checks of correct shaders {part(correct.found, correct.tried)} were refused.\n\n"
+    text = f"\nThe check refused correct shaders {part(correct.found, correct.tried)} times.\n\n"
     text += table(["", *head], [row(words, conditions[key]) for key, words in CONDITIONS.items() if key in conditions])
     chapters = rates(record, lambda key: int(key.split("/")[1]) if key.startswith("new seeds") else None)
     text += "\nThe first row for each chapter:\n\n" + table(

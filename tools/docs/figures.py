@@ -23,7 +23,7 @@ PICTURES = ROOT / "docs/pictures"
 CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
 RAYS_PER_PIXEL = 400  # of the chapters' pictures
 SECONDS = 2  # of the renders that are compared at equal time
-HERO_SAMPLES = 16384  # of the picture at the head of the README
+HERO_SAMPLES = 256  # of the picture at the head of the README
 
 
 @dataclass
@@ -185,7 +185,7 @@ def renders_of_first_steps():
             tile(8, "_1_sample", 1), tile(8, "_16_samples", 16), tile(8, "_256_samples"), tile(8, "_broken", 16)]
 
 
-ON_REQUEST = {"hero"}  # takes a GPU minutes and a CPU a day
+ON_REQUEST = {"hero"}  # takes two cores half an hour
 
 # Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
 FIGURES = {
