@@ -7,6 +7,7 @@ import unittest
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
 import mistake
+from check.formats import as_github
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
 ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
@@ -87,29 +88,35 @@ class CheckTest(ProgramTest):
         code, out, _ = self.check(3, *few, "--github", file)
         self.assertRegex(out, rf"(?m)^::error file={file},line=1,title=\S+ \S+::biased%0A")
         broken = self.write("broken.glsl", "// one\nvec3 path_trace(Ray ray, inout uvec2 seed) { return nothing; }\n")
+        self.assertIn("file=%25%3A%2C.glsl,line=1,", as_github("biased", "%:,.glsl", None, []))
         self.assertRegex(self.check(3, *few, "--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
         result = json.loads(self.check(3, *few, "--gradescope", broken)[1])
         self.assertEqual([(test["score"], test["max_score"]) for test in result["tests"]], [(0, 10)])
+
+    def graded(self):
+        return list(csv.DictReader((self.folder / "graded/results.csv").read_text(encoding="utf-8-sig").splitlines()))
 
     def test_a_folder_is_graded_into_a_table_and_goes_on(self):
         text = SHADER.read_text(encoding="utf-8")
         (self.folder / "all/dora").mkdir(parents=True)
         self.write("all/anna.glsl", text)
         self.write("all/bob.glsl", "nothing")
+        self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # no rays
+        (self.folder / "all/gone.glsl").symlink_to("nowhere")
         self.write("all/carl.glsl", ENDLESS)
         self.write("all/dora/path_trace.glsl", text.replace("/ (distance * distance)", "/ distance"))
         command = (3, "--all", self.folder / "all", "--runs", 4, "--samples", 4, "--time-limit", 5, "--output", self.folder / "graded")
-        expected = {"anna": "correct", "bob": "not graded", "carl": "not graded", "dora": "biased"}
+        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "carl": "not graded", "dora": "biased"}
         code, out, err = self.check(*command)
         self.assertEqual(code, 2, err)
-        table = list(csv.DictReader((self.folder / "graded/results.csv").open()))
+        table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
-        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["anna.png", "dora.png"])
+        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png"])
         self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
         first = {row["submission"]: row["seconds"] for row in table}
         self.check(*command)
-        again = {row["submission"]: row["seconds"] for row in csv.DictReader((self.folder / "graded/results.csv").open())}
+        again = {row["submission"]: row["seconds"] for row in self.graded()}
         self.assertEqual([first[name] for name in ("anna", "dora")], [again[name] for name in ("anna", "dora")], "not graded anew")
 
     def test_a_shader_may_have_a_path_of_its_own(self):

@@ -42,6 +42,7 @@ class GradingTest(ProgramTest):
         shader = (PROJECT / "chapters" / CHAPTERS[chapter] / "path_trace.glsl").read_text(encoding="utf-8")
         for text, points in ((shader, 10), (shader.replace("/ (distance * distance)", "/ distance"), 10 / 3), ("nothing", 0)):
             result = self.autograde(text)
+            self.assertAlmostEqual(result["score"], points, delta=0.001)
             self.assertAlmostEqual(sum(test["score"] for test in result["tests"]), points, delta=0.01)
             self.assertAlmostEqual(sum(test["max_score"] for test in result["tests"]), 10, delta=0.01)
             self.assertEqual(result["output"] == "", points == 10, result["output"])

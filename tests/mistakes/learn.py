@@ -7,8 +7,9 @@
                                        not use and in the differently written shaders of tests/variants; checks correct
                                        shaders as well; writes docs/records/check/confusion.json
 
-Both do only what has changed since the last time: a shader, what it is rendered with, or a signature. So both go on where they
-were interrupted. --anew does everything again, which is needed where shaders that chapters share have changed.
+Both do only what has changed since the last time: a shader or what it is rendered with. So both go on where they were
+interrupted. --anew does everything again, which is needed where anything else has changed: shaders that chapters share, scenes,
+references, or how check judges and names.
 """
 import hashlib
 import json
@@ -22,7 +23,7 @@ from threading import Lock
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
-from check.likely_mistake import candidates, read_signatures, signature, surprises  # noqa: E402
+from check.likely_mistake import LEAST_RAYS, candidates, read_signatures, signature, surprises  # noqa: E402
 from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
 from project import (RECORDS, Parser, add_device_options, commit, number, read_json, show_progress,  # noqa: E402
                      write_json)
@@ -76,7 +77,7 @@ class Workshop:
 
 
 def percentages(tests):
-    """Text with a number of three digits for each difference; 0 for what is within three standard errors."""
+    """Text with a number of three digits for each difference; 0 for what lies within 1.5 times the half of its 95 % interval."""
     return " ".join(f"{100 * test['value']:+.3g}" if abs(test["value"]) > 1.5 * test["half_width"] else "0" for test in tests)
 
 
@@ -86,7 +87,7 @@ def written(result):
     for scene in result["scenes"]:
         rows = [[tile for tile in scene["tiles"] if tile["row"] == row]
                 for row in range(scene["tiles"][-1]["row"] + 1)]
-        scenes[scene["scene"]] = {"noise": float(f"{scene['noise'][0] or 1:.3g}"), "rays": float(f"{scene['rays']:.3g}"),
+        scenes[scene["scene"]] = {"noise": float(f"{scene['noise'][0] or 1:.3g}"), "rays": float(f"{max(scene['rays'], LEAST_RAYS):.3g}"),
                                   "image": percentages(scene["image"]), "tiles": list(map(percentages, rows))}
     return scenes
 

@@ -1,7 +1,7 @@
 """Grades a shader of chapter N: is it correct, biased, or noisier or more expensive than its technique should be?
 
 Renders scenes that have a reference image, each several times. The means of the whole image and of its tiles are tested
-against the reference: a correct shader is called biased in one of 1000 checks. Error and rays are compared with those of
+against the reference: a correct shader is called biased in about one of 1000 checks. Error and rays are compared with those of
 the chapter's own shader: too much is 1.5 times, unless the one pays for the other. What is wrong is compared with what
 common mistakes do to the pictures. The answer is a question to think about and the slide to read again; --teacher names
 the mistake as well. After a third of the renders a first verdict says what is sure by then.
@@ -124,7 +124,9 @@ def main():
             report(options, {"chapter": options.chapter, "verdict": "not graded", "error": message})
         print(f"error: {message}", file=sys.stderr)
         sys.exit(UNGRADED)
-    except Exception:  # Python's exit code would be that of a biased shader
+    except Exception as error:  # Python's exit code would be that of a biased shader
+        if options and options.form:
+            report(options, {"chapter": options.chapter, "verdict": "not graded", "error": repr(error)})
         traceback.print_exc()
         sys.exit(UNGRADED)
     report(options, result)

@@ -3,11 +3,15 @@ import csv
 import hashlib
 import html
 import json
+import os
 import sys
 import time
+from urllib.parse import quote
 
+from check.grading import KNOWLEDGE
 from check.words import explain, hint_lines
 from project import ROOT, UserError, read_json, write_json
+from report.measurement import digest_of_sources
 
 UNGRADED = 2  # exit code
 COLUMNS = ["submission", "verdict", "unfinished_line", "mistakes", "questions", "error", "seconds"]
@@ -20,12 +24,17 @@ pre {{ white-space: pre-wrap; background: #8882; padding: 0.6em }}</style>
 """
 
 
+def printable(name):
+    """Archives from elsewhere may hold names that are no UTF-8."""
+    return name.encode("utf-8", "replace").decode()
+
+
 def submissions(folder):
     """Name -> file of each shader: NAME.glsl, or NAME/path_trace.glsl."""
     if not folder.is_dir():
         raise UserError(f"{folder}: no such folder")
-    files = [*folder.glob("*.glsl"), *folder.glob("*/path_trace.glsl")]
-    found = {file.parent.name if file.name == "path_trace.glsl" and file.parent != folder else file.stem: file for file in files}
+    files = [file for file in (*folder.glob("*.glsl"), *folder.glob("*/path_trace.glsl")) if file.is_file()]
+    found = {printable(file.stem if file.parent == folder else file.parent.name): file for file in files}
     if len(found) < len(files):
         raise UserError(f"{folder}: two submissions have the same name: rename one of them")
     if not found:
@@ -33,10 +42,10 @@ def submissions(folder):
     return dict(sorted(found.items()))
 
 
-def digest(options, file):
+def digest(options, sources, file):
     """Of a shader and of what it is graded with: a result with the same one stays."""
-    settings = [options.chapter, options.seed, options.runs, options.samples, options.teacher, options.time_limit, options.memory_limit]
-    return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes()).hexdigest()
+    settings = [sources, options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
+    return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes() + KNOWLEDGE.read_bytes()).hexdigest()
 
 
 def grade_one(options, check, name, file, folder):
@@ -46,15 +55,20 @@ def grade_one(options, check, name, file, folder):
         row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
                "text": explain(result), "questions": " ".join(text for head, text in hint_lines(result) if head in ("ask yourself", "or")),
                "mistakes": " ".join(each.get("name", "") for each in (result["likely_mistake"] or {"mistakes": []})["mistakes"]), "error": ""}
-    except (UserError, OSError) as error:
-        row = {"verdict": "not graded", "error": str(error), "text": str(error)}
+    except Exception as error:  # whatever it is, the next submission is graded
+        row = {"verdict": "not graded", "error": printable(str(error)), "text": printable(str(error))}
     return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1)}
+
+
+def in_a_table(value):
+    """Spreadsheets take a text that begins like this for a formula."""
+    return f"'{value}" if str(value)[:1] in ("=", "+", "-", "@") else value
 
 
 def write_page(options, rows, path):
     parts = []
     for row in rows:
-        picture = f'<img src="{html.escape(row["picture"])}" alt="pictures and differences">' if row.get("picture") else ""
+        picture = f'<img src="{quote(row["picture"])}" alt="pictures and differences">' if row.get("picture") else ""
         parts.append(f"<h2>{html.escape(row['submission'])}: {row['verdict']}</h2>\n{picture}<pre>{html.escape(row['text'])}</pre>\n")
     path.write_text(PAGE.format(title=f"Chapter {options.chapter}: {len(rows)} submissions", body="".join(parts)), encoding="utf-8")
 
@@ -65,18 +79,18 @@ def grade_all(options, check):
     folder.mkdir(parents=True, exist_ok=True)
     record = folder / "results.json"
     known = read_json(record) if record.exists() else {}
-    options.is_quiet, rows, found = True, [], submissions(options.folder)
+    options.is_quiet, rows, found, sources = True, [], submissions(options.folder), digest_of_sources([])
     for done, (name, file) in enumerate(found.items(), 1):
-        key = digest(options, file)
+        key = digest(options, sources, file) if os.access(file, os.R_OK) else None
         if known.get(name, {}).get("digest") != key or known[name]["verdict"] == "not graded":
             known[name] = grade_one(options, check, name, file, folder) | {"digest": key}
             write_json(record, known)
         rows.append(known[name])
         print(f"{done} of {len(found)}: {name}: {known[name]['verdict']}", flush=True)
-        with open(folder / "results.csv", "w", newline="", encoding="utf-8") as table:
+        with open(folder / "results.csv", "w", newline="", encoding="utf-8-sig") as table:
             writer = csv.DictWriter(table, COLUMNS, extrasaction="ignore")
             writer.writeheader()
-            writer.writerows(rows)
+            writer.writerows({key: in_a_table(value) for key, value in row.items()} for row in rows)
         write_page(options, rows, folder / "index.html")
     print(f"{folder / 'results.csv'}\n{folder / 'index.html'}", file=sys.stderr)
     return UNGRADED if any(row["verdict"] == "not graded" for row in rows) else 0

@@ -13,7 +13,8 @@ def as_gradescope(scenes, hints, points):
              for name, verdict, words in scenes]
     if not tests:
         tests = [{"name": "check", "score": 0, "max_score": points, "status": "failed", "output": hints[0], "visibility": "visible"}]
-    return {"output": "\n".join(hints), "visibility": "visible", "stdout_visibility": "hidden", "tests": tests}
+    score = round(points * sum(PART[verdict] for _, verdict, _ in scenes) / max(len(scenes), 1), 3)
+    return {"score": score, "output": "\n".join(hints), "visibility": "visible", "stdout_visibility": "hidden", "tests": tests}
 
 
 def escaped(text):
@@ -21,11 +22,16 @@ def escaped(text):
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
+def escaped_property(text):
+    """The same for a part of a command that is not its message."""
+    return escaped(text).replace(":", "%3A").replace(",", "%2C")
+
+
 def as_github(verdict, file, line, hints):
     """Workflow commands that show as annotations of a commit: an error where the shader is not correct, at the file."""
     if verdict == "correct":
         return "::notice title=./lab check::correct\n"
-    of_compiler = re.search(r"\.glsl:(\d+):", hints[0]) if hints else None
+    of_compiler = re.search(rf"{re.escape(str(file))}:(\d+):", hints[0]) if hints else None
     line = line or (of_compiler[1] if of_compiler else 1)
-    place = f"file={file},line={line}," if file else ""
+    place = f"file={escaped_property(str(file))},line={line}," if file else ""
     return f"::error {place}title=./lab check::{escaped(verdict + ''.join(f'{chr(10)}{hint}' for hint in hints))}\n"

@@ -6,6 +6,7 @@ chapter's own shader, which knowledge.json has.
 import os
 import shutil
 import tempfile
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -44,7 +45,7 @@ TOO_MUCH = 1.5  # times the error of a sample or its rays
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
 EARLY_RUNS = 4  # after which a first verdict is worth telling
 JOBS = 2  # renders at a time: while one starts, another renders
-PATIENCE = 10  # a check may take so many times the limit of a single render
+PATIENCE = 10  # a check of RUNS runs may take so many times the limit of a single render
 VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first of any scene counts
 
 
@@ -113,13 +114,21 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None):
             case |= {"invalid_samples": 0, "picture": 0}
         work = [(run, i) for run in range(settings["runs"]) for i in range(len(cases))]
 
+        limit, has_failed = PATIENCE * settings["time_limit"] * max(settings["runs"] / RUNS, 1), threading.Event()
+
         def render_one(item):
             run, i = item
-            if time.monotonic() - started > PATIENCE * settings["time_limit"]:
-                raise UserError(f"ended after {PATIENCE * settings['time_limit']:g} s in all: on a slow machine allow more by --time-limit")
-            picture = Path(folder) / f"{run}_{i}.exr"
-            report = run_case(cases[i], settings, ["--samples", samples, "--seed", settings["first_seed"] + run, "--output", picture])
-            return report, read_rgb(picture)
+            if has_failed.is_set():  # another one: what is waiting need not begin
+                raise UserError("ended")
+            try:
+                if time.monotonic() - started > limit:
+                    raise UserError(f"ended after {limit:g} s in all: on a slow machine allow more by --time-limit")
+                picture = Path(folder) / f"{run}_{i}.exr"
+                report = run_case(cases[i], settings, ["--samples", samples, "--seed", settings["first_seed"] + run, "--output", picture])
+                return report, read_rgb(picture)
+            except BaseException:
+                has_failed.set()
+                raise
 
         try:
             for done, ((run, i), (report, image)) in enumerate(zip(work, pool.map(render_one, work)), 1):
@@ -154,7 +163,7 @@ def grade(case, recorded, comparisons):
     comparisons *= len(reference["mean"]) * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS
     tests = biases(case["runs"], reference, comparisons)
     errors = [Series(level["rel_mse"]) for level in (now, recorded)]
-    is_paired = len(now["rel_mse"].keys() & recorded["rel_mse"].keys()) > 1
+    is_paired = len(now["rel_mse"]) > 1 and now["rel_mse"].keys() <= recorded["rel_mse"].keys()
     noise = paired_ratio(*errors) if is_paired else ratio(*errors)
     rays = now["rays"] / recorded["rays"]
     # Noise that is paid for by fewer rays is no fault, and rays that pay by less noise are none either.
@@ -163,7 +172,7 @@ def grade(case, recorded, comparisons):
     elif noise[1] is not None and noise[1] * min(rays, 1) > TOO_MUCH:
         verdict = "noisy"
     else:
-        verdict = "expensive" if rays * min(noise[0] or 1, 1) > TOO_MUCH else "correct"
+        verdict = "expensive" if rays * min(noise[1] or noise[0] or 1, 1) > TOO_MUCH else "correct"
     columns = case["width"] // TILE
     tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tests[3:])]
     return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": tests[:3],

@@ -18,6 +18,7 @@ NOISE_LOOSENESS, RAYS_LOOSENESS = 0.2, 0.1  # of their logarithms
 LEAST_EXPLAINED, MOST_LEFT, CHANCE = 6.0, 0.45, 0.6
 # It is named alone where the next one would be a surprise larger by so much, or by this part of what both leave unexplained.
 SURE, SURE_PART = 10.0, 0.15
+LEAST_RAYS = 0.01  # of what the chapter's own traces: a shader may trace none
 SIDES = (("top", "middle", "bottom"), ("left", "middle", "right"))
 
 
@@ -33,7 +34,8 @@ def signature(result):
     """Of a result of grading.judge()."""
     tests = [test for scene in result["scenes"] for test in (*scene["image"], *scene["tiles"])]
     return Signature([test["value"] for test in tests], [test["half_width"] / 2 for test in tests],
-                     [scene["noise"][0] or 1.0 for scene in result["scenes"]], [scene["rays"] for scene in result["scenes"]])
+                     [scene["noise"][0] or 1.0 for scene in result["scenes"]],
+                     [max(scene["rays"], LEAST_RAYS) for scene in result["scenes"]])
 
 
 def surprise(seen, known):
@@ -96,7 +98,7 @@ def place_that_tells(result, seen, first, second):
         rows, columns = (max(tile[key] for tile in scene["tiles"]) + 1 for key in ("row", "column"))
         for tile in scene["tiles"]:
             side = f"{SIDES[0][3 * tile['row'] // rows]} {SIDES[1][3 * tile['column'] // columns]}"
-            places.append((scene["scene"], f"at the {side} of the picture"))
+            places.append((scene["scene"], f"at the {side} of the picture".replace("middle middle", "middle")))
     contrasts = [abs(a - b) / math.hypot(LEAST, error) for a, b, error in zip(first.differences, second.differences, seen.errors)]
     index = contrasts.index(max(contrasts))
     return {"scene": places[index][0], "place": places[index][1], "effects": [first.differences[index], second.differences[index]]}

@@ -10,8 +10,10 @@ def percent(value):
 def tell_early(cases):
     """What is sure after the first runs."""
     scene, value = early_bias(cases)
-    words = f"{scene} is too {'bright' if value > 0 else 'dark'} ({percent(value)})" if scene else \
-        f"no picture is wrong by {100 * min(value, 1):.2g} % or more"
+    if scene:
+        words = f"{scene} is too {'bright' if value > 0 else 'dark'} ({percent(value)})"
+    else:
+        words = f"no picture is wrong by {100 * value:.2g} % or more" if value < 1 else "nothing is sure yet"
     print(f"{'so far':14} {words}; the rest is finer", flush=True)
 
 
@@ -48,8 +50,8 @@ def hint_lines(result):
         lines += [(first, name + mistake["hint"]), ("read again", f"{mistake['slide']} (docs/slides.md), {page}")]
     if len(found["mistakes"]) > 1:
         tell = found["tell_apart"]
-        lines.append(("tell apart", f"render {tell['scene'].rstrip('_0123456789')} and look {tell['place']}: the first makes it "
-                      f"{' and the second '.join(map(percent, tell['effects']))} as bright; --runs 48 looks closer"))
+        lines.append(("tell apart", f"render {tell['scene'].rstrip('_0123456789')} and look {tell['place']}: there the first changes "
+                      f"the brightness by {' and the second by '.join(map(percent, tell['effects']))}; --runs 48 looks closer"))
     return lines
 
 

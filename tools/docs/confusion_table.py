@@ -14,7 +14,8 @@ single answer. There are four kinds of trials:
 - The chapters' own shaders, with other random numbers than the check has learnt from.
 - The same shaders on scenes that the check does not use.
 - Shaders that are written in another way ([tests/variants](../tests/variants)), with a mistake in each.
-- Correct shaders, the chapters' own and those written in another way. Each was checked with several seeds.
+- Correct shaders, the chapters' own and those written in another way. Each was checked with several seeds. Some of them draw the
+  same random numbers as the chapter's own, so that not all of these checks are independent.
 
 A mistake counts as found where the check says anything but correct. It is *large* where it changes the mean of a picture by at
 least 2 % or the error per sample by at least 1.5 times. The check is *sure* where it asks about one mistake and not about two. In
