@@ -4,8 +4,8 @@ import re
 import unittest
 from unittest import mock
 
-from PIL import Image
 from program import PROJECT, ProgramTest  # first: it finds the tools
+from PIL import Image
 from course import bug, mistakes
 from project import CHAPTERS, UserError
 
