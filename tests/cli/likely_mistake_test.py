@@ -8,7 +8,7 @@ import unittest
 from program import PROJECT  # first: it finds the tools
 import learn
 from check.grading import KNOWLEDGE, MOST_RUNS, RUNS, SCENES, SEED_STEP, first_seed
-from check.likely_mistake import Signature, candidates, likely_mistake, rank, read_signatures, surprises
+from check.likely_mistake import Signature, candidates, place_that_tells, read_signatures, surprises
 from docs.confusion_table import rates
 from planting import CORRECT_CHECKS, OTHER_SCENES, catalogue
 
@@ -77,13 +77,26 @@ class LikelyMistakeTest(unittest.TestCase):
 
     def test_what_is_seen_noisily_is_recognised(self):
         for name in CHAPTER_3:
-            self.assertEqual(rank(self.seen(name, 0.2), CHAPTER_3)[0], name)
+            self.assertEqual(list(surprises(self.seen(name, 0.2), CHAPTER_3))[0], name)
 
     def test_what_is_like_no_mistake_has_no_name(self):
         known = CHAPTER_3["no-shadow-ray"]
         count = len(known.differences)
         stripes = [0.5 if i % 2 else -0.3 for i in range(count)]
-        self.assertEqual(rank(Signature(stripes, [0.01] * count, [1.0] * 3, [1.0] * 3), CHAPTER_3), [])
+        self.assertEqual(list(surprises(Signature(stripes, [0.01] * count, [1.0] * 3, [1.0] * 3), CHAPTER_3)), [])
+
+    def test_two_that_are_about_as_likely_are_both_told_and_where_to_look(self):
+        self.assertEqual(candidates({"a": 20.0, "b": 100.0, "c": 101.0}), ["a"])
+        self.assertEqual(candidates({"a": 20.0, "b": 25.0, "c": 101.0}), ["a", "b"])
+        rows, columns = 6, 9  # of tiles
+        tiles = [{"row": row, "column": column} for row in range(rows) for column in range(columns)]
+        result = {"scenes": [{"scene": scene, "image": [{}] * 3, "tiles": tiles} for scene in ("one", "two")]}
+        count = 2 * (3 + len(tiles))
+        seen = Signature([0.0] * count, [0.01] * count, [1.0] * 2, [1.0] * 2)
+        first, second = (Signature([0.1] * count, [], [1.0] * 2, [1.0] * 2) for _ in range(2))
+        second.differences[-1] = -0.3  # the last tile of the second scene
+        place = {"scene": "two", "place": "at the bottom right of the picture", "effects": [0.1, -0.3]}
+        self.assertEqual(place_that_tells(result, seen, first, second), place)
 
 
 if __name__ == "__main__":

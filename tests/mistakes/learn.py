@@ -23,7 +23,7 @@ from threading import Lock
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
-from check.likely_mistake import LEAST_RAYS, candidates, read_signatures, signature, surprises  # noqa: E402
+from check.likely_mistake import candidates, noise_and_rays, read_signatures, signature, surprises  # noqa: E402
 from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
 from project import (RECORDS, Parser, add_device_options, commit, number, read_json, show_progress,  # noqa: E402
                      write_json)
@@ -87,8 +87,8 @@ def written(result):
     for scene in result["scenes"]:
         rows = [[tile for tile in scene["tiles"] if tile["row"] == row]
                 for row in range(scene["tiles"][-1]["row"] + 1)]
-        scenes[scene["scene"]] = {"noise": float(f"{scene['noise'][0] or 1:.3g}"), "rays": float(f"{max(scene['rays'], LEAST_RAYS):.3g}"),
-                                  "image": percentages(scene["image"]), "tiles": list(map(percentages, rows))}
+        noise, rays = (float(f"{value:.3g}") for value in noise_and_rays(scene))
+        scenes[scene["scene"]] = {"noise": noise, "rays": rays, "image": percentages(scene["image"]), "tiles": list(map(percentages, rows))}
     return scenes
 
 

@@ -118,16 +118,12 @@ def main():
             print(end.code, file=sys.stderr)
             sys.exit(UNGRADED)
         raise
-    except (UserError, OSError, KeyboardInterrupt) as error:
-        message = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error)
+    except (Exception, KeyboardInterrupt) as error:  # Python's exit code would be that of a biased shader
+        is_expected = isinstance(error, (UserError, OSError, KeyboardInterrupt))
+        message = "interrupted" if isinstance(error, KeyboardInterrupt) else str(error) if is_expected else repr(error)
         if options and options.form:
             report(options, {"chapter": options.chapter, "verdict": "not graded", "error": message})
-        print(f"error: {message}", file=sys.stderr)
-        sys.exit(UNGRADED)
-    except Exception as error:  # Python's exit code would be that of a biased shader
-        if options and options.form:
-            report(options, {"chapter": options.chapter, "verdict": "not graded", "error": repr(error)})
-        traceback.print_exc()
+        print(f"error: {message}" if is_expected else traceback.format_exc(), file=sys.stderr)
         sys.exit(UNGRADED)
     report(options, result)
     sys.exit(result["verdict"] != "correct")

@@ -30,12 +30,16 @@ class Signature:
     rays: list
 
 
+def noise_and_rays(scene):
+    """Of a scene of a result, as multiples of the chapter's own. Neither is 0: their logarithms are compared."""
+    return scene["noise"][0] or 1.0, max(scene["rays"], LEAST_RAYS)
+
+
 def signature(result):
     """Of a result of grading.judge()."""
     tests = [test for scene in result["scenes"] for test in (*scene["image"], *scene["tiles"])]
     return Signature([test["value"] for test in tests], [test["half_width"] / 2 for test in tests],
-                     [scene["noise"][0] or 1.0 for scene in result["scenes"]],
-                     [max(scene["rays"], LEAST_RAYS) for scene in result["scenes"]])
+                     *map(list, zip(*map(noise_and_rays, result["scenes"]))))
 
 
 def surprise(seen, known):
@@ -59,11 +63,6 @@ def surprises(seen, known):
     unexplained, least = surprise(seen, faultless), min(found.values(), default=math.inf)
     is_explained = least < unexplained - LEAST_EXPLAINED and least < max(MOST_LEFT * unexplained, CHANCE * count)
     return dict(sorted(found.items(), key=lambda pair: pair[1])) if is_explained else {}
-
-
-def rank(seen, known):
-    """Their names."""
-    return list(surprises(seen, known))
 
 
 def candidates(found):

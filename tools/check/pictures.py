@@ -4,12 +4,7 @@ import matplotlib
 matplotlib.use("agg")
 import numpy as np
 from matplotlib import pyplot
-
-
-def shown(picture):
-    """Linear radiance [row, column, channel] as a screen shows it."""
-    picture = np.clip(np.nan_to_num(picture), 0, 1)
-    return np.where(picture <= 0.0031308, 12.92 * picture, 1.055 * picture ** (1 / 2.4) - 0.055)
+from report.plots import encode_srgb
 
 
 def draw(result, pictures, path):
@@ -19,7 +14,7 @@ def draw(result, pictures, path):
     figure, axes = pyplot.subplots(2, len(scenes), figsize=(3.6 * len(scenes), 7), layout="constrained")
     limit = min(1, max(abs(tile["value"]) for scene in scenes for tile in scene["tiles"]))
     for top, axis, scene, picture in zip(*axes, scenes, pictures):
-        top.imshow(shown(picture))
+        top.imshow(encode_srgb(np.nan_to_num(picture)))
         top.set_title(f"{scene['scene']}: {scene['verdict']}", fontsize=10)
         rows, columns = (max(tile[key] for tile in scene["tiles"]) + 1 for key in ("row", "column"))
         values = np.array([100 * tile["value"] for tile in scene["tiles"]]).reshape(rows, columns)

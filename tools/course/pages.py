@@ -2,7 +2,8 @@
 import re
 from itertools import takewhile
 
-QUOTED_BLOCK = re.compile(r"<!-- code: (\S+) \|[^\n]* -->\n(.*?)<!-- end of code -->\n", re.DOTALL)
+from docs.code_blocks import BLOCK
+
 FENCED = re.compile(r"^ *```\w+\n.*?^ *```$", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"(?<!!)\[(`[^`]+`|[^\[\]]+)\]\(([^()\s]+)\)")
 PIECE = re.compile(r"`([^` \n]+( [^` \n]+){2,})`")  # of code, in at least three words
@@ -64,7 +65,8 @@ def clean_pages(folder, solution):
             return source_of(target) if is_quotation else text
 
         text = page.read_text(encoding="utf-8")
-        text = QUOTED_BLOCK.sub(lambda block: block[2] if (folder / block[1]).exists() else f"({source_of(block[1])})\n", text)
+        text = BLOCK.sub(lambda block: f"{block['fence']}{block['lines']}```" if (folder / block["file"]).exists() else
+                         f"({source_of(block['file'])})", text)
         text = FENCED.sub(lambda block: hide_lines(block[0], secret), text)
         text = LINK.sub(shown, text)
         text = PIECE.sub(lambda piece: "TODO" if piece[1] in solution and piece[1] not in shaders else piece[0], text)

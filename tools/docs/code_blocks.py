@@ -14,7 +14,8 @@ import re
 from project import ROOT, UserError
 
 MARKER = "<!-- code:"
-BLOCK = re.compile(r"(<!-- code: (\S+) \| ([^\n]+?) \| ([^\n]+?) -->\n```\w*\n)(.*?)(```\n<!-- end of code -->)", re.DOTALL)
+BLOCK = re.compile(r"(?P<marker><!-- code: (?P<file>\S+) \| (?P<first>[^\n]+?) \| (?P<last>[^\n]+?) -->\n)"
+                   r"(?P<fence>```\w*\n)(?P<lines>.*?)(?P<end>```\n<!-- end of code -->)", re.DOTALL)
 
 
 def excerpt(text, first, last, name):
@@ -34,10 +35,10 @@ def excerpt(text, first, last, name):
 def fill(text, page):
     """The text of a page with its blocks as the sources are now. `page` is for messages."""
     def filled(block):
-        begin, file, first, last, _, end = block.groups()
+        marker, file, first, last, fence, _, end = block.groups()
         if not (ROOT / file).is_file():
             raise UserError(f"{page}: code of {file}: there is no such file")
-        return begin + excerpt((ROOT / file).read_text(encoding="utf-8"), first, last, f"{page}: code of {file}") + end
+        return marker + fence + excerpt((ROOT / file).read_text(encoding="utf-8"), first, last, f"{page}: code of {file}") + end
 
     if len(BLOCK.findall(text)) != text.count(MARKER):
         raise UserError(f"{page}: '{MARKER}' must be followed by FILE | first phrase | last phrase -->, a block in ``` and "
