@@ -122,6 +122,7 @@ struct RenderParameters {
     uint splitting_factor;  // number of branches in which a path goes on, from chapter 4
     uint roulette_start;    // Russian roulette begins at this bounce, from chapter 5
     float survival_cap;     // largest survival probability, in (0,1], from chapter 5
+    float survival_weight;  // throughput of those that survive, in (0,1], from chapter 5
 };
 
 // Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from

@@ -49,9 +49,10 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         if (!is_above_surface(s, omega)) continue;
         throughput *= get_pi_brdf(s, omega, out_direction);
 
-        // Russian roulette with the survival probability q = min(max throughput, cap). The split's 1/s plays no part.
+        // Russian roulette with the survival probability q = min(max throughput / β_s, cap). The split's 1/s plays no part.
         if (path_length >= parameters.roulette_start) {
-            float survival_probability = min(max_component(throughput), parameters.survival_cap);
+            float survival_probability =
+                min(max_component(throughput) / parameters.survival_weight, parameters.survival_cap);
             if (!happens(survival_probability, seed)) continue;
             throughput /= survival_probability;
         }

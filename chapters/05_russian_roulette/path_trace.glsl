@@ -1,8 +1,8 @@
 // Chapter 5, Russian roulette: after every bounce the path survives with probability q only, and then counts 1/q.
 //
 // Since q · (1/q) X + (1 - q) · 0 = X the expectation stays the same, and paths of any length end after a finite
-// number of bounces. q is the throughput: dim paths cost as much as bright ones and bring less. As it already holds
-// the factors 1/q of earlier bounces, surviving paths carry about the same throughput however long they are.
+// number of bounces. q follows the throughput: dim paths cost as much as bright ones and bring less. As it already
+// holds the factors 1/q of earlier bounces, all that survive carry about the survival weight β_s, however long they are.
 #include "sampling.glsl"
 #include "direct_light.glsl"
 
@@ -26,9 +26,10 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
         if (!is_above_surface(s, omega)) break;
         throughput *= get_pi_brdf(s, omega, out_direction);
 
-        // Russian roulette with the survival probability q = min(max throughput, cap). The split's 1/s plays no part.
+        // Russian roulette with the survival probability q = min(max throughput / β_s, cap). The split's 1/s plays no part.
         if (path_length >= parameters.roulette_start) {
-            float survival_probability = min(max_component(throughput), parameters.survival_cap);
+            float survival_probability =
+                min(max_component(throughput) / parameters.survival_weight, parameters.survival_cap);
             if (!happens(survival_probability, seed)) break;
             throughput /= survival_probability;
         }

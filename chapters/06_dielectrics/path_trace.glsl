@@ -70,9 +70,10 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
             throughput *= get_pi_brdf(s, omega, out_direction);
         }
 
-        // Russian roulette with the survival probability q = min(max throughput, cap). The split's 1/s plays no part.
+        // Russian roulette with the survival probability q = min(max throughput / β_s, cap). The split's 1/s plays no part.
         if (path_length >= parameters.roulette_start) {
-            float survival_probability = min(max_component(throughput), parameters.survival_cap);
+            float survival_probability =
+                min(max_component(throughput) / parameters.survival_weight, parameters.survival_cap);
             if (!happens(survival_probability, seed)) break;
             throughput /= survival_probability;
         }

@@ -106,9 +106,10 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
             bounce_density = BOUNCES_FIND_LIGHTS ? density : 0.0;
         }
 
-        // Russian roulette with the survival probability q = min(max throughput, cap).
+        // Russian roulette with the survival probability q = min(max throughput / β_s, cap).
         if (path_length + 1u >= parameters.roulette_start) {
-            float survival_probability = min(max_component(throughput), parameters.survival_cap);
+            float survival_probability =
+                min(max_component(throughput) / parameters.survival_weight, parameters.survival_cap);
             if (!happens(survival_probability, seed)) break;
             throughput /= survival_probability;
         }

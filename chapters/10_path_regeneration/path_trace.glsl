@@ -69,9 +69,10 @@ bool extend_path(inout Path path, inout uvec2 seed) {
         path.bounce_density = BOUNCES_FIND_LIGHTS ? density : 0.0;
     }
 
-    // Russian roulette with the survival probability q = min(max throughput, cap).
+    // Russian roulette with the survival probability q = min(max throughput / β_s, cap).
     if (path.path_length + 1u >= parameters.roulette_start) {
-        float survival_probability = min(max_component(path.throughput), parameters.survival_cap);
+        float survival_probability =
+            min(max_component(path.throughput) / parameters.survival_weight, parameters.survival_cap);
         if (!happens(survival_probability, seed)) return false;
         path.throughput /= survival_probability;
     }

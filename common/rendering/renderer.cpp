@@ -51,7 +51,8 @@ RenderParameters default_parameters(const Scene& scene, const CameraPose& camera
             .probe_rotation = scene.probe_rotation,
             .splitting_factor = 1,
             .roulette_start = no_roulette,
-            .survival_cap = 0.95f};
+            .survival_cap = 0.95f,
+            .survival_weight = 1};
 }
 
 std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {

@@ -50,4 +50,5 @@ void set_surface(vec3 normal, Material material, uint max_path_length) {
     parameters.background = vec3(1.0);
     parameters.splitting_factor = 1u;
     parameters.roulette_start = 2u;
+    parameters.survival_weight = 1.0;
 }

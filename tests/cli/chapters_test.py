@@ -63,6 +63,11 @@ class ChapterOptions(ProgramTest):
             with self.subTest(value=value):
                 self.refuse(5, f"--survival-cap={value}")
 
+    def test_survival_weight(self):
+        for value in ("0", "-0.5", "1.01", "nan", "inf"):
+            with self.subTest(value=value):
+                self.refuse(10, f"--survival-weight={value}")
+
     def test_roulette_start(self):
         for value in ("0", "-1", "2.5", "first"):
             with self.subTest(value=value):

@@ -109,6 +109,19 @@ TEST_P(Roulette, BeginsAtItsStart) {
     expect_no_difference("rays", relative_difference(batches.rays, 3 + a * a * a / (1 - a)), 0.01, 2);
 }
 
+TEST_P(Roulette, SurvivorsCarryTheSurvivalWeight) {
+    // With the survival weight a² and no cap two bounces are certain. From then on a path of weight a² survives
+    // with probability a, and so sees 1 + a + a² X' with E[X'] = 1/(1-a) and Var X' = a/(1-a)².
+    const double a = 0.5, m = 1 / (1 - a), variance = std::pow(a, 4) * a * m * m;
+    RenderSettings settings{.samples = 1, .max_path_length = endless, .seed = 1000 * chapter_number(GetParam()) + 40};
+    settings.survival_cap = 1;
+    settings.survival_weight = 0.25f;
+    const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 96);
+    expect_no_difference("mean", relative_difference(batches.means(1), m), 0.01, 3);
+    expect_no_difference("rays", relative_difference(batches.rays, 2 + m), 0.01, 3);
+    expect_no_difference("square", relative_difference(square_means(batches), m * m + variance), 0.01, 3);
+}
+
 TEST_P(Roulette, EndsAtTheMaximalLengthAtTheLatest) {
     // White walls and a survival probability of 1: only the maximal length ends these paths, all at 1 + 50.
     RenderSettings settings{.width = 16, .height = 16, .samples = 4, .max_path_length = 50};

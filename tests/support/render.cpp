@@ -38,6 +38,7 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
     parameters.splitting_factor = settings.splitting_factor;
     parameters.roulette_start = settings.roulette_start;
     parameters.survival_cap = settings.survival_cap;
+    parameters.survival_weight = settings.survival_weight;
     return parameters;
 }
 

@@ -47,6 +47,7 @@ struct RenderSettings {
     uint32_t splitting_factor = 1;
     uint32_t roulette_start = 1;
     float survival_cap = 0.95f;
+    float survival_weight = 1;
     LightSampling light_sampling = LightSampling::on;  // of the probe, too, where the chapter does that
     Estimator estimator = chapter_estimator(all_chapters.front());
     Backend backend = Backend::compute;

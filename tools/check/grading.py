@@ -36,7 +36,7 @@ SCENES = {
 }
 # Roulette from the first bounce on and with a cap that matters: otherwise both hardly show. With a lower cap few samples
 # would decide a picture, since survivors of eight bounces count 1/cap^8, and no interval would hold.
-ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6"]
+ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
 OPTIONS = {number: ROULETTE if "--roulette-start" in description(CHAPTERS[number]).get("options", []) else []
            for number in SCENES if number in CHAPTERS}
 TILE = 16  # pixels

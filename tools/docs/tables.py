@@ -95,7 +95,7 @@ The brackets are the smallest and the largest quotient of the runs.
 """
 
 
-KINDS = ("chapter", "splitting factor", "roulette start", "light sampling", "strategy", "splitting at every hit")
+KINDS = ("chapter", "splitting factor", "roulette start", "survival weight", "light sampling", "strategy", "splitting at every hit")
 
 
 def kind_of(case):
