@@ -110,10 +110,11 @@ TEST_P(Roulette, BeginsAtItsStart) {
 }
 
 TEST_P(Roulette, SurvivorsCarryTheSurvivalWeight) {
-    // With the survival weight a² and no cap two bounces are certain. From then on a path of weight a² survives
-    // with probability a, and so sees 1 + a + a² X' with E[X'] = 1/(1-a) and Var X' = a/(1-a)².
+    // With the survival weight a² and no cap two bounces are certain. From then on a path of weight a²
+    // survives with probability a, and so sees 1 + a + a² X' with E[X'] = 1/(1-a) and Var X' = a/(1-a)².
     const double a = 0.5, m = 1 / (1 - a), variance = std::pow(a, 4) * a * m * m;
-    RenderSettings settings{.samples = 1, .max_path_length = endless, .seed = 1000 * chapter_number(GetParam()) + 40};
+    RenderSettings settings{
+        .samples = 1, .max_path_length = endless, .seed = 1000 * chapter_number(GetParam()) + 40};
     settings.survival_cap = 1;
     settings.survival_weight = 0.25f;
     const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 96);

@@ -1,6 +1,6 @@
 // Measures the backends of a device and writes a JSON record for docs/results.md: paths and rays per second
-// of the benchmark's estimator on three sizes of scene, and the bare rate at which each backend traces the
-// very same rays.
+// of the benchmark's estimator on three sizes of scene and of the last chapter on two shipped scenes, and the
+// bare rate at which each backend traces the very same rays.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,8 @@
 #include "files/file.h"
 #include "files/project_folder.h"
 #include "hardware/recorded_ray.h"
-#include "rendering/renderer.h"
+#include "rendering/settings.h"
+#include "scene/scene_file.h"
 
 namespace lab {
 namespace {
@@ -27,9 +28,38 @@ std::vector<std::string> path_defines(Backend backend, size_t path_count) {
             "PATH_COUNT " + std::to_string(path_count) + "u"};
 }
 
-json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
-    const auto tests = project_folder() / "tests";
+// What is measured: a scene, and an estimator whose paths have at most eight bounces.
+struct Subject {
+    std::string name;
+    Scene scene;
+    Estimator estimator;
+    RenderParameters parameters;
+};
+
+Subject benchmark_subject(uint32_t size, uint32_t segments, uint32_t rings) {
+    Scene scene = make_box_scene(segments, rings);
     const RenderParameters parameters = default_parameters(scene, uvec2(size));
+    return {"box with a sphere",
+            std::move(scene),
+            {project_folder() / "tests/benchmark/path_trace.glsl"},
+            parameters};
+}
+
+Subject chapter_subject(uint32_t size, const std::string& scene_name) {
+    const Chapter chapter = load_chapter(chapter_folders().back());
+    Options options;
+    options.image.width = options.image.height = size;
+    options.light.max_path_length = 8;
+    options.samples.chapter_values.resize(chapter.options.size());  // none given
+    Scene scene = load_scene(project_folder() / "assets/scenes" / (scene_name + ".json"));
+    const RenderParameters parameters = make_parameters(chapter, scene, options);
+    return {scene_name, std::move(scene), estimator_of(chapter), parameters};
+}
+
+json measure(const Device& device, const Subject& subject) {
+    const auto& [name, scene, estimator, parameters] = subject;
+    const auto tests = project_folder() / "tests";
+    const uint32_t size = parameters.image_size.x;
     const GpuScene gpu_scene(device, scene);
     const size_t path_count =
         size_t{(size + 7) / 8 * 8} * ((size + 7) / 8 * 8);  // blocks at the border are whole
@@ -41,18 +71,22 @@ json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
     {
         const auto structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-        const Estimator record{tests / "hardware/record_rays.glsl",
-                               path_defines(Backend::compute, path_count)};
+        Estimator record{tests / "hardware/record_rays.glsl", path_defines(Backend::compute, path_count),
+                         estimator.file};
+        record.defines.insert(record.defines.end(), estimator.defines.begin(), estimator.defines.end());
         Renderer recorder(device, *structure, record, parameters, {&ray_binding, 1});
         while (recorder.advance(1)) {
         }
     }
 
-    json result{{"triangles", scene.triangles.size()}, {"backends", json::object()}};
+    json result{{"scene", name},
+                {"estimator", estimator.file.lexically_relative(project_folder()).generic_string()},
+                {"triangles", scene.triangles.size()},
+                {"backends", json::object()}};
     for (const Backend backend : all_backends) {
         if (!device.description().supports(backend)) continue;
         const auto structure = build_acceleration_structure(backend, device, gpu_scene);
-        Renderer path_tracer(device, *structure, {tests / "benchmark/path_trace.glsl"}, parameters);
+        Renderer path_tracer(device, *structure, estimator, parameters);
         const Estimator replay{tests / "hardware/replay_rays.glsl", path_defines(backend, path_count)};
         Renderer replayer(device, *structure, replay, parameters, {&ray_binding, 1});
         const auto runs = measure_in_turns({&path_tracer, &replayer}, 0.5);
@@ -67,8 +101,9 @@ json measure_scene(const Device& device, const Scene& scene, uint32_t size) {
                                                   {"structure_bytes", structure->bytes()},
                                                   {"structure_seconds", structure->build_seconds()}};
         std::printf(
-            "%8zu triangles  %-8s %8.1f million paths/s  %8.1f million rays/s, bare %8.1f (%.2f of it)\n",
-            scene.triangles.size(), to_string(backend).c_str(), 1e-6 * rates.paths_per_second,
+            "%-17s %8zu triangles  %-8s %8.1f million paths/s  %8.1f million rays/s, bare %8.1f (%.2f of "
+            "it)\n",
+            name.c_str(), scene.triangles.size(), to_string(backend).c_str(), 1e-6 * rates.paths_per_second,
             1e-6 * rates.rays_per_second, 1e-6 * bare.rays_per_second,
             rates.rays_per_second / bare.rays_per_second);
         std::fflush(stdout);
@@ -88,7 +123,9 @@ void run(const std::string& choice, uint32_t size, const std::filesystem::path& 
                 {"scenes", json::array()}};
     constexpr std::pair<uint32_t, uint32_t> spheres[] = {{5, 3}, {200, 100}, {1400, 700}};
     for (const auto& [segments, rings] : spheres)
-        record["scenes"].push_back(measure_scene(device, make_box_scene(segments, rings), size));
+        record["scenes"].push_back(measure(device, benchmark_subject(size, segments, rings)));
+    for (const char* scene : {"cornell_box", "heart_light"})
+        record["scenes"].push_back(measure(device, chapter_subject(size, scene)));
     write_file(output, record.dump(2) + "\n");
 }
 

@@ -1,4 +1,4 @@
-// The benchmark's estimator, which also writes down the rays that it traces.
+// An estimator which also writes down the rays that it traces: those of one path of every pixel.
 #include "recorded_ray.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) buffer RecordedRays { RecordedRay recorded_rays[]; };
@@ -20,4 +20,4 @@ bool record_and_ask_is_occluded(Ray ray, float t_max) {
 
 #define trace_ray record_and_trace_ray
 #define is_occluded record_and_ask_is_occluded
-#include "../benchmark/path_trace.glsl"
+#include "observed.glsl"

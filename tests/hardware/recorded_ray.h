@@ -1,11 +1,11 @@
-// A ray of the benchmark's estimator, as recorded and replayed. Shared by C++ and GLSL.
+// A ray of an estimator, as recorded and replayed. Shared by C++ and GLSL.
 #ifdef __cplusplus
 #include <shaders/interface.h>
 namespace lab {
 #endif
 
 const uint BINDING_RECORDED_RAYS = 40u;
-// Two slots for each segment of a path of length 8: the ray to the hit, and the one from there to the light.
+// Two slots for each segment of a path of length 8: the ray to the hit, and the one from there to a light.
 // Threads then replay rays of one kind together, as they traced them.
 const uint MAX_RECORDED_RAYS = 18u;
 

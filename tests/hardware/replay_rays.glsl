@@ -9,17 +9,24 @@ layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) readonly buffer Recorde
 // sample, as in the ray tracing pipeline, that made the rate look half as high.
 uint replayed_paths = 0u;
 
-vec3 path_trace(Ray ray, inout uvec2 seed) {
-    uint path = (PATH_INDEX + 64u * replayed_paths++) % PATH_COUNT;
-    uint hash = 0u;
-    for (uint slot = 0u; slot < MAX_RECORDED_RAYS; slot += 2u) {
-        RecordedRay segment = recorded_rays[PATH_COUNT * slot + path];
-        if (segment.is_recorded == 0u) break;
-        Hit hit;
-        bool is_hit = trace_ray(Ray(segment.origin, segment.direction), segment.t_max, hit);
-        hash = hash * 31u + (is_hit ? hit.triangle + 1u : 0u);
-        RecordedRay shadow = recorded_rays[PATH_COUNT * (slot + 1u) + path];
-        if (shadow.is_recorded != 0u && is_occluded(Ray(shadow.origin, shadow.direction), shadow.t_max)) hash += 7u;
-    }
-    return vec3(hash & 0xffffu);
+// A thread whose path has ended replays its next one at once: no rate of an estimator is bounded by waiting.
+#define PATH_REGENERATION
+struct Path {
+    vec3 radiance;
+    uint index;
+    uint slot;
+};
+
+Path start_path(Ray ray) { return Path(vec3(0.0), (PATH_INDEX + 64u * replayed_paths++) % PATH_COUNT, 0u); }
+
+bool extend_path(inout Path path, inout uvec2 seed) {
+    RecordedRay segment = recorded_rays[PATH_COUNT * path.slot + path.index];
+    Hit hit;
+    bool is_hit = trace_ray(Ray(segment.origin, segment.direction), segment.t_max, hit);
+    uint hash = is_hit ? hit.triangle + 1u : 0u;
+    RecordedRay shadow = recorded_rays[PATH_COUNT * (path.slot + 1u) + path.index];
+    if (shadow.is_recorded != 0u && is_occluded(Ray(shadow.origin, shadow.direction), shadow.t_max)) hash += 7u;
+    path.radiance += vec3(hash & 0xffffu);
+    path.slot += 2u;
+    return path.slot < MAX_RECORDED_RAYS && recorded_rays[PATH_COUNT * path.slot + path.index].is_recorded != 0u;
 }

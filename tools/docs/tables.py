@@ -86,12 +86,13 @@ BACKENDS = """
 
 A backend is a way to find what a ray hits. [backends.md](backends.md) explains them and says what limits each.
 
-All of them render the same shader: next event estimation with Russian roulette (`tests/benchmark/path_trace.glsl`), with at
-most eight bounces. The scene is a Cornell box with a bumpy sphere. We show the median of five runs in device time.
+On a Cornell box with a bumpy sphere, all of them render the same shader: next event estimation with Russian roulette
+(`tests/benchmark/path_trace.glsl`), with at most eight bounces. The last rows show the last chapter on two of its scenes. We show
+the median of five runs in device time.
 
-The bare rate belongs to a second shader. It only traces the very same rays once more, which it reads from memory. The runs of
-both shaders take turns. What both rates differ by is the price of shading, and of what a thread must remember for it.
-The brackets are the smallest and the largest quotient of the runs.
+The bare rate belongs to a second shader. It only traces the very same rays once more, which it reads from memory, and none of its
+threads waits for a longer path. The runs of both shaders take turns. What both rates differ by is the price of shading, of what a
+thread must remember for it, and of waiting. The brackets are the smallest and the largest quotient of the runs.
 """
 
 
@@ -222,13 +223,13 @@ def over_bare(rates):
 
 def backend_table(record):
     """The Markdown table of one device."""
-    head = ["triangles", "backend", "million paths/s", "million rays/s", "bare million rays/s", "rays/s over bare", "structure"]
-    rows = [[f"{scene['triangles']:,}", f"`{name}`", f"{rates['paths_per_second'] / 1e6:.4g}", f"{rates['rays_per_second'] / 1e6:.4g}",
+    head = ["scene", "triangles", "backend", "million paths/s", "million rays/s", "bare million rays/s", "rays/s over bare", "structure"]
+    rows = [[scene["scene"], f"{scene['triangles']:,}", f"`{name}`", f"{rates['paths_per_second'] / 1e6:.4g}", f"{rates['rays_per_second'] / 1e6:.4g}",
              f"{rates['bare_rays_per_second'] / 1e6:.4g}", over_bare(rates),
              f"{rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s"]
             for scene in record["scenes"] for name, rates in scene["backends"].items()]
     return (f"\n### {record['device']}\n\nDriver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x "
-            f"{record['size']} pixels.\n\n" + table(head, rows, left=2))
+            f"{record['size']} pixels.\n\n" + table(head, rows, left=3))
 
 
 def section(header, folder, text_of):
