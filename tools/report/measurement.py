@@ -100,9 +100,10 @@ def study_cases():
             add(scene, length, f"splitting factor {factor}", splitting, "--splitting-factor", str(factor))
         for start in (1, 2, 3, 4):
             add(scene, length, f"roulette start {start}", roulette, "--roulette-start", str(start))
-    for scene, length, program in (("cornell_box", 6, roulette), ("glass", 8, glass), ("cornell_box", 6, points), ("heart_light", 4, points)):
+    for scene, length, name, program in (("cornell_box", 6, "", roulette), ("heart_light", 4, "", roulette), ("glass", 8, "", glass),
+                                         ("cornell_box", 6, "points, ", points), ("heart_light", 4, "points, ", points)):
         for weight in ("1", "0.5", "0.25"):
-            add(scene, length, f"survival weight {weight}", program, "--survival-weight", weight)
+            add(scene, length, f"{name}survival weight {weight}", program, "--survival-weight", weight)
     for switch in ("on", "off"):
         add("glass", 8, f"light sampling {switch}", glass, "--light-sampling", switch)
     # The blog's setting: two branches at every hit, light that is reflected up to five times. It has no reference:
