@@ -11,6 +11,7 @@
 #include "rendering/interrupt.h"
 #include "rendering/numbers_text.h"
 #include "rendering/outputs.h"
+#include "rendering/scene_reference.h"
 
 namespace lab {
 namespace {
@@ -30,6 +31,10 @@ class HeadlessRender {
                                 std::to_string(image.height) + " pixels, the image has " +
                                 std::to_string(renderer_.film().width()) + "x" +
                                 std::to_string(renderer_.film().height()) + ": they must agree");
+            const std::string difference = mismatch(*reference_, *job_.scene, job_.parameters);
+            if (!difference.empty() && !options_.quiet)
+                std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(),
+                             difference.c_str());
         }
         take_snapshot();
         last_row_film_ = snapshot_;

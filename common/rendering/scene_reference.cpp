@@ -74,4 +74,20 @@ std::variant<Reference, std::string> find_reference(const Scene& scene, const Re
     return "this scene has no reference";
 }
 
+std::string mismatch(const Reference& reference, const Scene& scene, const RenderParameters& parameters) {
+    const auto value = [&](const std::string& name, const std::string& otherwise) {
+        const auto found = reference.attributes.find(name);
+        return found == reference.attributes.end() ? otherwise : found->second;
+    };
+    const std::string hash = hexadecimal(scene.hash), length = std::to_string(parameters.max_path_length);
+    if (value("scene_hash", hash) != hash)
+        return "shows " + value("scene", "another scene") +
+               ", the image shows another scene or another version of it";
+    const std::string reference_length = value("max_path_length", length);
+    if (reference_length != length)
+        return "has paths of at most " + reference_length + " bounces, the image has paths of at most " +
+               length + ": use --max-path-length " + reference_length;
+    return "";
+}
+
 }  // namespace lab

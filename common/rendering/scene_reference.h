@@ -12,4 +12,8 @@ namespace lab {
 // images.
 std::variant<Reference, std::string> find_reference(const Scene& scene, const RenderParameters& parameters);
 
+// What a reference says about itself that is not so of the image, in one line: it is of another scene or of
+// other path lengths. Empty where it says nothing of the kind.
+std::string mismatch(const Reference& reference, const Scene& scene, const RenderParameters& parameters);
+
 }  // namespace lab

@@ -6,7 +6,7 @@ import math
 import unittest
 
 from image_files import Exr, relative_mse
-from program import RenderTest
+from program import PROJECT, RenderTest
 
 FIELDS = ["samples", "seconds", "device_seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
 
@@ -73,6 +73,16 @@ class Report(RenderTest):
         self.picture("small", "--samples=1", size=(8, 20))
         arguments = self.command("--samples=4000000000", "--reference=small.exr")
         self.assert_refused(arguments, r"small\.exr", "8x20", "24x20")
+
+    def test_a_reference_of_something_else_is_noted(self):
+        reference = PROJECT / "assets/references/cornell_box_6.exr"
+        for scene, length, note in (("cornell_box", 6, None), ("cornell_box", 7, "--max-path-length 6"), ("torus", 6, "another scene")):
+            with self.subTest(scene=scene, length=length):
+                arguments = "--samples=1", f"--max-path-length={length}", f"--reference={reference}"
+                command = self.command(*arguments, scene=scene, size=(128, 128))
+                code, _, error = self.run_program(*command, "--output=noted.exr")
+                self.assertEqual(code, 0, error)
+                self.assertRegex(error, rf"\Anote: \S*cornell_box_6.exr: .*{note}.*\n\Z" if note else r"\A\Z")
 
     def test_csv_has_the_same_rows(self):
         self.picture("image", "--samples=4", "--report=report.csv")
