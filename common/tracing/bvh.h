@@ -2,6 +2,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/scene.h"
@@ -44,9 +46,22 @@ struct BvhTriangle {
 };
 static_assert(sizeof(BvhTriangle) == 48);
 
+// An array that grows without being set to zero, so that all threads can fill it.
+template <typename T>
+struct Uninitialized : std::allocator<T> {
+    template <typename U>
+    struct rebind {
+        using other = Uninitialized<U>;
+    };
+    void construct(T*) {}
+    void construct(T* place, const T& value) { std::construct_at(place, value); }
+};
+template <typename T>
+using LargeArray = std::vector<T, Uninitialized<T>>;
+
 struct Bvh {
-    std::vector<BvhNode> nodes;          // node 0 is the root; children follow their parents
-    std::vector<BvhTriangle> triangles;  // in the order of the leaves
+    LargeArray<BvhNode> nodes;          // node 0 is the root; children follow their parents
+    LargeArray<BvhTriangle> triangles;  // in the order of the leaves
     uint32_t max_stack_entries = 1;  // for a traversal that pushes all but the nearest child, and a sentinel
     double surface_area_cost = 0;    // expected nodes + triangles visited by a random ray that hits the root
     double build_seconds = 0;
@@ -54,11 +69,12 @@ struct Bvh {
 
 // World-space triangles of all instances; positions are transformed in double. Throws UserError for more than
 // 2^28 triangles and for coordinates beyond 1e18, whose products would overflow in the triangle test.
-std::vector<BvhTriangle> world_triangles(const Scene& scene);
+LargeArray<BvhTriangle> world_triangles(const Scene& scene);
 
-// Binned surface area heuristic (32 bins, 3 axes, at most 4 triangles a leaf), collapsed to four children.
+// Binned surface area heuristic (up to 32 bins, 3 axes; all ways to divide up to 4 triangles, which may be a
+// leaf), collapsed to four children.
 // Takes any number of triangles below 2^28, also none. Large inputs are built by several threads; the result
 // does not depend on how many. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007.
-Bvh build_bvh(const std::vector<BvhTriangle>& triangles);
+Bvh build_bvh(std::span<const BvhTriangle> triangles);
 
 }  // namespace lab

@@ -1,10 +1,7 @@
 #include "tracing/bvh_split.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "parallel.h"
 
@@ -16,202 +13,286 @@ constexpr size_t max_leaf_triangles = 4;
 // Where this many splits might come to lie above each other, ranges are halved instead: that bounds the stack
 // of the traversal. Only triangles whose sizes fall geometrically need so many.
 constexpr size_t max_depth = 64;
-constexpr size_t smallest_task = 32'768;  // less is not worth to be shared
-constexpr size_t max_tasks = 64;          // of equal size; a few more if they are not
 
 using Int4 [[gnu::vector_size(16)]] = int;
 
-const Box empty_box{Float4{} + std::numeric_limits<float>::infinity(),
-                    Float4{} - std::numeric_limits<float>::infinity()};
+// Primitives on one side of a plane.
+struct Side {
+    Box box;
+    uint32_t count;
 
-// Sorts centroids into bins of equal width along each axis.
-struct Binning {
-    int bin_count;
-    Float4 low;
-    Float4 bins_per_length{};
-
-    Binning(const Box& centroids, size_t primitive_count)
-        : bin_count(static_cast<int>(std::min(max_bin_count, primitive_count))), low(centroids.low) {
-        // An axis along which the bins have no width, or hardly any, keeps all centroids in bin 0.
-        for (int axis = 0; axis < 3; ++axis) {
-            const float scale = static_cast<float>(bin_count) / (centroids.high[axis] - low[axis]);
-            if (std::isfinite(scale)) bins_per_length[axis] = scale;
-        }
+    void add(const Side& side) {
+        box.add(side.box);
+        count += side.count;
     }
-    Int4 bins(const Primitive& primitive) const {
-        const Int4 last = Int4{} + (bin_count - 1);
-        const Int4 bins = __builtin_convertvector((primitive.centroid() - low) * bins_per_length, Int4);
-        return bins < last ? bins : last;
-    }
+    double cost() const { return box.half_area() * count; }  // not a number if there are none
 };
 
-// What the bins of all axes hold.
-struct Bins {
-    struct Bin {
-        Box box;
-        size_t count;
+const Side no_primitives{empty_box, 0};
 
-        void add(const Bin& bin) {
-            box.add(bin.box);
-            count += bin.count;
-        }
-    };
-    static inline const Bin no_primitives{empty_box, 0};
-    int bin_count;
-    std::array<std::array<Bin, max_bin_count>, 3> axes;  // the first bin_count of each are in use
+// A plane between two bins.
+struct Plane {
+    double cost = std::numeric_limits<double>::infinity();  // added over both sides
+    int axis = 0;
+    int first_right_bin = 0;
+};
 
-    explicit Bins(int count) : bin_count(count) {
-        for (auto& bins : axes) std::fill_n(bins.begin(), bin_count, no_primitives);
+// The primitives of a range, sorted by their places into bins of equal width along each axis.
+class Bins {
+  public:
+    explicit Bins(const Range& range)
+        : bin_count_(static_cast<int>(std::min(max_bin_count, 4 + range.primitives.size() / 2))),
+          low_(range.places.low),
+          last_(Float4{} + (static_cast<float>(bin_count_) - 0.5f)) {
+        // An axis along which the bins have no width, or hardly any, keeps all primitives in bin 0.
+        const Float4 scale = static_cast<float>(bin_count_) / (range.places.high - low_);
+        bins_per_length_ = scale <= std::numeric_limits<float>::max() ? scale : Float4{};
+        for (auto& bins : axes_) std::fill_n(bins.begin(), bin_count_, no_primitives);
     }
-
-    void add(std::span<const Primitive> primitives, const Binning& binning) {
-        for (const auto& primitive : primitives) {
-            const Int4 bins = binning.bins(primitive);
-            const Bin one{primitive.box(), 1};
-            axes[0][bins[0]].add(one);  // not in a loop, so that the compiler knows the lanes
-            axes[1][bins[1]].add(one);
-            axes[2][bins[2]].add(one);
+    void add(std::span<const Primitive> primitives) {
+        // Neighbours are often in the same bin, which would have to wait for the one before: so by turns.
+        const size_t middle = primitives.size() / 2;
+        for (size_t i = 0; i < middle; ++i) {
+            add(primitives[i]);
+            add(primitives[middle + i]);
         }
+        if (primitives.size() % 2 != 0) add(primitives.back());
     }
     void add(const Bins& bins) {
         for (size_t axis = 0; axis < 3; ++axis)
-            for (int i = 0; i < bin_count; ++i) axes[axis][i].add(bins.axes[axis][i]);
+            for (int i = 0; i < bin_count_; ++i) axes_[axis][i].add(bins.axes_[axis][i]);
     }
-    // Of bins begin, ..., end - 1 along an axis.
-    Bin sum(int axis, int begin, int end) const {
-        Bin sum = no_primitives;
-        for (int i = begin; i < end; ++i) sum.add(axes[axis][i]);
+
+    bool is_left(const Primitive& primitive, const Plane& plane) const {
+        const float place = (primitive.place(plane.axis) - low_[plane.axis]) * bins_per_length_[plane.axis];
+        return place < static_cast<float>(plane.first_right_bin);
+    }
+    Side left(const Plane& plane) const { return sum(plane.axis, 0, plane.first_right_bin); }
+    Side right(const Plane& plane) const { return sum(plane.axis, plane.first_right_bin, bin_count_); }
+
+    // The plane with the least surface area cost. A side without triangles makes no split.
+    Plane cheapest_plane() const {
+        Plane best;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::array<double, max_bin_count> right_cost;  // of bins i, i + 1, ...
+            Side side = no_primitives;
+            for (int i = bin_count_ - 1; i > 0; --i) {
+                side.add(axes_[axis][i]);
+                right_cost[i] = side.cost();
+            }
+            side = no_primitives;
+            for (int i = 1; i < bin_count_; ++i) {
+                side.add(axes_[axis][i - 1]);
+                const double cost = side.cost() + right_cost[i];
+                if (cost < best.cost) best = {cost, axis, i};
+            }
+        }
+        return best;
+    }
+
+  private:
+    void add(const Primitive& primitive) {
+        const Float4 place = (primitive.place() - low_) * bins_per_length_;
+        const Int4 bins = __builtin_convertvector(place < last_ ? place : last_, Int4);
+        const Side one{primitive.box(), 1};
+        // Not in a loop, so that the compiler knows the lanes.
+        axes_[0][static_cast<uint32_t>(bins[0])].add(one);
+        axes_[1][static_cast<uint32_t>(bins[1])].add(one);
+        axes_[2][static_cast<uint32_t>(bins[2])].add(one);
+    }
+    Side sum(int axis, int begin, int end) const {
+        Side sum = no_primitives;
+        for (int i = begin; i < end; ++i) sum.add(axes_[axis][i]);
         return sum;
     }
+
+    int bin_count_;
+    Float4 low_;
+    Float4 bins_per_length_;
+    Float4 last_;                                          // the middle of the last bin, counted in bins
+    std::array<std::array<Side, max_bin_count>, 3> axes_;  // the first bin_count_ of each are in use
 };
 
-struct Plane {
-    int axis = 0;
-    int first_right_bin = 0;
-    double cost = std::numeric_limits<double>::infinity();  // area times triangles, added over both sides
-};
-
-// The plane between two bins with the least surface area cost.
-Plane cheapest_plane(const Bins& bins, size_t primitive_count) {
-    const auto cost_of = [](const Bins::Bin& side) {
-        return half_area(side.box.high - side.box.low) * static_cast<double>(side.count);
-    };
-    Plane best;
-    for (int axis = 0; axis < 3; ++axis) {
-        // right_cost[i] belongs to bins i, i + 1, ... A side without triangles makes no split.
-        std::array<double, max_bin_count> right_cost;
-        Bins::Bin side = Bins::no_primitives;
-        for (int i = bins.bin_count - 1; i > 0; --i) {
-            side.add(bins.axes[axis][i]);
-            right_cost[i] = cost_of(side);
-        }
-        side = Bins::no_primitives;
-        for (int i = 1; i < bins.bin_count; ++i) {
-            side.add(bins.axes[axis][i - 1]);
-            if (side.count == 0 || side.count == primitive_count) continue;
-            const double cost = cost_of(side) + right_cost[i];
-            if (cost < best.cost) best = {axis, i, cost};
-        }
-    }
-    return best;
+// A half of a range, whose primitives have still to move there: the bounds of their places come from that.
+Range part_of(const Range& range, size_t begin, size_t count, const Box& box) {
+    return {.primitives = {range.room + begin, count},
+            .room = range.primitives.data() + begin,
+            .box = box,
+            .places = empty_box,
+            .area = box.half_area(),
+            .first = static_cast<uint32_t>(range.first + begin),
+            .depth = range.depth + 1};
 }
 
-// Halves along the longest axis, where all centroids coincide or the tree is too deep.
-std::array<Range, 2> halve(const Range& range, const Box& centroids) {
-    const auto primitives = range.primitives;
-    const auto [low, high] = centroids.bounds();
+Halves halves_of(const Range& range, const Side& left, const Side& right) {
+    return {part_of(range, 0, left.count, left.box), part_of(range, left.count, right.count, right.box)};
+}
+Halves halves_of(const Range& range, const Bins& bins, const Plane& plane) {
+    return halves_of(range, bins.left(plane), bins.right(plane));
+}
+
+Extent extent_of(std::span<const Primitive> primitives) {
+    Extent extent;
+    for (const Primitive& primitive : primitives) extent.add(primitive);
+    return extent;
+}
+
+// Halves along the longest axis, where all places coincide or the tree is too deep.
+Halves halve(const Range& range) {
+    const auto [low, high] = range.places.bounds();
     const vec3 size = high - low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    const size_t middle = primitives.size() / 2;
-    std::ranges::nth_element(primitives, primitives.begin() + middle, {},
-                             [&](const Primitive& p) { return float{p.centroid()[axis]}; });
-    const auto left = primitives.first(middle), right = primitives.subspan(middle);
-    return {Range{left, bounds_of(left), range.depth + 1}, Range{right, bounds_of(right), range.depth + 1}};
+    const size_t count = range.primitives.size(), middle = count / 2;
+    std::ranges::nth_element(range.primitives, range.primitives.begin() + middle, {},
+                             [&](const Primitive& primitive) { return primitive.place(axis); });
+    std::ranges::copy(range.primitives, range.room);
+    const Extent left = extent_of({range.room, middle}),
+                 right = extent_of({range.room + middle, count - middle});
+    Halves halves = halves_of(range, {left.box, static_cast<uint32_t>(middle)},
+                              {right.box, static_cast<uint32_t>(count - middle)});
+    halves[0].places = left.places;
+    halves[1].places = right.places;
+    return halves;
 }
 
-// Of a range that is larger than a task: primitives that a thread takes at a time.
-size_t piece_size(size_t primitive_count) {
-    constexpr size_t smallest_piece = 4096;
-    return std::max(smallest_piece, primitive_count / max_tasks);
+Plane plane_for(const Range& range, const Bins& bins) {
+    if (range.depth + std::bit_width(range.primitives.size()) >= max_depth) return {};
+    return bins.cheapest_plane();
+}
+
+// Moves primitives to their sides, each in their order: those on the left to room[next[0]] and so on, those
+// on the right to room[next[1]]. Returns the bounds of their places on either side. There is no branch to
+// mispredict.
+std::array<Box, 2> move(std::span<const Primitive> primitives, const Bins& bins, const Plane& plane,
+                        Primitive* room, std::array<size_t, 2> next) {
+    auto [left, right] = next;
+    std::array places{empty_box, empty_box};
+    for (const Primitive& primitive : primitives) {
+        const int is_left = bins.is_left(primitive, plane);
+        room[is_left ? left : right] = primitive;
+        left += is_left;
+        right += 1 - is_left;
+        // A number with all bits set is not a number, and no box takes it.
+        const Int4 place = std::bit_cast<Int4>(primitive.place()), on_left = Int4{} - is_left;
+        places[0].add(std::bit_cast<Float4>(place | ~on_left));
+        places[1].add(std::bit_cast<Float4>(place | on_left));
+    }
+    return places;
+}
+
+// The cheapest of all ways to divide a few primitives in two. The first one stays on the left.
+std::optional<Halves> split_few(const Range& range) {
+    const auto primitives = range.primitives;
+    if (primitives.size() < 2) return {};
+    double best_cost = range.area * static_cast<double>(primitives.size() - 1);  // a leaf's less a node's
+    uint32_t best = 0;  // has a bit for each primitive: whether it goes to the right
+    std::array<Side, 2> best_sides;
+    for (uint32_t right = 2; right < 1u << primitives.size(); right += 2) {
+        std::array sides{no_primitives, no_primitives};
+        for (size_t i = 0; i < primitives.size(); ++i) sides[right >> i & 1].add({primitives[i].box(), 1});
+        const double cost = sides[0].cost() + sides[1].cost();
+        if (cost < best_cost) {
+            best_cost = cost;
+            best = right;
+            best_sides = sides;
+        }
+    }
+    if (best == 0) return {};
+    std::array<size_t, 2> next{0, best_sides[0].count};
+    for (size_t i = 0; i < primitives.size(); ++i) range.room[next[best >> i & 1]++] = primitives[i];
+    return halves_of(range, best_sides[0], best_sides[1]);
+}
+
+// What a thread takes of a large range.
+struct Piece {
+    const Range* range;
+    std::span<const Primitive> primitives;
+    std::optional<Bins> bins{};
+    Plane plane{};
+    std::array<size_t, 2> next{};  // where in the room its primitives on the left and right go
+    std::array<Box, 2> places{};
+};
+
+// A large range on its way to its halves. It gets none if no plane can split it.
+struct LargeSplit {
+    Range* range;
+    size_t first_piece = 0, piece_count = 0;
+    std::optional<Halves> halves{};
+
+    std::span<Piece> of(std::vector<Piece>& pieces) const {
+        return std::span(pieces).subspan(first_piece, piece_count);
+    }
+};
+
+void add_pieces(LargeSplit& split, size_t piece_size, std::vector<Piece>& pieces) {
+    split.first_piece = pieces.size();
+    for (std::span rest = split.range->primitives; !rest.empty();
+         rest = rest.subspan(pieces.back().primitives.size()))
+        pieces.push_back({split.range, rest.first(std::min(piece_size, rest.size()))});
+    split.piece_count = pieces.size() - split.first_piece;
+}
+
+// The pieces have their bins. They know where their primitives go from how many the others have.
+void choose_plane(LargeSplit& split, std::vector<Piece>& all_pieces) {
+    const auto pieces = split.of(all_pieces);
+    Bins bins(*split.range);
+    for (const Piece& piece : pieces) bins.add(*piece.bins);
+    const Plane plane = plane_for(*split.range, bins);
+    if (!std::isfinite(plane.cost)) return;
+    split.halves = halves_of(*split.range, bins, plane);
+    std::array<size_t, 2> next{0, split.halves->front().primitives.size()};
+    for (Piece& piece : pieces) {
+        piece.plane = plane;
+        piece.next = next;
+        next[0] += piece.bins->left(plane).count;
+        next[1] += piece.bins->right(plane).count;
+    }
 }
 
 }  // namespace
 
-Bounds bounds_of(std::span<const Primitive> primitives) {
-    Box box = empty_box;
-    for (const auto& primitive : primitives) box.add(primitive.box());
-    return box.bounds();
+std::optional<Halves> split(const Range& range) {
+    if (range.halves) return *range.halves;
+    const size_t count = range.primitives.size();
+    if (count <= max_leaf_triangles) return split_few(range);
+    Bins bins(range);
+    bins.add(range.primitives);
+    const Plane plane = plane_for(range, bins);
+    if (!std::isfinite(plane.cost)) return halve(range);
+    Halves halves = halves_of(range, bins, plane);
+    const auto places = move(range.primitives, bins, plane, range.room, {0, halves[0].primitives.size()});
+    for (size_t side = 0; side < 2; ++side) halves[side].places = places[side];
+    return halves;
 }
 
-Splitter::Splitter(std::span<const Primitive> primitives)
-    : primitives_(primitives),
-      scratch_(std::make_unique_for_overwrite<Primitive[]>(primitives.size())),
-      task_size_(std::max(smallest_task, primitives.size() / max_tasks)) {}
-
-// Adds all primitives to `sum`, which is empty: large ranges piece by piece, merged in their order.
-template <typename Sum, typename Add>
-void Splitter::gather(std::span<const Primitive> primitives, Sum& sum, const Add& add) const {
-    if (primitives.size() <= task_size_) return add(sum, primitives);
-    const size_t size = piece_size(primitives.size());
-    std::vector<Sum> pieces((primitives.size() + size - 1) / size, sum);
-    in_parallel(primitives.size(), size, [&](size_t begin, size_t end) {
-        add(pieces[begin / size], primitives.subspan(begin, end - begin));
-    });
-    for (const Sum& piece : pieces) sum.add(piece);
-}
-
-// Left ones first, each side in its order: pieces know where theirs go from how many the others have.
-template <typename IsLeft>
-void Splitter::partition(std::span<Primitive> primitives, const IsLeft& is_left) const {
-    if (primitives.size() <= task_size_) {
-        std::partition(primitives.begin(), primitives.end(), is_left);
-        return;
+// One level of the tree at a time: so all threads have work, and wait for each other three times a level.
+LargeRanges::LargeRanges(Range& all, size_t task_size) {
+    std::vector<LargeSplit> level;
+    if (all.primitives.size() > task_size) level.push_back({&all});
+    while (!level.empty()) {
+        std::vector<Piece> pieces;
+        for (LargeSplit& split : level) add_pieces(split, task_size / 4, pieces);
+        in_parallel(pieces.size(), 1, [&](size_t i, size_t) {
+            pieces[i].bins.emplace(*pieces[i].range).add(pieces[i].primitives);
+        });
+        in_parallel(level.size(), 1, [&](size_t i, size_t) { choose_plane(level[i], pieces); });
+        in_parallel(pieces.size(), 1, [&](size_t i, size_t) {
+            Piece& piece = pieces[i];
+            if (!std::isfinite(piece.plane.cost)) return;
+            piece.places = move(piece.primitives, *piece.bins, piece.plane, piece.range->room, piece.next);
+        });
+        std::vector<LargeSplit> next;
+        for (const LargeSplit& split : level) {
+            if (!split.halves) continue;
+            Halves& halves = halves_.emplace_back(*split.halves);
+            split.range->halves = &halves;
+            for (size_t side = 0; side < 2; ++side) {
+                for (const Piece& piece : split.of(pieces)) halves[side].places.add(piece.places[side]);
+                if (halves[side].primitives.size() > task_size) next.push_back({&halves[side]});
+            }
+        }
+        level = std::move(next);
     }
-    const size_t count = primitives.size(), size = piece_size(count);
-    std::vector<size_t> left_before((count + size - 1) / size + 1);
-    in_parallel(count, size, [&](size_t begin, size_t end) {
-        left_before[begin / size + 1] =
-            std::count_if(primitives.begin() + begin, primitives.begin() + end, is_left);
-    });
-    std::partial_sum(left_before.begin(), left_before.end(), left_before.begin());
-    const auto target = std::span(scratch_.get() + (primitives.data() - primitives_.data()), count);
-    in_parallel(count, size, [&](size_t begin, size_t end) {
-        size_t left = left_before[begin / size], right = left_before.back() + begin - left;
-        for (const Primitive& primitive : primitives.subspan(begin, end - begin))
-            target[is_left(primitive) ? left++ : right++] = primitive;
-    });
-    in_parallel(count, size, [&](size_t begin, size_t end) {
-        std::copy(target.begin() + begin, target.begin() + end, primitives.begin() + begin);
-    });
-}
-
-std::optional<std::array<Range, 2>> Splitter::split(const Range& range) const {
-    const auto primitives = range.primitives;
-    if (primitives.size() < 2) return {};
-    Box centroids = empty_box;
-    gather(primitives, centroids, [](Box& box, std::span<const Primitive> piece) {
-        for (const auto& primitive : piece) box.add({primitive.centroid(), primitive.centroid()});
-    });
-    const Binning binning(centroids, primitives.size());
-    Bins bins(binning.bin_count);
-    Plane plane;
-    if (range.depth + std::bit_width(primitives.size()) < max_depth) {
-        gather(primitives, bins,
-               [&](Bins& some, std::span<const Primitive> piece) { some.add(piece, binning); });
-        plane = cheapest_plane(bins, primitives.size());
-    }
-    const double area = half_area(range.bounds);
-    const double leaf_cost = area * static_cast<double>(primitives.size());
-    if (primitives.size() <= max_leaf_triangles && !(area + plane.cost < leaf_cost)) return {};
-    if (!std::isfinite(plane.cost)) return halve(range, centroids);
-
-    const auto left = bins.sum(plane.axis, 0, plane.first_right_bin),
-               right = bins.sum(plane.axis, plane.first_right_bin, binning.bin_count);
-    partition(primitives, [&](const Primitive& primitive) {
-        return binning.bins(primitive)[plane.axis] < plane.first_right_bin;
-    });
-    return {{Range{primitives.first(left.count), left.box.bounds(), range.depth + 1},
-             Range{primitives.subspan(left.count), right.box.bounds(), range.depth + 1}}};
 }
 
 }  // namespace lab::bvh

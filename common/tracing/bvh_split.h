@@ -1,7 +1,9 @@
 // How the builder of the tree splits the triangles of a node.
 #pragma once
+#include <array>
 #include <bit>
-#include <memory>
+#include <deque>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -19,8 +21,19 @@ struct Box {
         low = box.low < low ? box.low : low;
         high = box.high > high ? box.high : high;
     }
+    void add(Float4 point) { add(Box{point, point}); }
     Bounds bounds() const { return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}; }
+
+    // Half the surface area, in double because the square of a large coordinate overflows a float.
+    double half_area() const {
+        const Float4 size = high - low;
+        const double x = size[0], y = size[1], z = size[2];
+        return x * y + y * z + z * x;
+    }
 };
+
+const Box empty_box{Float4{} + std::numeric_limits<float>::infinity(),
+                    Float4{} - std::numeric_limits<float>::infinity()};
 
 // What the build moves around: the bounds of a triangle and where to find it.
 class Primitive {
@@ -31,8 +44,11 @@ class Primitive {
           high_{bounds.high.x, bounds.high.y, bounds.high.z, std::bit_cast<float>(triangle | id_bits)} {}
 
     Box box() const { return {low_, high_}; }
-    Float4 centroid() const { return 0.5f * low_ + 0.5f * high_; }
     uint32_t triangle() const { return std::bit_cast<uint32_t>(float{high_[3]}) & ~id_bits; }
+
+    // Twice the centre of its bounds.
+    Float4 place() const { return low_ + high_; }
+    float place(int axis) const { return low_[axis] + high_[axis]; }
 
   private:
     static constexpr uint32_t id_bits = 1u << 30;  // make an id an ordinary number, quick to compute with
@@ -40,46 +56,42 @@ class Primitive {
     Float4 low_, high_;
 };
 
+// The bounds of primitives and of their places.
+struct Extent {
+    Box box = empty_box, places = empty_box;
+
+    void add(const Primitive& primitive) {
+        box.add(primitive.box());
+        places.add(primitive.place());
+    }
+    void add(const Extent& extent) {
+        box.add(extent.box);
+        places.add(extent.places);
+    }
+};
+
 // Primitives side by side that become one subtree.
 struct Range {
     std::span<Primitive> primitives;
-    Bounds bounds;
-    size_t depth = 0;
-    bool is_leaf = false;
+    Primitive* room;  // for as many: its halves lie there, and theirs here again
+    Box box, places;
+    double area;         // half of that of the box
+    uint32_t first = 0;  // in the order of the leaves
+    uint32_t depth = 0;
+    const std::array<Range, 2>* halves = nullptr;  // if they are known
 };
+using Halves = std::array<Range, 2>;
 
-// Half the surface area, in double because the square of a large coordinate overflows a float.
-inline double half_area(Float4 size) {
-    const double x = size[0], y = size[1], z = size[2];
-    return x * y + y * z + z * x;
-}
+// The two halves of a range, or nothing where a leaf is cheaper. A node costs as much as a triangle.
+std::optional<Halves> split(const Range& range);
 
-inline double half_area(const Bounds& bounds) {
-    const vec3 size = bounds.high - bounds.low;
-    return half_area(Float4{size.x, size.y, size.z, 0});
-}
-
-Bounds bounds_of(std::span<const Primitive> primitives);
-
-// Splits ranges of at least two primitives. All threads share the work on those that are larger than a task.
-class Splitter {
+// Splits a range, and its halves, down to those of at most `task_size` primitives, with all threads.
+class LargeRanges {
   public:
-    explicit Splitter(std::span<const Primitive> primitives);
-
-    size_t task_size() const { return task_size_; }
-
-    // The two halves of a range, or nothing where a leaf is cheaper. A node costs as much as a triangle.
-    std::optional<std::array<Range, 2>> split(const Range& range) const;
+    LargeRanges(Range& all, size_t task_size);
 
   private:
-    template <typename Sum, typename Add>
-    void gather(std::span<const Primitive> primitives, Sum& sum, const Add& add) const;
-    template <typename IsLeft>
-    void partition(std::span<Primitive> primitives, const IsLeft& is_left) const;
-
-    std::span<const Primitive> primitives_;
-    std::unique_ptr<Primitive[]> scratch_;  // room for as many
-    size_t task_size_;
+    std::deque<Halves> halves_;
 };
 
 }  // namespace lab::bvh

@@ -3,7 +3,7 @@
 namespace lab {
 
 template <typename T>
-GpuBvh::Texels::Texels(const Device& device, const std::vector<T>& data)
+GpuBvh::Texels::Texels(const Device& device, const LargeArray<T>& data)
     : buffer(device, std::span<const T>(data), vk::BufferUsageFlagBits::eUniformTexelBuffer),
       view(device.handle(),
            vk::BufferViewCreateInfo({}, buffer.handle(), vk::Format::eR32G32B32A32Uint, 0, VK_WHOLE_SIZE)) {}

@@ -26,7 +26,7 @@ class GpuBvh {
         Buffer buffer;
         vk::raii::BufferView view;
         template <typename T>
-        Texels(const Device& device, const std::vector<T>& data);
+        Texels(const Device& device, const LargeArray<T>& data);
     };
     Texels nodes_;
     Texels triangles_;

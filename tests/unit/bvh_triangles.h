@@ -52,7 +52,7 @@ inline std::vector<BvhTriangle> height_field(size_t width) {
 }
 
 template <typename T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+bool same_bytes(const LargeArray<T>& a, const LargeArray<T>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
