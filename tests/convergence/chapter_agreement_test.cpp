@@ -88,7 +88,7 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
 class ChapterAgreement : public testing::TestWithParam<AgreementCase> {};
 INSTANTIATE_TEST_SUITE_P(
     Scenes, ChapterAgreement,
-    testing::Values(AgreementCase{"cornell_box", 8, 64, {0.06, 0.75}, {0.02, 0.18}},
+    testing::Values(AgreementCase{"cornell_box", 6, 56, {0.06, 0.75}, {0.02, 0.18}},
                     AgreementCase{"torus", 8, 64, {0.06, 0.9}, {0.02, 0.22}, Run::with_all},
                     AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}, Run::with_all},
                     AgreementCase{"textured", 12, 8, {0.045, 0.45}, {0.045, 0.45}},

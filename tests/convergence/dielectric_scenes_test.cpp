@@ -60,36 +60,6 @@ TEST(DielectricScene, BranchesAndRouletteKeepTheMean) {
                      render_batches(scene, plain, scene_batches), {0.02, 0.3});
 }
 
-// Without dielectrics the chapter is chapter 5, down to the random numbers. Only the rounding of sums may
-// differ, where a compiler contracts them, and then a few paths by roulette.
-TEST(DielectricScene, WithoutGlassIsChapterFive) {
-    Scene scene = empty_room();
-    Scene glossy = scene;
-    glossy.materials[0].specular_albedo = vec3(0.2f);
-    glossy.materials[0].specular_exponent = 20;
-    Scene open = scene;
-    open.background = {0.2f, 0.3f, 0.5f};
-    for (const auto& [room, light_sampling] :
-         {std::pair(&scene, LightSampling::on), std::pair(&scene, LightSampling::off),
-          std::pair(&glossy, LightSampling::on), std::pair(&open, LightSampling::on)}) {
-        RenderSettings settings = room_settings(8, 7);
-        settings.splitting_factor = 2;
-        settings.light_sampling = light_sampling;
-        const FilmImage sixth = render(*room, settings);
-        settings.estimator = chapter_estimator("05_russian_roulette");
-        const FilmImage fifth = render(*room, settings);
-        size_t equal = 0, close = 0;
-        for (size_t i = 0; i < fifth.pixels.size(); ++i) {
-            equal += fifth.pixels[i].sum == sixth.pixels[i].sum;
-            close += glm::distance(fifth.pixels[i].sum, sixth.pixels[i].sum) <=
-                     1e-5f * glm::length(fifth.pixels[i].sum);
-        }
-        std::printf("  %zu of %zu pixels are equal to the bit, %zu up to roundings\n", equal,
-                    fifth.pixels.size(), close);
-        EXPECT_GE(close, fifth.pixels.size() * 99 / 100);
-    }
-}
-
 TEST(DielectricScene, EmissiveGlassAddsItsEmissionOnce) {
     Material glass = dielectric_material(1.5f);
     glass.emission = {3, 2, 1};

@@ -235,7 +235,7 @@ TEST(LambertPolygon, IsTheIntegralOverTheLight) {
     }
 }
 
-class DirectLight : public OnEachChapter {};
+class DirectLight : public OnEachOwnEstimator {};
 INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(light_sampling_chapters()), chapter_name);
 
 TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
@@ -362,7 +362,7 @@ TEST_P(DirectLight, AddsToTheLightOfTheSky) {
     expect_direct_light("light and sky", batches, receiver.irradiance(light), {0.02, 0.5}, 1, sky);
 }
 
-class AllChapters : public OnEachChapter {};
+class AllChapters : public OnEachOwnEstimator {};
 INSTANTIATE_TEST_SUITE_P(DirectLight, AllChapters, testing::ValuesIn(all_chapters), chapter_name);
 
 TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {

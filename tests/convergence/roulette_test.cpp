@@ -34,7 +34,7 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
     return {difference_from(numbers, expected).relative_to(expected)};
 }
 
-class Roulette : public OnEachChapter {};
+class Roulette : public OnEachOwnEstimator {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_from(5)), chapter_name);
 
 // With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So
@@ -167,8 +167,8 @@ TEST_P(Roulette, ConvergesSlowlyWhereItsVarianceIsInfinite) {
     // to a² the slope would not tell in affordable time.
     constexpr double tolerance = 0.05;
     const auto slopes = [&](float cap) {
-        RenderSettings settings{.width = 128,
-                                .height = 128,
+        RenderSettings settings{.width = 96,
+                                .height = 96,
                                 .samples = 4,
                                 .max_path_length = endless,
                                 .seed = 1000 * chapter_number(GetParam()) + 7};

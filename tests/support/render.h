@@ -110,13 +110,19 @@ class OnEachBackend : public testing::TestWithParam<Backend> {
     void SetUp() override;
 };
 
-// Without glass chapter 6 is chapter 5 down to the random numbers, as
-// DielectricScene.WithoutGlassIsChapterFive shows again and again. Other scenes without glass are rendered by
-// both only with ./lab test --all.
+// Without glass chapter 6 is chapter 5 down to the random numbers, as RepeatedChapter shows pixel by pixel.
+// Scenes without glass are rendered by both only with ./lab test --all.
 bool repeats_chapter_five(const std::string& chapter);
 
 // Fixture of tests to be run with each chapter on scenes without glass.
 class OnEachChapter : public testing::TestWithParam<std::string> {
+  protected:
+    void SetUp() override;
+};
+
+// The same on scenes without light probes. There chapter 8 is chapter 7, as RepeatedChapter shows, too, and
+// chapter 10 is chapter 9 everywhere: RepeatedChapter and PathRegeneration.
+class OnEachOwnEstimator : public OnEachChapter {
   protected:
     void SetUp() override;
 };
