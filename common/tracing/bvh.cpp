@@ -102,7 +102,7 @@ class Builder {
         const std::span primitives(memory.get(), count);
         const Extent extent = fill(primitives);
         Range all{primitives, memory.get() + count, extent.box, extent.places, extent.box.half_area()};
-        const bvh::LargeRanges large(all, task_size_);
+        const bvh::LargeRanges large(all, task_size_ / 4);  // all that the nodes above the tasks split
         Part top;
         add_node(top, all, open(all));
         std::vector<Part> parts(top.links.size());

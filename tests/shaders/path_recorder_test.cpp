@@ -65,7 +65,7 @@ float distance_to_triangle(const BvhTriangle& triangle, const vec3& point) {
     return is_inside ? std::abs(glm::dot(normal, p)) : std::numeric_limits<float>::infinity();
 }
 
-float distance_to_surface(const std::vector<BvhTriangle>& triangles, const vec3& point) {
+float distance_to_surface(const LargeArray<BvhTriangle>& triangles, const vec3& point) {
     float nearest = std::numeric_limits<float>::infinity();
     for (const BvhTriangle& triangle : triangles)
         nearest = std::min(nearest, distance_to_triangle(triangle, point));
