@@ -102,7 +102,7 @@ class Builder {
         const std::span primitives(memory.get(), count);
         const Extent extent = fill(primitives);
         Range all{primitives, memory.get() + count, extent.box, extent.places, extent.box.half_area()};
-        const bvh::LargeRanges large(all, task_size_);
+        const bvh::LargeRanges large(all, task_size_ / 4);  // all that the nodes above the tasks split
         Part top;
         add_node(top, all, open(all));
         std::vector<Part> parts(top.links.size());
@@ -120,7 +120,10 @@ class Builder {
         }
         add_up(top, parts);
         result_.max_stack_entries = top.stack_entries + 1;
-        result_.surface_area_cost = 1 + (top.cost > 0 ? top.cost / all.area : 0);
+        Bounds scene;
+        for (size_t slot = 0; slot < 4; ++slot)
+            if (top.nodes[0].children[slot] != 0) scene.grow(top.nodes[0].child_bounds(slot));
+        result_.surface_area_cost = 1 + (top.cost > 0 ? top.cost / half_area(scene) : 0);
         result_.nodes.resize(offsets.back());
         std::ranges::copy(top.nodes, result_.nodes.begin());
         in_parallel(parts.size(), 1, [&](size_t i, size_t) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "parallel.h"
 
@@ -207,7 +209,7 @@ std::optional<Halves> split_few(const Range& range) {
 struct Piece {
     const Range* range;
     std::span<const Primitive> primitives;
-    std::optional<Bins> bins{};
+    std::unique_ptr<Bins> bins{};
     Plane plane{};
     std::array<size_t, 2> next{};  // where in the room its primitives on the left and right go
     std::array<Box, 2> places{};
@@ -266,14 +268,15 @@ std::optional<Halves> split(const Range& range) {
 }
 
 // One level of the tree at a time: so all threads have work, and wait for each other three times a level.
-LargeRanges::LargeRanges(Range& all, size_t task_size) {
+LargeRanges::LargeRanges(Range& all, size_t size) {
     std::vector<LargeSplit> level;
-    if (all.primitives.size() > task_size) level.push_back({&all});
+    if (all.primitives.size() > size) level.push_back({&all});
     while (!level.empty()) {
         std::vector<Piece> pieces;
-        for (LargeSplit& split : level) add_pieces(split, task_size / 4, pieces);
+        for (LargeSplit& split : level) add_pieces(split, size, pieces);
         in_parallel(pieces.size(), 1, [&](size_t i, size_t) {
-            pieces[i].bins.emplace(*pieces[i].range).add(pieces[i].primitives);
+            pieces[i].bins = std::make_unique<Bins>(*pieces[i].range);
+            pieces[i].bins->add(pieces[i].primitives);
         });
         in_parallel(level.size(), 1, [&](size_t i, size_t) { choose_plane(level[i], pieces); });
         in_parallel(pieces.size(), 1, [&](size_t i, size_t) {
@@ -288,7 +291,7 @@ LargeRanges::LargeRanges(Range& all, size_t task_size) {
             split.range->halves = &halves;
             for (size_t side = 0; side < 2; ++side) {
                 for (const Piece& piece : split.of(pieces)) halves[side].places.add(piece.places[side]);
-                if (halves[side].primitives.size() > task_size) next.push_back({&halves[side]});
+                if (halves[side].primitives.size() > size) next.push_back({&halves[side]});
             }
         }
         level = std::move(next);

@@ -85,10 +85,11 @@ using Halves = std::array<Range, 2>;
 // The two halves of a range, or nothing where a leaf is cheaper. A node costs as much as a triangle.
 std::optional<Halves> split(const Range& range);
 
-// Splits a range, and its halves, down to those of at most `task_size` primitives, with all threads.
+// Splits a range and its halves, down to those of at most `size` primitives, with all threads: each takes as
+// many at a time.
 class LargeRanges {
   public:
-    LargeRanges(Range& all, size_t task_size);
+    LargeRanges(Range& all, size_t size);
 
   private:
     std::deque<Halves> halves_;

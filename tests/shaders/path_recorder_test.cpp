@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <fstream>
 #include <regex>
-#include <span>
 
 #include "support/gpu_test.h"
 #include "support/render.h"
@@ -66,7 +65,7 @@ float distance_to_triangle(const BvhTriangle& triangle, const vec3& point) {
     return is_inside ? std::abs(glm::dot(normal, p)) : std::numeric_limits<float>::infinity();
 }
 
-float distance_to_surface(std::span<const BvhTriangle> triangles, const vec3& point) {
+float distance_to_surface(const LargeArray<BvhTriangle>& triangles, const vec3& point) {
     float nearest = std::numeric_limits<float>::infinity();
     for (const BvhTriangle& triangle : triangles)
         nearest = std::min(nearest, distance_to_triangle(triangle, point));

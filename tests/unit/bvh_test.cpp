@@ -22,8 +22,13 @@ class TreeWalk {
   public:
     explicit TreeWalk(const Bvh& bvh) : bvh_(bvh), visits_(bvh.triangles.size()) {
         visit(0, 1);
+        Bounds all;
+        for (size_t slot = 0; slot < 4; ++slot)
+            if (bvh.nodes[0].children[slot] != 0) all.grow(bvh.nodes[0].child_bounds(slot));
         EXPECT_LE(deepest_stack_, bvh.max_stack_entries);
         EXPECT_EQ(visited_nodes_, bvh.nodes.size()) << "nodes that nothing refers to";
+        EXPECT_NEAR(bvh.surface_area_cost, 1 + (cost_ > 0 ? cost_ / area(all) : 0),
+                    1e-3 * bvh.surface_area_cost);
         EXPECT_TRUE(std::all_of(visits_.begin(), visits_.end(), [](int count) { return count == 1; }))
             << "a triangle is not in exactly one leaf";
     }
@@ -31,6 +36,11 @@ class TreeWalk {
     size_t deepest_stack() const { return deepest_stack_; }
 
   private:
+    static double area(const Bounds& bounds) {
+        const glm::dvec3 size = bounds.high - bounds.low;
+        return size.x * size.y + size.y * size.z + size.z * size.x;
+    }
+
     // `stack_entries` before the children are pushed. Returns the bounds of the triangles below, without
     // padding.
     Bounds visit(uint32_t index, size_t stack_entries) {
@@ -51,6 +61,7 @@ class TreeWalk {
                 continue;
             }
             EXPECT_TRUE(is_bvh_leaf(child) || child > index) << "children have to follow their parents";
+            cost_ += area(bounds) * (is_bvh_leaf(child) ? child >> bvh_leaf_shift : 1);
             const Bounds inside = is_bvh_leaf(child) ? leaf_bounds(child) : visit(child, entries);
             EXPECT_TRUE(contains(bounds, inside));
             all.grow(inside);
@@ -74,6 +85,7 @@ class TreeWalk {
     std::vector<int> visits_;
     size_t visited_nodes_ = 0;
     size_t deepest_stack_ = 1;
+    double cost_ = 0;  // areas of children times the nodes and triangles to visit in them
 };
 
 // Every triangle of the input is in the tree, whole and with its id.
@@ -136,8 +148,10 @@ TEST(BvhBuilder, BoundsTheDepth) {
 }
 
 TEST(BvhBuilder, StatesTheDeepestStack) {
-    const Bvh bvh = build_bvh(random_triangles(10'000, 0.1f));
-    EXPECT_EQ(TreeWalk(bvh).deepest_stack(), bvh.max_stack_entries);
+    for (const size_t count : {10'000, 150'000}) {  // the larger one is built in parts
+        const Bvh bvh = build_bvh(random_triangles(count, 0.1f));
+        EXPECT_EQ(TreeWalk(bvh).deepest_stack(), bvh.max_stack_entries);
+    }
 }
 
 // Bounds near what the same algorithm gave when it was checked against a full sweep over all splits, which is
