@@ -47,14 +47,15 @@ TEST_P(RepeatedChapter, IsTheChapterBeforeIt) {
         settings.estimator = chapter_estimator(all_chapters.at(GetParam() - 2));
         SceneRenderer before(*scene, settings);
         constexpr uint32_t endless = 100'000;
-        for (const auto& [length, roulette_start, cap] : {std::tuple{0u, 1u, 0.95f},
-                                                          {1u, 1u, 0.95f},
-                                                          {8u, 1u, 0.95f},
-                                                          {endless, 3u, 0.95f},
-                                                          {endless, 1u, 0.5f}}) {
+        for (const auto& [length, roulette_start, cap, weight] : {std::tuple{0u, 1u, 0.95f, 1.0f},
+                                                                  {1u, 1u, 0.95f, 1.0f},
+                                                                  {8u, 1u, 0.95f, 0.25f},
+                                                                  {endless, 3u, 0.95f, 0.5f},
+                                                                  {endless, 1u, 0.5f, 1.0f}}) {
             settings.max_path_length = length;
             settings.roulette_start = roulette_start;
             settings.survival_cap = cap;
+            settings.survival_weight = weight;
             expect_same_paths(chapter.render(settings), before.render(settings));
         }
     }
