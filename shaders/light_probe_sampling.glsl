@@ -11,7 +11,7 @@ float get_light_probe_density(vec3 direction) {
     return get_probe_cell_density(cell.y * count.x + cell.x);
 }
 
-// A unit direction with the density P/Ω.
+// A unit direction with the density P/Δω.
 vec3 sample_light_probe_direction(inout uvec2 seed, out float density) {
     vec2 u;
     uint index = choose_probe_cell(seed, u);

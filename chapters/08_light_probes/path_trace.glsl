@@ -1,9 +1,9 @@
 // Chapter 8, light probes: light comes from all around, and light samples go to the bright directions.
 //
 // The probe is an image of all directions. Each of its cells, one a texel, is chosen with a probability P proportional to
-// its mean luminance times its solid angle Ω. In it all directions are equally likely: density P/Ω with respect to solid
-// angle. The weights of chapter 7 do the rest. Where there are light triangles, too, each light sample goes either to
-// them or to the probe; their densities hold the probability of that choice.
+// its mean luminance times its solid angle Δω. In it all directions are equally likely: density P/Δω with respect to
+// solid angle. The weights of chapter 7 do the rest. Where there are light triangles, too, each light sample goes either
+// to them or to the probe; their densities hold the probability of that choice.
 #include "multiple_importance_sampling.glsl"
 
 // p_l of a direction that misses all triangles. It is looked up for light samples as well as for bounces, so that their
@@ -16,7 +16,7 @@ float get_light_probe_density(vec3 direction) {
     return get_probe_cell_density(cell.y * count.x + cell.x);
 }
 
-// A unit direction with the density P/Ω.
+// A unit direction with the density P/Δω.
 vec3 sample_light_probe_direction(inout uvec2 seed, out float density) {
     uint index = choose_probe_cell(seed);
     density = get_probe_cell_density(index);
