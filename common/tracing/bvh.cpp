@@ -16,7 +16,7 @@ using bvh::Extent;
 using bvh::Primitive;
 using bvh::Range;
 
-constexpr size_t smallest_task = 32'768;  // less is not worth to be shared
+constexpr size_t smallest_task = 32'768;  // less is not worth sharing
 constexpr size_t max_tasks = 64;          // of equal size; a few more if they are not
 
 // Nodes in depth-first order, without those below the links.
@@ -59,8 +59,8 @@ BvhNode make_node(std::span<const Range> children) {
 }
 
 double half_area(const Bounds& bounds) {
-    const glm::dvec3 size = bounds.high - bounds.low;
-    return size.x * size.y + size.y * size.z + size.z * size.x;
+    const vec3 size = bounds.high - bounds.low;
+    return bvh::half_area(size.x, size.y, size.z);
 }
 
 // Sums up what a part, with those below its links, costs the traversal. Children follow their parents, so

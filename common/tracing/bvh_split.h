@@ -14,6 +14,9 @@ namespace lab::bvh {
 // Four numbers in a register. The fourth is of no meaning unless stated.
 using Float4 [[gnu::vector_size(16)]] = float;
 
+// Half the surface area of a box, in double because the square of a large coordinate overflows a float.
+inline double half_area(double x, double y, double z) { return x * y + y * z + z * x; }
+
 struct Box {
     Float4 low, high;
 
@@ -24,11 +27,9 @@ struct Box {
     void add(Float4 point) { add(Box{point, point}); }
     Bounds bounds() const { return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}; }
 
-    // Half the surface area, in double because the square of a large coordinate overflows a float.
     double half_area() const {
         const Float4 size = high - low;
-        const double x = size[0], y = size[1], z = size[2];
-        return x * y + y * z + z * x;
+        return bvh::half_area(size[0], size[1], size[2]);
     }
 };
 

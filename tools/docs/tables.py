@@ -96,7 +96,8 @@ thread must remember for it, and of waiting. The brackets are the smallest and t
 """
 
 
-KINDS = ("chapter", "splitting factor", "roulette start", "survival weight", "points, survival weight", "light sampling", "strategy", "splitting at every hit")
+KINDS = ("chapter", "splitting factor", "roulette start", "survival weight", "points, survival weight", "light sampling", "strategy",
+         "splitting at every hit")
 
 
 def kind_of(case):
