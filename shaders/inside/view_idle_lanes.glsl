@@ -38,5 +38,6 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         observed_path_trace(ray, state);
     }
 #endif
-    return vec3(1.0 - float(own_steps) / float(subgroupAdd(group_steps)));
+    uint steps = subgroupAdd(group_steps);
+    return vec3(float(steps - own_steps) / float(steps));  // a difference first: never below 0
 }
