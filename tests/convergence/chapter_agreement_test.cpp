@@ -1,4 +1,5 @@
-// On scenes without dielectrics all chapters have the same expected image.
+// On scenes without dielectrics all chapters have the same expected image. Chapters 6, 7 and 10 are another
+// one here, path by path, as RepeatedChapter shows.
 #include <algorithm>
 #include <array>
 
@@ -38,14 +39,13 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
         pairs.push_back(
             {at_every_hit("4", length == 2 ? 3 : 2, no_roulette), at_every_hit("5", length == 2 ? 2 : 3, 1)});
     pairs.push_back({chapter(3, 1), chapter(4, s)});
-    pairs.push_back({chapter(5, 6 - s), chapter(6, s == 5 ? 1 : 2)});
+    pairs.push_back({chapter(5, 6 - s), chapter(8, 1)});
     const auto by_light_samples = [&](size_t number) {
         Subject subject = chapter(number, 1);
         subject.name += " by light samples";
         subject.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
         return subject;
     };
-    pairs.push_back({by_light_samples(7), chapter(8, 1)});
     pairs.push_back({by_light_samples(8), chapter(9, 1)});
     return pairs;
 }

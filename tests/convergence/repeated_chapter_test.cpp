@@ -1,17 +1,74 @@
-// Chapters that are the chapter before them where what they add does not occur. Tests of such scenes leave
+// Chapters that are another one, path by path, where what they add does not occur. Tests of such scenes leave
 // them out (see support/render.h): what is proven for the one is proven for the other.
 #include <cstdio>
+#include <tuple>
 
+#include "files/project_folder.h"
 #include "support/dielectric_scenes.h"
 #include "support/render.h"
 
 namespace lab {
 namespace {
 
-// The number of the chapter that is left out.
-class RepeatedChapter : public testing::TestWithParam<uint32_t> {};
-INSTANTIATE_TEST_SUITE_P(, RepeatedChapter, testing::ValuesIn(repeated_chapters),
-                         [](const auto& instance) { return "chapter_" + std::to_string(instance.param); });
+struct Repetition {
+    std::string name;
+    uint32_t chapter, before;
+    uint32_t splitting_factor = 2;
+    bool has_roulette = true;
+    bool has_glass = true, has_probe = false;
+    bool has_points = true;  // instead of random numbers, where the chapter has them
+};
+const std::vector<Repetition> repetitions{
+    {.name = "chapter_4_without_splitting",
+     .chapter = 4,
+     .before = 3,
+     .splitting_factor = 1,
+     .has_roulette = false,
+     .has_glass = false},
+    {.name = "chapter_5_without_roulette",
+     .chapter = 5,
+     .before = 4,
+     .has_roulette = false,
+     .has_glass = false},
+    {.name = "chapter_6_without_glass", .chapter = 6, .before = 5, .has_glass = false},
+    {.name = "chapter_8_without_probe", .chapter = 8, .before = 7},
+    {.name = "chapter_9_without_its_points",
+     .chapter = 9,
+     .before = 8,
+     .has_probe = true,
+     .has_points = false},
+    {.name = "chapter_10", .chapter = 10, .before = 9, .has_probe = true}};
+
+class RepeatedChapter : public testing::TestWithParam<size_t> {};
+INSTANTIATE_TEST_SUITE_P(, RepeatedChapter, testing::Range(size_t{0}, repetitions.size()),
+                         [](const auto& instance) { return repetitions[instance.param].name; });
+
+Estimator repetition_estimator(const Repetition& repetition) {
+    Estimator estimator = chapter_estimator(all_chapters.at(repetition.chapter - 1));
+    if (repetition.has_points) return estimator;
+    estimator.observed = estimator.file;
+    estimator.file = project_folder() / "tests" / "shaders" / "without_points.glsl";
+    std::erase(estimator.defines, "LOW_DISCREPANCY");
+    return estimator;
+}
+
+// Rooms to be rendered, and whether light samples find the light in them.
+std::vector<std::pair<Scene, LightSampling>> scenes_of(const Repetition& repetition) {
+    const Scene room = empty_room();
+    Scene glossy = room, open = room, furnace = room;
+    glossy.materials[0].specular_albedo = vec3(0.2f);
+    glossy.materials[0].specular_exponent = 20;
+    open.background = {0.2f, 0.3f, 0.5f};
+    for (Material& material : furnace.materials) material.emission = vec3(1);
+    std::vector<std::pair<Scene, LightSampling>> scenes{{room, LightSampling::on},
+                                                        {glossy, LightSampling::on},
+                                                        {open, LightSampling::on},
+                                                        {furnace, LightSampling::off}};
+    if (repetition.has_glass)
+        scenes.emplace_back(room_with_box(dielectric_material(1.5f, vec3(0.3f))), LightSampling::on);
+    if (repetition.has_probe) scenes.emplace_back(load_shipped_scene("textured.json"), LightSampling::on);
+    return scenes;
+}
 
 // Down to the random numbers. Only the rounding of sums may differ, where a compiler contracts them, and then
 // a few paths by roulette.
@@ -31,27 +88,28 @@ void expect_same_paths(const Rendering& chapter, const Rendering& before) {
 }
 
 TEST_P(RepeatedChapter, IsTheChapterBeforeIt) {
-    Scene room = empty_room(), glossy = room, open = room, furnace = room;
-    glossy.materials[0].specular_albedo = vec3(0.2f);
-    glossy.materials[0].specular_exponent = 20;
-    open.background = {0.2f, 0.3f, 0.5f};
-    for (Material& material : furnace.materials) material.emission = vec3(1);
-    for (const auto& [scene, light_sampling] : {std::pair{&room, LightSampling::on},
-                                                {&glossy, LightSampling::on},
-                                                {&open, LightSampling::on},
-                                                {&furnace, LightSampling::off}}) {
-        RenderSettings settings{.width = 48, .height = 48, .samples = 8, .seed = 7, .splitting_factor = 2};
-        settings.light_sampling = light_sampling;
-        settings.estimator = chapter_estimator(all_chapters.at(GetParam() - 1));
-        SceneRenderer chapter(*scene, settings);
-        settings.estimator = chapter_estimator(all_chapters.at(GetParam() - 2));
-        SceneRenderer before(*scene, settings);
-        constexpr uint32_t endless = 100'000;
-        for (const auto& [length, roulette_start, cap, weight] : {std::tuple{0u, 1u, 0.95f, 1.0f},
-                                                                  {1u, 1u, 0.95f, 1.0f},
-                                                                  {8u, 1u, 0.95f, 0.25f},
-                                                                  {endless, 3u, 0.95f, 0.5f},
-                                                                  {endless, 1u, 0.5f, 1.0f}}) {
+    const Repetition& repetition = repetitions[GetParam()];
+    constexpr uint32_t endless = 100'000;
+    std::vector<std::tuple<uint32_t, uint32_t, float, float>> limits{
+        {0, no_roulette, 1.0f, 1.0f}, {1, no_roulette, 1.0f, 1.0f}, {8, no_roulette, 1.0f, 1.0f}};
+    if (repetition.has_roulette)
+        limits = {{0, 1, 0.95f, 1.0f},
+                  {1, 1, 0.95f, 1.0f},
+                  {8, 1, 0.95f, 0.25f},
+                  {endless, 3, 0.95f, 0.5f},
+                  {endless, 1, 0.5f, 1.0f}};
+    for (const auto& [scene, light_sampling] : scenes_of(repetition)) {
+        RenderSettings settings{.width = 48,
+                                .height = 48,
+                                .samples = 8,
+                                .seed = 7,
+                                .splitting_factor = repetition.splitting_factor,
+                                .light_sampling = light_sampling,
+                                .estimator = repetition_estimator(repetition)};
+        SceneRenderer chapter(scene, settings);
+        settings.estimator = chapter_estimator(all_chapters.at(repetition.before - 1));
+        SceneRenderer before(scene, settings);
+        for (const auto& [length, roulette_start, cap, weight] : limits) {
             settings.max_path_length = length;
             settings.roulette_start = roulette_start;
             settings.survival_cap = cap;
