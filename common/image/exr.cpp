@@ -24,31 +24,11 @@ namespace {
     fail(file, "damaged or unsupported OpenEXR file: " + reason.substr(0, reason.find('\n')));
 }
 
-struct Header : EXRHeader {
-    Header() { InitEXRHeader(this); }
-    ~Header() { FreeEXRHeader(this); }
-    Header(const Header&) = delete;
-    Header& operator=(const Header&) = delete;
-};
-
-struct DecodedImage : EXRImage {
-    DecodedImage() { InitEXRImage(this); }
-    ~DecodedImage() { FreeEXRImage(this); }
-    DecodedImage(const DecodedImage&) = delete;
-    DecodedImage& operator=(const DecodedImage&) = delete;
-};
-
 // Walks over the attributes of a file (name, type, size and value each) for the one that tinyexr trusts: it
 // aborts if the optional attribute "type" is not of its list.
 void check_attributes(const std::filesystem::path& file, std::string_view bytes) {
     bytes.remove_prefix(8);  // magic number and version
-    const auto take_string = [&] {
-        const size_t length = bytes.find('\0');
-        if (length == std::string_view::npos) fail_truncated(file);
-        const std::string_view text = bytes.substr(0, length);
-        bytes.remove_prefix(length + 1);
-        return text;
-    };
+    const auto take_string = [&] { return take_until('\0', file, bytes); };
     for (std::string_view name = take_string(); !name.empty(); name = take_string()) {
         take_string();  // type
         uint32_t size = 0;
@@ -134,7 +114,9 @@ ExrFile read_exr(const std::filesystem::path& file) {
         if (ParseEXRVersionFromMemory(&version, memory, size) != TINYEXR_SUCCESS || version.tiled ||
             version.multipart || version.non_image)
             fail(file, "only single-part OpenEXR images of scan lines are read");
-        Header header;
+        EXRHeader header;
+        InitEXRHeader(&header);
+        const std::unique_ptr<EXRHeader, decltype(&FreeEXRHeader)> frees_header(&header, FreeEXRHeader);
         const char* message = nullptr;
         if (ParseEXRHeaderFromMemory(&header, &version, memory, size, &message) != TINYEXR_SUCCESS)
             fail_with(file, message);
@@ -142,7 +124,9 @@ ExrFile read_exr(const std::filesystem::path& file) {
         std::fill_n(header.requested_pixel_types, header.num_channels, TINYEXR_PIXELTYPE_FLOAT);
         header.chunk_count = 0;  // tinyexr computes it then, and does not allocate what the file claims
         header.line_order = 0;   // rows carry their number; tinyexr would turn decreasing ones upside down
-        DecodedImage decoded;
+        EXRImage decoded;
+        InitEXRImage(&decoded);
+        const std::unique_ptr<EXRImage, decltype(&FreeEXRImage)> frees_image(&decoded, FreeEXRImage);
         decoded.num_channels = header.num_channels;  // else tinyexr does not free the planes if it fails
         if (LoadEXRImageFromMemory(&decoded, &header, memory, size, &message) != TINYEXR_SUCCESS) {
             InitEXRImage(&decoded);  // it has freed it

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "image/byte_order.h"
-#include "image/compression.h"
+#include "image/encoding.h"
 #include "image/image.h"
 #include "parallel.h"
 

@@ -1,6 +1,8 @@
 // Images in memory, and the files they come from and go to. Readers refuse damaged files: UserError.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -52,14 +54,16 @@ void write_hdr(const std::filesystem::path& file, const Image& image);
 void write_png(const std::filesystem::path& file, const Texture& image);
 void write_jpg(const std::filesystem::path& file, const Texture& image);
 
-// The endings of image files that can be written.
-inline const std::vector<std::string> image_endings{".exr", ".hdr", ".png", ".jpg"};
-
 // check_writable() of files/file.h for an image.
-inline void check_writable(const std::filesystem::path& file) { check_writable(file, image_endings); }
+inline void check_writable(const std::filesystem::path& file) {
+    check_writable(file, {".exr", ".hdr", ".png", ".jpg"});
+}
 
-// The sRGB transfer function (IEC 61966-2-1) from linear [0,1] to encoded [0,1] and back; clamps.
-float linear_to_srgb(float linear);
-float srgb_to_linear(float encoded);
+// The sRGB transfer function (IEC 61966-2-1) from linear [0,1] to encoded [0,1]; clamps. Linear near black,
+// where a power would have infinite slope. In double, so that bytes survive the way to linear and back.
+inline float linear_to_srgb(float linear) {
+    const double value = std::clamp(static_cast<double>(linear), 0.0, 1.0);
+    return static_cast<float>(value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055);
+}
 
 }  // namespace lab

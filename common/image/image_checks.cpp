@@ -14,6 +14,14 @@ void fail_truncated(const std::filesystem::path& file) {
     fail(file, "the file ends too early: copy or export it again");
 }
 
+std::string_view take_until(char end, const std::filesystem::path& file, std::string_view& bytes) {
+    const size_t length = bytes.find(end);
+    if (length == std::string_view::npos) fail_truncated(file);
+    const std::string_view text = bytes.substr(0, length);
+    bytes.remove_prefix(length + 1);
+    return text;
+}
+
 void check_image_size(const std::filesystem::path& file, int64_t width, int64_t height) {
     if (width >= 1 && width <= max_image_extent && height >= 1 && height <= max_image_extent) return;
     fail(file, "an image of " + std::to_string(width) + " x " + std::to_string(height) +

@@ -2,8 +2,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "image/byte_order.h"
-#include "image/compression.h"
+#include "image/encoding.h"
 #include "image/image.h"
 #include "parallel.h"
 

@@ -1,4 +1,5 @@
 // Radiance from .hdr (RGBE, as of Ward's Radiance) and .exr files.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -8,33 +9,6 @@
 
 namespace lab {
 namespace {
-
-// Takes bytes off the front of a file; the end of the file is an error wherever it comes.
-class HdrBytes {
-  public:
-    HdrBytes(const std::filesystem::path& file, std::string_view bytes) : file_(file), rest_(bytes) {}
-
-    std::string_view line() {
-        const size_t length = rest_.find('\n');
-        if (length == std::string_view::npos) fail_truncated(file_);
-        const std::string_view text = rest_.substr(0, length);
-        rest_.remove_prefix(length + 1);
-        return text;
-    }
-
-    uint8_t byte() {
-        if (rest_.empty()) fail_truncated(file_);
-        const auto value = static_cast<uint8_t>(rest_.front());
-        rest_.remove_prefix(1);
-        return value;
-    }
-
-    bool starts_with(std::string_view prefix) const { return rest_.starts_with(prefix); }
-
-  private:
-    const std::filesystem::path& file_;
-    std::string_view rest_;
-};
 
 // The resolution line "-Y height +X width": rows from the top, pixels from the left.
 void read_resolution(const std::filesystem::path& file, std::string_view line, Image& image) {
@@ -53,23 +27,29 @@ void read_resolution(const std::filesystem::path& file, std::string_view line, I
 
 // One row of four bytes a pixel. Rows of 8 pixels or more are run-length encoded, channel by channel, if they
 // start with 2, 2 and their width.
-void read_row(const std::filesystem::path& file, HdrBytes& bytes, std::vector<uint8_t>& row) {
+void read_row(const std::filesystem::path& file, std::string_view& bytes, std::vector<uint8_t>& row) {
+    const auto next = [&] {
+        if (bytes.empty()) fail_truncated(file);
+        const auto value = static_cast<uint8_t>(bytes.front());
+        bytes.remove_prefix(1);
+        return value;
+    };
     const size_t width = row.size() / 4;
     const char marker[] = {2, 2, static_cast<char>(width >> 8), static_cast<char>(width & 255)};
-    if (width < 8 || !bytes.starts_with({marker, 4})) {
-        for (uint8_t& value : row) value = bytes.byte();
+    if (width < 8 || !bytes.starts_with({marker, sizeof marker})) {
+        std::ranges::generate(row, next);
         return;
     }
-    for (int i = 0; i < 4; ++i) bytes.byte();
+    bytes.remove_prefix(sizeof marker);
     for (size_t channel = 0; channel < 4; ++channel) {
         for (size_t x = 0; x < width;) {
-            const uint8_t code = bytes.byte();
+            const uint8_t code = next();
             const bool is_run = code > 128;
             const size_t count = is_run ? code - 128u : code;
             if (count == 0 || x + count > width) fail(file, "damaged run-length encoding");
-            uint8_t value = is_run ? bytes.byte() : uint8_t{0};
+            uint8_t value = is_run ? next() : uint8_t{0};
             for (const size_t end = x + count; x < end; ++x) {
-                if (!is_run) value = bytes.byte();
+                if (!is_run) value = next();
                 row[4 * x + channel] = value;
             }
         }
@@ -79,13 +59,14 @@ void read_row(const std::filesystem::path& file, HdrBytes& bytes, std::vector<ui
 Image read_hdr(const std::filesystem::path& file) {
     const std::string content = read_file(file, max_image_file_bytes);
     if (!content.starts_with("#?")) fail(file, "not a Radiance .hdr file");
-    HdrBytes bytes(file, content);
-    for (std::string_view line = bytes.line(); !line.empty(); line = bytes.line())
+    std::string_view bytes = content;
+    const auto next_line = [&] { return take_until('\n', file, bytes); };
+    for (std::string_view line = next_line(); !line.empty(); line = next_line())
         if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
             fail(file, "only .hdr files of format 32-bit_rle_rgbe are read");
 
     Image image;
-    read_resolution(file, bytes.line(), image);
+    read_resolution(file, next_line(), image);
     const size_t pixel_count = static_cast<size_t>(image.width) * image.height;
     // A run of 127 equal values takes two bytes in each of the four channels.
     if (pixel_count > 16 * content.size()) fail_truncated(file);

@@ -59,6 +59,12 @@ std::string tga_bytes() {
            std::string("\x00\x00\xff\xff\xff\xff\xff\x00\x00\x00\xff\x00", 12);
 }
 
+// The inverse of linear_to_srgb().
+float srgb_to_linear(float encoded) {
+    const double value = std::clamp(static_cast<double>(encoded), 0.0, 1.0);
+    return static_cast<float>(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
+}
+
 TEST(Srgb, KnownValues) {
     EXPECT_EQ(linear_to_srgb(0), 0);
     EXPECT_EQ(linear_to_srgb(1), 1);

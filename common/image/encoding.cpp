@@ -1,10 +1,9 @@
-#include "image/compression.h"
+#include "image/encoding.h"
 
 #include <zlib.h>
 
 #include <new>
 
-#include "image/byte_order.h"
 #include "parallel.h"
 
 namespace lab {
@@ -32,6 +31,12 @@ std::string deflate_all(std::string_view bytes, int window_bits, int flush) {
 const Bytef* to_bytes(std::string_view bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
 
 }  // namespace
+
+std::string big_endian(uint32_t number) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 255);
+    return bytes;
+}
 
 std::string compress(std::string_view bytes) { return deflate_all(bytes, MAX_WBITS, Z_FINISH); }
 

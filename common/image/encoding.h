@@ -1,9 +1,20 @@
-// Compression by zlib, which PNG and OpenEXR use.
+// What the writers of image files share: numbers as bytes, and compression by zlib.
 #pragma once
+#include <bit>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace lab {
+
+std::string big_endian(uint32_t number);
+
+// Of the number's own size.
+template <typename Number>
+std::string little_endian(Number number) {
+    static_assert(std::endian::native == std::endian::little);
+    return {reinterpret_cast<const char*>(&number), sizeof number};
+}
 
 // One zlib stream, made by the calling thread.
 std::string compress(std::string_view bytes);
