@@ -28,6 +28,19 @@ static std::string variable(const char* name) {
     return value ? value : "";
 }
 
+#ifdef __linux__
+bool has_display() { return !variable("DISPLAY").empty() || !variable("WAYLAND_DISPLAY").empty(); }
+
+size_t processor_count() {
+    cpu_set_t processors;
+    return sched_getaffinity(0, sizeof processors, &processors) == 0 ? CPU_COUNT(&processors) : 1;
+}
+#else
+bool has_display() { return true; }
+
+size_t processor_count() { return std::thread::hardware_concurrency(); }
+#endif
+
 #ifdef _WIN32
 
 const char* const vulkan_driver =
@@ -55,8 +68,6 @@ bool is_terminal(std::FILE* stream) {
 
 void make_binary(std::FILE* stream) { _setmode(_fileno(stream), _O_BINARY); }
 
-bool has_display() { return true; }
-
 std::filesystem::path running_program() {
     std::wstring name(32768, L'\0');  // no name is longer
     name.resize(GetModuleFileNameW(nullptr, name.data(), static_cast<DWORD>(name.size())));
@@ -66,8 +77,6 @@ std::filesystem::path running_program() {
 std::filesystem::path user_folder() { return variable("USERPROFILE"); }
 
 int process_id() { return _getpid(); }
-
-size_t processor_count() { return std::thread::hardware_concurrency(); }
 
 bool write_to_disk(std::FILE* stream) { return _commit(_fileno(stream)) == 0; }
 
@@ -84,29 +93,18 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 #ifdef __APPLE__
 const char* const vulkan_driver = "MoltenVK (brew install vulkan-loader molten-vk)";
 
-bool has_display() { return true; }
-
 std::filesystem::path running_program() {
     char name[4096];
     uint32_t size = sizeof name;
     return _NSGetExecutablePath(name, &size) == 0 ? std::filesystem::weakly_canonical(name) : "";
 }
-
-size_t processor_count() { return std::thread::hardware_concurrency(); }
 #else
 const char* const vulkan_driver =
     "libvulkan1 and a driver such as mesa-vulkan-drivers (it also has a CPU device)";
 
-bool has_display() { return !variable("DISPLAY").empty() || !variable("WAYLAND_DISPLAY").empty(); }
-
 std::filesystem::path running_program() {
     std::error_code ignored;
     return std::filesystem::read_symlink("/proc/self/exe", ignored);
-}
-
-size_t processor_count() {
-    cpu_set_t processors;
-    return sched_getaffinity(0, sizeof processors, &processors) == 0 ? CPU_COUNT(&processors) : 1;
 }
 #endif
 
