@@ -18,7 +18,8 @@ double words_of_entry(uint64_t i, uint64_t n) {
 
 AliasTable build_alias_table(std::span<const double> weights) {
     const size_t count = weights.size();
-    const double largest = *std::max_element(weights.begin(), weights.end());
+    const auto heaviest = std::ranges::max_element(weights);
+    const double largest = *heaviest;
     double sum = 0;
     for (const double weight : weights) sum += weight / largest;
     // The share of each item, in units of an entry's probability.
@@ -31,13 +32,12 @@ AliasTable build_alias_table(std::span<const double> weights) {
 
     AliasTable table;
     table.entries.resize(count);
-    const auto fallback =
-        static_cast<uint32_t>(std::max_element(weights.begin(), weights.end()) - weights.begin());
     while (!small.empty()) {
         const uint32_t item = small.back();
         small.pop_back();
         // Rounding may leave no large item for the last small ones: the heaviest takes the rest.
-        const uint32_t filler = large.empty() ? fallback : large.back();
+        const uint32_t filler =
+            large.empty() ? static_cast<uint32_t>(heaviest - weights.begin()) : large.back();
         const double quanta = weights[item] > 0 ? std::max(std::floor(share[item] * word_count), 1.0) : 0.0;
         table.entries[item] = {static_cast<uint32_t>(std::min(quanta, word_count - 1)), filler};
         if (large.empty()) continue;

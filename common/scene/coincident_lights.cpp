@@ -13,28 +13,15 @@ using Corners = std::array<std::array<float, 3>, 3>;
 
 constexpr size_t max_searched_triangles = 10'000'000;
 
-const Material& material_of(const Scene& scene, uint32_t triangle) {
-    return scene.materials[scene.triangle_materials[triangle]];
-}
-
 bool is_emissive(const Scene& scene, uint32_t triangle) {
-    return material_of(scene, triangle).emission != vec3(0);
-}
-
-bool is_dielectric_triangle(const Scene& scene, uint32_t triangle) {
-    return material_of(scene, triangle).refractive_index > 0;
-}
-
-std::array<float, 3> corner_at(const Scene& scene, uint32_t triangle, int corner) {
-    const vec3 position = scene.positions[scene.triangles[triangle][corner]];
-    return {position.x, position.y, position.z};
+    return scene.material_of(triangle).emission != vec3(0);
 }
 
 // Lets the second triangle's corners run the other way round from the first one's first corner: then a point
 // has the same barycentric coordinates in both, exchanged.
 void align(Scene& scene, uint32_t first, uint32_t second) {
     uvec3& corners = scene.triangles[second];
-    while (corner_at(scene, second, 0) != corner_at(scene, first, 0))
+    while (scene.corner(second, 0) != scene.corner(first, 0))
         corners = uvec3(corners.y, corners.z, corners.x);
 }
 
@@ -58,8 +45,7 @@ struct PlacedLight {
 Place get_place(const Scene& scene, const Instance& instance, uint32_t triangle) {
     Place place;
     for (int i = 0; i < 3; ++i) {
-        const vec3 corner =
-            instance.object_to_world * glm::vec4(scene.positions[scene.triangles[triangle][i]], 1);
+        const vec3 corner = instance.object_to_world * glm::vec4(scene.corner(triangle, i), 1);
         place.corners[i] = {corner.x + 0.0f, corner.y + 0.0f, corner.z + 0.0f};  // no negative zeros
     }
     place.is_turned = glm::determinant(glm::dmat3(mat3(instance.object_to_world))) < 0;
@@ -142,11 +128,10 @@ std::vector<std::string> coincident_light_warnings(const Scene& scene, const std
     const auto for_each_triangle = [&](const auto& visit) {
         size_t visited = 0;
         for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
-            const Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
+            const Mesh& mesh = scene.mesh_of(instance);
             visited += mesh.triangle_count;
             if (visited > max_searched_triangles) return;
-            for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
-                visit(instance, i);
+            for (const uint32_t triangle : mesh.triangles()) visit(instance, triangle);
         }
     };
     for_each_triangle([&](uint32_t instance, uint32_t triangle) {
@@ -157,7 +142,7 @@ std::vector<std::string> coincident_light_warnings(const Scene& scene, const std
     // Any difference within a place shows in its first or its last light.
     std::sort(lights.begin(), lights.end(), [&](const PlacedLight& a, const PlacedLight& b) {
         const auto key = [&](const PlacedLight& light) {
-            const vec3 e = material_of(scene, light.triangle).emission;
+            const vec3 e = scene.material_of(light.triangle).emission;
             return std::tuple(light.place, e.x, e.y, e.z, light.instance, light.triangle);
         };
         return key(a) < key(b);
@@ -166,22 +151,21 @@ std::vector<std::string> coincident_light_warnings(const Scene& scene, const std
     std::vector<std::string> warnings;
     const auto compare = [&](const PlacedLight& light, const Place& place, uint32_t instance,
                              uint32_t triangle) {
-        const bool is_glass =
-            is_dielectric_triangle(scene, light.triangle) != is_dielectric_triangle(scene, triangle);
-        const bool is_same =
-            light.place.is_turned == place.is_turned &&
-            material_of(scene, light.triangle).emission == material_of(scene, triangle).emission;
+        const Material& emitter = scene.material_of(light.triangle);
+        const Material& other = scene.material_of(triangle);
+        const bool is_glass = (emitter.refractive_index > 0) != (other.refractive_index > 0);
+        const bool is_same = light.place.is_turned == place.is_turned && emitter.emission == other.emission;
         if (!warnings.empty() || (instance == light.instance ? !is_glass : is_same && !is_glass)) return;
         const auto name = [&](uint32_t owner, uint32_t index) {
-            return scene.meshes[scene.instance_meshes[owner]].file + ":" + std::to_string(lines[index]);
+            return scene.mesh_of(owner).file + ":" + std::to_string(lines[index]);
         };
         warnings.push_back(name(light.instance, light.triangle) + ": emits, and lies in the same place as " +
                            name(instance, triangle) + (is_glass ? ", of glass" : ", of another instance") +
                            ": rays find either by chance, so that chapters may disagree; move one of them");
     };
     for_each_triangle([&](uint32_t instance, uint32_t triangle) {
-        const vec3 corner = scene.instances[instance].object_to_world *
-                            glm::vec4(scene.positions[scene.triangles[triangle].x], 1);
+        const vec3 corner =
+            scene.instances[instance].object_to_world * glm::vec4(scene.corner(triangle, 0), 1);
         if (glm::any(glm::lessThan(corner, bounds.low)) || glm::any(glm::greaterThan(corner, bounds.high)))
             return;
         const Place place = get_place(scene, scene.instances[instance], triangle);

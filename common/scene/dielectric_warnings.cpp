@@ -1,11 +1,10 @@
-#include "scene/dielectric_warnings.h"
-
 #include <algorithm>
 #include <array>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include "scene/features.h"
+#include "scene/warnings.h"
 
 namespace lab {
 namespace {
@@ -17,8 +16,7 @@ constexpr size_t max_triangles = 10'000'000, max_pairs = 10'000'000, max_glass_t
 
 // The triangles of one material in one instance.
 struct Part {
-    size_t instance;
-    uint32_t mesh;
+    uint32_t instance;
     uint32_t material;
     Bounds bounds;  // world space
 };
@@ -26,20 +24,18 @@ struct Part {
 std::vector<Part> parts_of(const Scene& scene) {
     std::vector<Part> parts;
     size_t triangle_count = 0;
-    for (size_t i = 0; i < scene.instances.size(); ++i) {
-        const uint32_t mesh_index = scene.instance_meshes[i];
-        const Mesh& mesh = scene.meshes[mesh_index];
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const Mesh& mesh = scene.mesh_of(i);
         triangle_count += mesh.triangle_count;
         if (triangle_count > max_triangles) break;
         std::map<uint32_t, Bounds> bounds_of_material;
-        for (uint32_t k = mesh.first_triangle; k < mesh.first_triangle + mesh.triangle_count; ++k) {
-            Bounds& bounds = bounds_of_material[scene.triangle_materials[k]];
+        for (const uint32_t triangle : mesh.triangles()) {
+            Bounds& bounds = bounds_of_material[scene.triangle_materials[triangle]];
             for (int corner = 0; corner < 3; ++corner)
                 bounds.grow(scene.instances[i].object_to_world *
-                            glm::vec4(scene.positions[scene.triangles[k][corner]], 1));
+                            glm::vec4(scene.corner(triangle, corner), 1));
         }
-        for (const auto& [material, bounds] : bounds_of_material)
-            parts.push_back({i, mesh_index, material, bounds});
+        for (const auto& [material, bounds] : bounds_of_material) parts.push_back({i, material, bounds});
     }
     return parts;
 }
@@ -66,13 +62,12 @@ struct WorldTriangle {
 // Those of a part that may touch what lies in the box.
 std::vector<WorldTriangle> triangles_near(const Scene& scene, const Part& part, const Bounds& box) {
     std::vector<WorldTriangle> triangles;
-    const Mesh& mesh = scene.meshes[part.mesh];
     const glm::dmat4x3 object_to_world(scene.instances[part.instance].object_to_world);
-    for (uint32_t k = mesh.first_triangle; k < mesh.first_triangle + mesh.triangle_count; ++k) {
-        if (scene.triangle_materials[k] != part.material) continue;
+    for (const uint32_t index : scene.mesh_of(part.instance).triangles()) {
+        if (scene.triangle_materials[index] != part.material) continue;
         WorldTriangle triangle;
         for (int i = 0; i < 3; ++i) {
-            triangle.corners[i] = object_to_world * glm::dvec4(scene.positions[scene.triangles[k][i]], 1);
+            triangle.corners[i] = object_to_world * glm::dvec4(scene.corner(index, i), 1);
             triangle.bounds.grow(vec3(triangle.corners[i]));
         }
         if (overlap(triangle.bounds, box)) triangles.push_back(triangle);
@@ -114,23 +109,21 @@ bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, s
 // Edges of a mesh's dielectric triangles at which the surface ends, or where a front meets a back.
 size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
     if (mesh.dielectric_count > max_glass_triangles) return 0;
-    std::vector<std::tuple<Point, Point, int>> edges;  // and +1 or -1 for the way that a triangle goes
-    const uint32_t end = mesh.first_triangle + mesh.triangle_count;
-    for (uint32_t k = end - mesh.dielectric_count; k < end; ++k)
+    std::vector<std::pair<std::pair<Point, Point>, int>> edges;  // and +1 or -1 for a triangle's way along it
+    for (const uint32_t triangle :
+         mesh.triangles() | std::views::drop(mesh.triangle_count - mesh.dielectric_count))
         for (int i = 0; i < 3; ++i) {
             // Vertices in the same place are one, whatever their normals.
-            const vec3 a = scene.positions[scene.triangles[k][i]] + 0.0f,
-                       b = scene.positions[scene.triangles[k][(i + 1) % 3]] + 0.0f;
+            const vec3 a = scene.corner(triangle, i) + 0.0f, b = scene.corner(triangle, (i + 1) % 3) + 0.0f;
             const Point from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
-            edges.emplace_back(std::min(from, to), std::max(from, to), from < to ? 1 : -1);
+            edges.push_back({std::minmax(from, to), from < to ? 1 : -1});
         }
     std::sort(edges.begin(), edges.end());
     size_t count = 0;
     for (size_t i = 0; i < edges.size();) {
         int sum = 0;
-        const auto ends = std::tie(std::get<0>(edges[i]), std::get<1>(edges[i]));
-        for (; i < edges.size() && std::tie(std::get<0>(edges[i]), std::get<1>(edges[i])) == ends; ++i)
-            sum += std::get<2>(edges[i]);
+        for (const auto edge = edges[i].first; i < edges.size() && edges[i].first == edge; ++i)
+            sum += edges[i].second;
         count += sum != 0;
     }
     return count;
@@ -141,10 +134,9 @@ size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
 std::vector<std::string> dielectric_warnings(const Scene& scene) {
     if (!features_of(scene).dielectrics) return {};
     const std::vector<Part> parts = parts_of(scene);
-    const auto material_of = [&](const Part& part) -> const Material& {
-        return scene.materials[part.material];
+    const auto is_dielectric = [&](const Part& part) {
+        return scene.materials[part.material].refractive_index > 0;
     };
-    const auto is_dielectric = [&](const Part& part) { return material_of(part).refractive_index > 0; };
 
     Nesting nested_dielectric, enclosed_object, reaching_object;  // the first of each kind
     size_t pair_count = 0;
@@ -152,25 +144,23 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
         if (!is_dielectric(outer)) continue;
         pair_count += parts.size();
         if (pair_count > max_pairs) break;
-        const bool is_absorbing = material_of(outer).absorption != vec3(0);
+        const bool is_absorbing = scene.materials[outer.material].absorption != vec3(0);
         for (const Part& inner : parts) {
-            if (!is_dielectric(inner) && !is_absorbing) continue;
-            if (!is_inside(inner.bounds, outer.bounds)) {
-                if (!is_dielectric(inner) && reaching_object.inner == nullptr &&
-                    overlap(inner.bounds, outer.bounds) && surfaces_cross(scene, outer, inner, pair_count))
-                    reaching_object = {&inner, &outer};
-                continue;
-            }
-            Nesting& found = is_dielectric(inner) ? nested_dielectric : enclosed_object;
-            if (found.inner == nullptr) found = {&inner, &outer};
+            const bool is_opaque = !is_dielectric(inner), lies_inside = is_inside(inner.bounds, outer.bounds);
+            if (is_opaque ? !is_absorbing : !lies_inside) continue;
+            Nesting& found = !is_opaque ? nested_dielectric : lies_inside ? enclosed_object : reaching_object;
+            if (found.inner != nullptr) continue;
+            if (lies_inside ||
+                (overlap(inner.bounds, outer.bounds) && surfaces_cross(scene, outer, inner, pair_count)))
+                found = {&inner, &outer};
         }
     }
 
     std::vector<std::string> warnings;
     const auto warn = [&](const Nesting& found, const std::string& relation, const std::string& consequence) {
         if (found.inner == nullptr) return;
-        warnings.push_back(scene.meshes[found.inner->mesh].file + ": " + relation + " of " +
-                           scene.meshes[found.outer->mesh].file + ": " + consequence);
+        warnings.push_back(scene.mesh_of(found.inner->instance).file + ": " + relation + " of " +
+                           scene.mesh_of(found.outer->instance).file + ": " + consequence);
     };
     warn(nested_dielectric, "a dielectric may lie inside the dielectric",
          "each is computed as if air surrounded it, so light bends by Ni against 1 between them, too");

@@ -16,11 +16,11 @@ namespace {
 
 constexpr uint64_t max_light_triangles = 1u << 24;
 
-double get_world_area(const Scene& scene, uint32_t instance, const uvec3& corners) {
-    const glm::dmat3 linear{mat3(scene.instances[instance].object_to_world)};
-    const glm::dvec3 origin(scene.positions[corners.x]);
-    return 0.5 * glm::length(glm::cross(linear * (glm::dvec3(scene.positions[corners.y]) - origin),
-                                        linear * (glm::dvec3(scene.positions[corners.z]) - origin)));
+double get_world_area(const Scene& scene, const LightTriangle& light) {
+    const glm::dmat3 linear{mat3(scene.instances[light.instance].object_to_world)};
+    const glm::dvec3 origin(scene.corner(light.triangle, 0));
+    const auto side = [&](int i) { return linear * (glm::dvec3(scene.corner(light.triangle, i)) - origin); };
+    return 0.5 * glm::length(glm::cross(side(1), side(2)));
 }
 
 // Rays find one of several instances' emissive triangles in the same place: the table counts the first, too,
@@ -44,13 +44,13 @@ void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& ligh
 
 LightTable build_light_table(const Scene& scene, double probability) {
     const auto luminance_of = [&](uint32_t triangle) {
-        return get_luminance(scene.materials[scene.triangle_materials[triangle]].emission);
+        return get_luminance(scene.material_of(triangle).emission);
     };
     std::vector<std::vector<uint32_t>> emissive_triangles;  // of each mesh, which may have many instances
     for (const Mesh& mesh : scene.meshes) {
         auto& triangles = emissive_triangles.emplace_back();
-        for (uint32_t i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; ++i)
-            if (luminance_of(i) > 0) triangles.push_back(i);
+        std::ranges::copy_if(mesh.triangles(), std::back_inserter(triangles),
+                             [&](uint32_t triangle) { return luminance_of(triangle) > 0; });
     }
     uint64_t count = 0;
     for (const uint32_t mesh : scene.instance_meshes) count += emissive_triangles[mesh].size();
@@ -69,7 +69,7 @@ LightTable build_light_table(const Scene& scene, double probability) {
     if (lights.empty()) return table;
     std::vector<double> areas, weights;
     for (const LightTriangle& light : lights) {
-        areas.push_back(get_world_area(scene, light.instance, scene.triangles[light.triangle]));
+        areas.push_back(get_world_area(scene, light));
         weights.push_back(areas.back() * luminance_of(light.triangle));
     }
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);

@@ -33,14 +33,29 @@ bool has_direction(const dvec3& vector) {
     return square > 0 && std::isfinite(square);
 }
 
+bool has_normals(const ObjFile& obj) {
+    return std::ranges::any_of(obj.corners, [&](const ObjCorner& corner) {
+        return corner.normal != ObjCorner::none && has_direction(dvec3(obj.normals[corner.normal]));
+    });
+}
+
+bool has_textures(const ObjFile& obj) {
+    return std::ranges::any_of(obj.triangle_materials, [&](uint32_t material) {
+        return !obj.materials[material].albedo_texture.empty();
+    });
+}
+
 class Assembly {
   public:
-    Assembly(bool specular, SourceFiles& sources, Scene& scene)
-        : specular_(specular), sources_(sources), scene_(scene) {}
+    Assembly(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene)
+        : specular_(specular),
+          sources_(sources),
+          scene_(scene),
+          with_normals_(std::ranges::any_of(files, has_normals)),
+          with_texture_coordinates_(std::ranges::any_of(files, has_textures)) {}
 
-    void add(const ObjFile& obj, bool with_normals, bool with_texture_coordinates) {
-        with_normals_ = with_normals;
-        with_texture_coordinates_ = with_texture_coordinates;
+    // Returns the line of its file for each of the mesh's triangles.
+    std::vector<uint32_t> add(const ObjFile& obj) {
         vertices_.clear();
         vertices_.reserve(obj.positions.size());
         Mesh mesh{obj.file, static_cast<uint32_t>(scene_.triangles.size())};
@@ -67,12 +82,9 @@ class Assembly {
             scene_.warnings.push_back(obj.file + ": " + std::to_string(dropped) +
                                       " triangles without area are left out");
         resolve_coincident_lights(scene_, mesh, lines);
-        lines_.insert(lines_.end(), lines.begin(), lines.end());
         scene_.meshes.push_back(mesh);
+        return lines;
     }
-
-    // Of the files, one for each of the scene's triangles.
-    std::vector<uint32_t> take_lines() { return std::move(lines_); }
 
   private:
     // False if the triangle has no area: it has no normal then.
@@ -178,34 +190,21 @@ class Assembly {
     const bool specular_;
     SourceFiles& sources_;
     Scene& scene_;
-    bool with_normals_ = false;
-    bool with_texture_coordinates_ = false;
+    const bool with_normals_;
+    const bool with_texture_coordinates_;
     bool ignored_specular_ = false;
-    std::vector<uint32_t> lines_;
     std::unordered_map<ObjCorner, uint32_t, CornerHash> vertices_;  // of the current file
     std::map<std::filesystem::path, int> textures_;
 };
-
-bool has_normals(const ObjFile& obj) {
-    return std::any_of(obj.corners.begin(), obj.corners.end(), [&](const ObjCorner& corner) {
-        return corner.normal != ObjCorner::none && has_direction(dvec3(obj.normals[corner.normal]));
-    });
-}
-
-bool has_textures(const ObjFile& obj) {
-    return std::any_of(obj.triangle_materials.begin(), obj.triangle_materials.end(),
-                       [&](uint32_t material) { return !obj.materials[material].albedo_texture.empty(); });
-}
 
 }  // namespace
 
 std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources,
                                       Scene& scene) {
-    const bool with_normals = std::any_of(files.begin(), files.end(), has_normals);
-    const bool with_texture_coordinates = std::any_of(files.begin(), files.end(), has_textures);
-    Assembly assembly(specular, sources, scene);
-    for (const ObjFile& file : files) assembly.add(file, with_normals, with_texture_coordinates);
-    return assembly.take_lines();
+    Assembly assembly(files, specular, sources, scene);
+    std::vector<uint32_t> lines;
+    for (const ObjFile& file : files) std::ranges::copy(assembly.add(file), std::back_inserter(lines));
+    return lines;
 }
 
 }  // namespace lab

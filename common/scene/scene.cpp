@@ -6,12 +6,10 @@
 #include "error.h"
 #include "image/image_checks.h"
 #include "scene/coincident_lights.h"
-#include "scene/dielectric_warnings.h"
 #include "scene/features.h"
 #include "scene/mesh_assembly.h"
-#include "scene/precision_warnings.h"
 #include "scene/scene_file.h"
-#include "scene/texture_warnings.h"
+#include "scene/warnings.h"
 
 namespace lab {
 namespace {
@@ -64,12 +62,9 @@ uint64_t instanced_triangle_count(const Scene& scene) {
 
 Bounds world_bounds(const Scene& scene) {
     std::vector<Bounds> mesh_bounds(scene.meshes.size());
-    for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        const uint32_t first = scene.meshes[i].first_triangle;
-        for (uint32_t triangle = first; triangle < first + scene.meshes[i].triangle_count; ++triangle)
-            for (int corner = 0; corner < 3; ++corner)
-                mesh_bounds[i].grow(scene.positions[scene.triangles[triangle][corner]]);
-    }
+    for (size_t i = 0; i < scene.meshes.size(); ++i)
+        for (const uint32_t triangle : scene.meshes[i].triangles())
+            for (int corner = 0; corner < 3; ++corner) mesh_bounds[i].grow(scene.corner(triangle, corner));
     Bounds world;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Bounds& box = mesh_bounds[scene.instance_meshes[i]];
@@ -96,10 +91,8 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     else
         description = read_scene_file(file, sources);
 
-    Scene scene;
+    Scene& scene = description.scene;
     scene.file = file;
-    scene.description = description.description;
-    scene.defaults = description.defaults;
     // A mistake in a file that the scene names may be a mistake of the scene.
     const auto load = [&](const auto& load_part) {
         try {
@@ -111,8 +104,6 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     load([&] { load_meshes(description, specular || description.specular, sources, scene); });
     scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
 
-    scene.background = description.background.value_or(vec3(0));
-    scene.probe_rotation = description.probe_rotation;
     if (!description.light_probe.empty()) {
         load([&] { scene.light_probe = read_radiance(description.light_probe); });
         sources.read(description.light_probe, max_image_file_bytes);  // for the hash
@@ -126,14 +117,11 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
     if (!std::isfinite(diagonal))
         throw UserError(name + ": its coordinates are too large for 32-bit numbers");
-    if (description.camera)
-        scene.camera = *description.camera;
-    else if (!scene.instances.empty())
-        scene.camera = framing_pose(bounds);
-    for (const auto& find_warnings : {dielectric_warnings, texture_warnings, precision_warnings})
+    if (!description.has_camera && !scene.instances.empty()) scene.camera = framing_pose(bounds);
+    for (const auto& find_warnings : {dielectric_warnings, precision_warnings})
         for (std::string& warning : find_warnings(scene)) scene.warnings.push_back(std::move(warning));
     scene.hash = sources.hash();
-    return scene;
+    return std::move(scene);
 }
 
 }  // namespace lab

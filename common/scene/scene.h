@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Mesh {
     uint32_t first_triangle = 0;
     uint32_t triangle_count = 0;
     uint32_t dielectric_count = 0;
+
+    // Indices of all of them.
+    auto triangles() const { return std::views::iota(first_triangle, first_triangle + triangle_count); }
 };
 
 // The triangles of one material class in a mesh.
@@ -77,6 +81,10 @@ struct Scene {
 
     std::vector<std::string> warnings;  // one line each, to be shown to the user
     uint64_t hash = 0;                  // FNV-1a of all files that the scene was read from
+
+    const Mesh& mesh_of(uint32_t instance) const { return meshes[instance_meshes[instance]]; }
+    const Material& material_of(uint32_t triangle) const { return materials[triangle_materials[triangle]]; }
+    const vec3& corner(uint32_t triangle, int i) const { return positions[triangles[triangle][i]]; }
 };
 
 // Triangles of all instances together, each instance's counted; never overflows.

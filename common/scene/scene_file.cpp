@@ -54,18 +54,18 @@ vec3 read_radiance_value(const JsonObject& background, const char* key, const ve
 }
 
 void read_background(const JsonObject& background, const std::filesystem::path& folder,
-                     SceneDescription& scene) {
+                     SceneDescription& result) {
     if (background.has("radiance") == background.has("light_probe"))
         background.fail("radiance", "or \"light_probe\" must be given, and not both");
     if (background.has("radiance")) {
         for (const char* key : {"intensity", "rotation_degrees"})
             if (background.has(key)) background.fail(key, "needs a \"light_probe\"");
-        scene.background = read_radiance_value(background, "radiance", vec3(0));
+        result.scene.background = read_radiance_value(background, "radiance", vec3(0));
     } else {
-        scene.light_probe = folder / background.required("light_probe", background.text("light_probe"));
-        scene.background = read_radiance_value(background, "intensity", vec3(1));
+        result.light_probe = folder / background.required("light_probe", background.text("light_probe"));
+        result.scene.background = read_radiance_value(background, "intensity", vec3(1));
         const double degrees = background.number("rotation_degrees").value_or(0);
-        scene.probe_rotation = static_cast<float>(glm::radians(std::fmod(degrees, 360.0)));
+        result.scene.probe_rotation = static_cast<float>(glm::radians(std::fmod(degrees, 360.0)));
     }
 }
 
@@ -78,27 +78,29 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     const JsonObject root(content, name, "the scene",
                           {"description", "meshes", "camera", "background", "specular", "width", "height",
                            "samples", "max_path_length"});
-    SceneDescription scene;
-    scene.description = root.text("description").value_or("");
+    SceneDescription result;
+    result.scene.description = root.text("description").value_or("");
     for (const nlohmann::json& entry : root.array("meshes"))
-        scene.meshes.push_back(read_placement(
+        result.meshes.push_back(read_placement(
             {entry, name, "an entry of \"meshes\"", {"file", "scale", "rotation", "translation"}}, folder));
-    if (root.has("camera"))
-        scene.camera = read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
+    result.has_camera = root.has("camera");
+    if (result.has_camera)
+        result.scene.camera =
+            read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
     if (root.has("background"))
         read_background(
             root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder,
-            scene);
-    scene.specular = root.boolean("specular").value_or(false);
+            result);
+    result.specular = root.boolean("specular").value_or(false);
 
     constexpr uint32_t max_count = 1'000'000'000;
-    RenderDefaults& defaults = scene.defaults;
+    RenderDefaults& defaults = result.scene.defaults;
     defaults.width = root.integer("width", 1, max_image_extent).value_or(defaults.width);
     defaults.height = root.integer("height", 1, max_image_extent).value_or(defaults.height);
     defaults.samples = root.integer("samples", 1, max_count).value_or(defaults.samples);
     defaults.max_path_length =
         root.integer("max_path_length", 0, path_length_limit).value_or(defaults.max_path_length);
-    return scene;
+    return result;
 }
 
 }  // namespace lab

@@ -1,10 +1,5 @@
 // Scene descriptions in JSON.
 #pragma once
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "scene/scene.h"
 #include "scene/source_files.h"
 
@@ -18,14 +13,11 @@ struct MeshPlacement {
 
 // What a scene file states. The files that it names are not read yet; their paths start in its folder.
 struct SceneDescription {
-    std::string description;
+    Scene scene;  // without what is in those files
     std::vector<MeshPlacement> meshes;
-    std::optional<CameraPose> camera;
-    std::optional<vec3> background;     // constant radiance, or factor of the light probe
     std::filesystem::path light_probe;  // empty for a constant background
-    float probe_rotation = 0;           // radians
+    bool has_camera = false;
     bool specular = false;
-    RenderDefaults defaults;
 };
 
 // UserError naming the line of a syntax error, or the key that is unknown, missing, of the wrong type or out

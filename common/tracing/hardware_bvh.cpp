@@ -25,7 +25,7 @@ uint32_t hit_record_offset(const Scene& scene, const Mesh& mesh) {
 // (the blog's equation).
 vk::AccelerationStructureInstanceKHR describe_instance(const Scene& scene, uint32_t index,
                                                        vk::DeviceAddress mesh_address) {
-    const Mesh& mesh = scene.meshes[scene.instance_meshes[index]];
+    const Mesh& mesh = scene.mesh_of(index);
     vk::AccelerationStructureInstanceKHR instance;
     const mat4x3& matrix = scene.instances[index].object_to_world;
     for (int row = 0; row < 3; ++row)
@@ -58,9 +58,9 @@ HardwareBvh::HardwareBvh(const Device& device, const GpuScene& scene) : device_(
     bytes_ += top_.front().buffer.size();
 
     std::vector<uint32_t> first_triangles;
-    for (const uint32_t mesh_index : scene.scene().instance_meshes) {
-        const Mesh& mesh = scene.scene().meshes[mesh_index];
-        for (const auto& range : material_class_ranges(mesh)) first_triangles.push_back(range.first_triangle);
+    for (const uint32_t mesh : scene.scene().instance_meshes) {
+        for (const auto& range : material_class_ranges(scene.scene().meshes[mesh]))
+            first_triangles.push_back(range.first_triangle);
         first_triangles.resize((first_triangles.size() + 1) / 2 * 2);  // two geometries an instance at most
     }
     first_triangles_.emplace_back(device, std::span<const uint32_t>(first_triangles),

@@ -23,7 +23,7 @@ LargeArray<BvhTriangle> world_triangles(const Scene& scene) {
                                 " has coordinates beyond 1e18 in the world; scale it down");
             return result;
         };
-        const Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
+        const Mesh& mesh = scene.mesh_of(instance);
         in_parallel(mesh.triangle_count, 1 << 14, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
                 const auto triangle = static_cast<uint32_t>(mesh.first_triangle + i);

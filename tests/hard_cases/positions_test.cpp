@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "hard_cases/probe.h"
-#include "scene/precision_warnings.h"
+#include "scene/warnings.h"
 #include "support/expect_statistics.h"
 #include "support/scenes.h"
 

@@ -1,7 +1,6 @@
-#include "scene/precision_warnings.h"
-
 #include <gtest/gtest.h>
 
+#include "scene/warnings.h"
 #include "test_files.h"
 
 namespace lab {
