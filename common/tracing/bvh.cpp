@@ -30,7 +30,6 @@ struct Part {
     std::vector<Link> links;
     uint32_t root = 0;           // reference to it
     uint32_t stack_entries = 0;  // most that a traversal leaves behind on its way down
-    double cost = 0;             // areas of children times nodes and triangles to visit in them
 };
 
 // Up to four ranges.
@@ -58,30 +57,19 @@ BvhNode make_node(std::span<const Range> children) {
     return node;
 }
 
-double half_area(const Bounds& bounds) {
-    const vec3 size = bounds.high - bounds.low;
-    return bvh::half_area(size.x, size.y, size.z);
-}
-
-// Sums up what a part, with those below its links, costs the traversal. Children follow their parents, so
-// going backwards meets them first.
-void add_up(Part& part, std::span<const Part> below) {
+// Counts the entries of a part, with those below its links. Children follow their parents, so going backwards
+// meets them first.
+void count_stack_entries(Part& part, std::span<const Part> below) {
     std::vector<uint32_t> entries(part.nodes.size());
     for (size_t i = 0; i < below.size(); ++i) {
         uint32_t& most = entries[part.links[i].node];
         most = std::max(most, below[i].stack_entries);
-        part.cost += below[i].cost;
     }
     for (size_t i = part.nodes.size(); i-- > 0;) {
         uint32_t child_count = 0;
-        for (size_t slot = 0; slot < 4; ++slot) {
-            const uint32_t child = part.nodes[i].children[slot];
-            if (child == 0) continue;
-            ++child_count;
-            const bool is_leaf = is_bvh_leaf(child);
-            part.cost +=
-                half_area(part.nodes[i].child_bounds(slot)) * (is_leaf ? child >> bvh_leaf_shift : 1);
-            if (!is_leaf && child < part.nodes.size()) entries[i] = std::max(entries[i], entries[child]);
+        for (const uint32_t child : part.nodes[i].children) {
+            child_count += child != 0;
+            if (child != 0 && child < part.nodes.size()) entries[i] = std::max(entries[i], entries[child]);
         }
         entries[i] += std::max(child_count, 1u) - 1;
     }
@@ -110,7 +98,7 @@ class Builder {
             const Range& range = top.links[i].range;
             parts[i].nodes.reserve(range.primitives.size() / 2);
             parts[i].root = add_child(parts[i], range);
-            add_up(parts[i], {});
+            count_stack_entries(parts[i], {});
         });
         std::vector<size_t> offsets{top.nodes.size()};
         for (size_t i = 0; i < parts.size(); ++i) {
@@ -118,12 +106,8 @@ class Builder {
             top.nodes[link.node].children[link.slot] = moved(parts[i].root, offsets[i]);
             offsets.push_back(offsets[i] + parts[i].nodes.size());
         }
-        add_up(top, parts);
+        count_stack_entries(top, parts);
         result_.max_stack_entries = top.stack_entries + 1;
-        Bounds scene;
-        for (size_t slot = 0; slot < 4; ++slot)
-            if (top.nodes[0].children[slot] != 0) scene.grow(top.nodes[0].child_bounds(slot));
-        result_.surface_area_cost = 1 + (top.cost > 0 ? top.cost / half_area(scene) : 0);
         result_.nodes.resize(offsets.back());
         std::ranges::copy(top.nodes, result_.nodes.begin());
         in_parallel(parts.size(), 1, [&](size_t i, size_t) {

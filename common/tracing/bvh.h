@@ -63,7 +63,6 @@ struct Bvh {
     LargeArray<BvhNode> nodes;          // node 0 is the root; children follow their parents
     LargeArray<BvhTriangle> triangles;  // in the order of the leaves
     uint32_t max_stack_entries = 1;  // for a traversal that pushes all but the nearest child, and a sentinel
-    double surface_area_cost = 0;    // expected nodes + triangles visited by a random ray that hits the root
     double build_seconds = 0;
 };
 
