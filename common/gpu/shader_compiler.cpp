@@ -62,18 +62,12 @@ class Includer {
     const std::regex include_line_{R"re(\s*#\s*include\s*"([^"]+)".*)re"};
 };
 
-EShLanguage language(ShaderStage stage) {
-    switch (stage) {
-        case ShaderStage::compute:
-            return EShLangCompute;
-        case ShaderStage::ray_generation:
-            return EShLangRayGen;
-        case ShaderStage::miss:
-            return EShLangMiss;
-        case ShaderStage::closest_hit:
-            return EShLangClosestHit;
-    }
-    return EShLangCompute;
+EShLanguage stage_of(const fs::path& file) {
+    static const std::map<std::string, EShLanguage> stages{{".comp", EShLangCompute},
+                                                           {".rgen", EShLangRayGen},
+                                                           {".rmiss", EShLangMiss},
+                                                           {".rchit", EShLangClosestHit}};
+    return stages.at(file.extension().string());
 }
 
 // glslang writes "ERROR: file:line: 'token' : text"; editors and people look for "file:line: text".
@@ -93,7 +87,7 @@ std::vector<uint32_t> compile(const ShaderSource& source, const std::string& tex
                               const std::string& preamble) {
     static const bool initialised = glslang::InitializeProcess();
     if (!initialised) throw UserError("glslang could not be initialised");
-    const EShLanguage stage = language(source.stage);
+    const EShLanguage stage = stage_of(source.file);
     glslang::TShader shader(stage);
     const std::string name = source.file.generic_string();  // GLSL has escapes in quotes
     const char* texts[] = {text.c_str()};
@@ -132,7 +126,7 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
     for (const auto& define : source.defines) preamble += "#define " + define + "\n";
 
     const auto version = glslang::GetVersion();
-    const std::string key = preamble + text + std::to_string(static_cast<int>(source.stage)) + "/" +
+    const std::string key = preamble + text + source.file.extension().string() + "/" +
                             std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
                             std::to_string(version.patch);
     // Two independent 64-bit hashes make a chance collision impossible in practice.

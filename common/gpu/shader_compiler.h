@@ -9,11 +9,8 @@
 
 namespace lab {
 
-enum class ShaderStage { compute, ray_generation, miss, closest_hit };
-
 struct ShaderSource {
-    std::filesystem::path file;
-    ShaderStage stage = ShaderStage::compute;
+    std::filesystem::path file;             // its ending names the stage: .comp, .rgen, .rmiss or .rchit
     std::vector<std::string> defines = {};  // "NAME" or "NAME value"
     // What #include "name" stands for. Other names are looked up beside the includer and in shaders/. A
     // file's text is included once, even where an #if skips it.

@@ -9,40 +9,29 @@ std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device,
 std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene);
 
 // A shader of shaders/ that renders the estimator on the scene.
-ShaderSource shader_source(const std::string& name, ShaderStage stage, const GpuScene& scene,
-                           const Estimator& estimator);
+ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator);
 
-// What runs these shaders: one compute shader, or those of the ray tracing pipeline.
-std::unique_ptr<Tracer> make_compute_tracer(const Device& device, const std::vector<ShaderSource>& shaders,
-                                            const std::vector<Binding>& bindings);
-std::unique_ptr<Tracer> make_pipeline_tracer(const Device& device, const std::vector<ShaderSource>& shaders,
-                                             const std::vector<Binding>& bindings);
-
-// A tree of a scene and what goes through it. A backend adds the shaders.
-template <typename Tree, auto make>
+// A tree of a scene, and the kind of tracer that goes through it. A backend adds the shaders.
+template <typename Tree, typename TreeTracer>
 class SceneTree : public AccelerationStructure {
   public:
     SceneTree(const Device& device, const GpuScene& scene, Tree tree)
-        : device_(&device), scene_(&scene), tree_(std::move(tree)) {}
+        : device_(device), scene_(scene), tree_(std::move(tree)) {}
 
     std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
                                         std::span<const Binding> bindings) const final {
         std::vector<Binding> all(bindings.begin(), bindings.end());
-        for (const auto& further : {scene_->bindings(), tree_.bindings()})
+        for (const auto& further : {scene_.bindings(), tree_.bindings()})
             all.insert(all.end(), further.begin(), further.end());
-        return make(*device_, shaders(estimator), all);
+        return std::make_unique<TreeTracer>(device_, shaders(estimator), all);
     }
     size_t bytes() const final { return tree_.bytes(); }
     double build_seconds() const final { return tree_.build_seconds(); }
 
   protected:
-    const GpuScene& scene() const { return *scene_; }
-    const Tree& tree() const { return tree_; }
-
-  private:
-    const Device* device_;
-    const GpuScene* scene_;
-    Tree tree_;
+    const Device& device_;
+    const GpuScene& scene_;
+    const Tree tree_;
 };
 
 }  // namespace lab

@@ -1,4 +1,5 @@
 // The `pipeline` backend: ray generation, miss and closest-hit shaders of the ray tracing pipeline.
+#include <algorithm>
 #include <cstring>
 
 #include "tracing/backends.h"
@@ -18,20 +19,6 @@ vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) {
 // class.
 constexpr uint32_t first_miss_group = 1;
 constexpr uint32_t first_hit_group = 3;
-
-vk::ShaderStageFlagBits stage_flag(ShaderStage stage) {
-    switch (stage) {
-        case ShaderStage::ray_generation:
-            return vk::ShaderStageFlagBits::eRaygenKHR;
-        case ShaderStage::miss:
-            return vk::ShaderStageFlagBits::eMissKHR;
-        case ShaderStage::closest_hit:
-            return vk::ShaderStageFlagBits::eClosestHitKHR;
-        case ShaderStage::compute:
-            break;
-    }
-    return vk::ShaderStageFlagBits::eCompute;
-}
 
 class PipelineTracer : public Tracer {
   public:
@@ -65,9 +52,11 @@ class PipelineTracer : public Tracer {
             const auto words = compile_shader(source);
             modules.emplace_back(device.handle(), vk::ShaderModuleCreateInfo({}, words));
             const auto index = static_cast<uint32_t>(stages.size());
-            stages.emplace_back(vk::PipelineShaderStageCreateFlags(), stage_flag(source.stage),
-                                *modules.back(), "main");
-            const bool is_hit = source.stage == ShaderStage::closest_hit;
+            const bool is_hit = index >= first_hit_group;
+            const auto stage = is_hit                      ? vk::ShaderStageFlagBits::eClosestHitKHR
+                               : index >= first_miss_group ? vk::ShaderStageFlagBits::eMissKHR
+                                                           : vk::ShaderStageFlagBits::eRaygenKHR;
+            stages.emplace_back(vk::PipelineShaderStageCreateFlags(), stage, *modules.back(), "main");
             groups.emplace_back(is_hit ? vk::RayTracingShaderGroupTypeKHR::eTrianglesHitGroup
                                        : vk::RayTracingShaderGroupTypeKHR::eGeneral,
                                 is_hit ? VK_SHADER_UNUSED_KHR : index, is_hit ? index : VK_SHADER_UNUSED_KHR,
@@ -80,49 +69,35 @@ class PipelineTracer : public Tracer {
         pipeline_ = {device.handle(), nullptr, device.pipeline_cache(), info};
     }
 
-    // The table of shader handles that the driver reads. A record is a handle padded to the device's
-    // alignment, and every section starts at a multiple of a second, larger one: mixing the two up reads
-    // handles of other shaders.
+    // The table of shader handles that the driver reads. A record is a handle with room behind it, and each
+    // section of records starts at a multiple of the larger of two alignments: here every record does.
     void fill_shader_binding_table(const Device& device, uint32_t group_count) {
         const auto properties = device.physical()
                                     .getProperties2<vk::PhysicalDeviceProperties2,
                                                     vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>()
                                     .get<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
         const vk::DeviceSize handle_size = properties.shaderGroupHandleSize;
-        const vk::DeviceSize base_alignment = properties.shaderGroupBaseAlignment;
-        const vk::DeviceSize stride = align(handle_size, properties.shaderGroupHandleAlignment);
+        const vk::DeviceSize alignment =
+            std::max(properties.shaderGroupBaseAlignment, properties.shaderGroupHandleAlignment);
+        const vk::DeviceSize stride = align(handle_size, alignment);
         const auto handles =
             pipeline_.getRayTracingShaderGroupHandlesKHR<uint8_t>(0, group_count, group_count * handle_size);
-
-        vk::DeviceSize size = 0;
-        const auto add_section = [&](uint32_t count, vk::DeviceSize section_stride) {
-            const vk::StridedDeviceAddressRegionKHR section(size, section_stride, count * section_stride);
-            size = align(size + section.size, base_alignment);
-            return section;
-        };
-        // Vulkan wants size and stride of the ray generation section to be equal.
-        ray_generation_records_ = add_section(1, align(stride, base_alignment));
-        miss_records_ = add_section(first_hit_group - first_miss_group, stride);
-        hit_records_ = add_section(group_count - first_hit_group, stride);
-
-        std::vector<uint8_t> table(size);
-        for (uint32_t group = 0; group < group_count; ++group) {
-            vk::DeviceSize offset = ray_generation_records_.deviceAddress;
-            if (group >= first_hit_group)
-                offset = hit_records_.deviceAddress + (group - first_hit_group) * stride;
-            else if (group >= first_miss_group)
-                offset = miss_records_.deviceAddress + (group - first_miss_group) * stride;
-            std::memcpy(&table[offset], &handles[group * handle_size], handle_size);
-        }
         // Buffers start at an address of their own, so the table is moved to the next aligned one.
         table_.emplace_back(
-            device, size + base_alignment,
+            device, group_count * stride + alignment,
             vk::BufferUsageFlagBits::eShaderBindingTableKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress);
-        const vk::DeviceAddress start = align(table_.front().address(), base_alignment);
-        table.insert(table.begin(), start - table_.front().address(), 0);
+        const vk::DeviceAddress start = align(table_.front().address(), alignment);
+        std::vector<uint8_t> table(table_.front().size());
+        for (uint32_t group = 0; group < group_count; ++group)
+            std::memcpy(&table[start - table_.front().address() + group * stride],
+                        &handles[group * handle_size], handle_size);
         table_.front().write(table.data(), table.size());
-        for (auto* section : {&ray_generation_records_, &miss_records_, &hit_records_})
-            section->deviceAddress += start;
+        const auto section = [&](uint32_t first, uint32_t end) {
+            return vk::StridedDeviceAddressRegionKHR(start + first * stride, stride, (end - first) * stride);
+        };
+        ray_generation_records_ = section(0, first_miss_group);
+        miss_records_ = section(first_miss_group, first_hit_group);
+        hit_records_ = section(first_hit_group, group_count);
     }
 
     DescriptorSet descriptors_;
@@ -132,20 +107,16 @@ class PipelineTracer : public Tracer {
     vk::StridedDeviceAddressRegionKHR ray_generation_records_, miss_records_, hit_records_;
 };
 
-class PipelineBackend : public SceneTree<HardwareBvh, make_pipeline_tracer> {
+class PipelineBackend : public SceneTree<HardwareBvh, PipelineTracer> {
   public:
     using SceneTree::SceneTree;
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
         std::vector<ShaderSource> sources;
-        const auto add = [&](const char* name, ShaderStage stage) {
-            sources.push_back(shader_source(name, stage, scene(), estimator));
-        };
-        add("render.rgen", ShaderStage::ray_generation);
-        add("trace_ray/miss.rmiss", ShaderStage::miss);
-        add("trace_ray/shadow_miss.rmiss", ShaderStage::miss);
-        for (const uint32_t material_class : material_classes(scene().scene())) {
-            add("trace_ray/closest_hit.rchit", ShaderStage::closest_hit);
+        for (const char* name : {"render.rgen", "trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"})
+            sources.push_back(shader_source(name, scene_, estimator));
+        for (const uint32_t material_class : material_classes(scene_.scene())) {
+            sources.push_back(shader_source("trace_ray/closest_hit.rchit", scene_, estimator));
             sources.back().defines.push_back("MATERIAL_CLASS " + std::to_string(material_class) + "u");
         }
         return sources;
@@ -153,11 +124,6 @@ class PipelineBackend : public SceneTree<HardwareBvh, make_pipeline_tracer> {
 };
 
 }  // namespace
-
-std::unique_ptr<Tracer> make_pipeline_tracer(const Device& device, const std::vector<ShaderSource>& shaders,
-                                             const std::vector<Binding>& bindings) {
-    return std::make_unique<PipelineTracer>(device, shaders, bindings);
-}
 
 std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene) {
     return std::make_unique<PipelineBackend>(device, scene, HardwareBvh(device, scene));

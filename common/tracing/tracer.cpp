@@ -9,20 +9,6 @@
 namespace lab {
 namespace {
 
-class ComputeTracer : public Tracer {
-  public:
-    ComputeTracer(const Device& device, const ShaderSource& source, std::span<const Binding> bindings)
-        : kernel_(device, source, bindings, sizeof(DispatchParameters)) {}
-
-    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                uint32_t block_count, uint32_t film_offset) const override {
-        kernel_.record(commands, &dispatch, block_count * dispatch.threads_per_pixel, film_offset);
-    }
-
-  private:
-    ComputeKernel kernel_;
-};
-
 void require_support(Backend backend, const DeviceDescription& device) {
     if (device.supports(backend)) return;
     std::string working;
@@ -52,10 +38,8 @@ std::set<std::filesystem::path> files_of(std::initializer_list<const char*> name
 
 }  // namespace
 
-ShaderSource shader_source(const std::string& name, ShaderStage stage, const GpuScene& scene,
-                           const Estimator& estimator) {
+ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator) {
     ShaderSource source{.file = project_folder() / "shaders" / name,
-                        .stage = stage,
                         .defines = scene.defines(),
                         .named_includes = named_includes(estimator),
                         .edit = estimator.edit};
@@ -77,11 +61,6 @@ uint64_t estimator_hash(const Estimator& estimator) {
          files_of({"interface.h", "scene.glsl", "ray.glsl", "render_samples.glsl"}, estimator))
         hash = hash_text(read_file(file, 1 << 24), hash);
     return hash;
-}
-
-std::unique_ptr<Tracer> make_compute_tracer(const Device& device, const std::vector<ShaderSource>& shaders,
-                                            const std::vector<Binding>& bindings) {
-    return std::make_unique<ComputeTracer>(device, shaders.front(), bindings);
 }
 
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,

@@ -68,7 +68,6 @@ void run_traversal(const Bvh& bvh, const std::vector<std::string>& defines,
     const Device& device = test_device();
     const GpuBvh gpu_bvh(device, bvh);
     ShaderSource source{.file = project_folder() / "tests/shaders/bvh_traversal.comp",
-                        .stage = ShaderStage::compute,
                         .defines = gpu_bvh.defines(),
                         .named_includes = {}};
     source.defines.insert(source.defines.end(), defines.begin(), defines.end());

@@ -243,7 +243,7 @@ TEST(PathRecorder, LeavesNoTraceInShadersThatRender) {
     const GpuScene gpu_scene(test_device(), scene);
     const Estimator estimator = chapter_estimator("05_russian_roulette");
     const auto compile = [&](const Estimator& e) {
-        ShaderSource source = shader_source("render.comp", ShaderStage::compute, gpu_scene, e);
+        ShaderSource source = shader_source("render.comp", gpu_scene, e);
         source.defines.push_back("BVH_STACK_SIZE 32");
         return compile_shader(source);
     };

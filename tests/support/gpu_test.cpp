@@ -26,7 +26,6 @@ void run_shader(const TestShader& shader, size_t invocations, std::span<std::byt
     const Buffer input_buffer(device, inputs, vk::BufferUsageFlagBits::eStorageBuffer);
     const std::vector<Binding> bindings{storage_binding(0, result_buffer), storage_binding(1, input_buffer)};
     const ShaderSource source{.file = project_folder() / "tests" / "shaders" / shader.name,
-                              .stage = ShaderStage::compute,
                               .defines = shader.defines,
                               .named_includes = shader.named_includes};
     const ComputeKernel kernel(device, source, bindings, 0);

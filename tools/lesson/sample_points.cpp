@@ -43,7 +43,6 @@ std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t cou
                           uint32_t seed, const std::string& device_name) {
     const Estimator estimator = estimator_of(load_chapter(sampler.chapter));
     ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
-                        .stage = ShaderStage::compute,
                         .defines = {sampler.define, "COLUMNS " + std::to_string(columns)},
                         .named_includes = {{"path_trace.glsl", estimator.file}}};
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());

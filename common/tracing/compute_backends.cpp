@@ -1,0 +1,65 @@
+// The backends of one compute shader: `compute` goes through a bounding volume hierarchy of our own, `query`
+// through the driver's.
+#include "tracing/backends.h"
+#include "tracing/gpu_bvh.h"
+#include "tracing/hardware_bvh.h"
+
+namespace lab {
+namespace {
+
+class ComputeTracer : public Tracer {
+  public:
+    ComputeTracer(const Device& device, const std::vector<ShaderSource>& shaders,
+                  std::span<const Binding> bindings)
+        : kernel_(device, shaders.front(), bindings, sizeof(DispatchParameters)) {}
+
+    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
+                uint32_t block_count, uint32_t film_offset) const override {
+        kernel_.record(commands, &dispatch, block_count * dispatch.threads_per_pixel, film_offset);
+    }
+
+  private:
+    ComputeKernel kernel_;
+};
+
+class ComputeBackend : public SceneTree<GpuBvh, ComputeTracer> {
+  public:
+    using SceneTree::SceneTree;
+
+    std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
+        ShaderSource source = shader_source("render.comp", scene_, estimator);
+        for (const auto& define : tree_.defines()) source.defines.push_back(define);
+        return {source};
+    }
+};
+
+class QueryBackend : public SceneTree<HardwareBvh, ComputeTracer> {
+  public:
+    using SceneTree::SceneTree;
+
+    std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
+        ShaderSource source = shader_source("render.comp", scene_, estimator);
+        source.defines.emplace_back("BACKEND_QUERY");
+        return {source};
+    }
+};
+
+// The tree, unless the device cannot hold it: building it in vain would take minutes.
+Bvh build(const Device& device, const Scene& scene) {
+    const uint64_t count = instanced_triangle_count(scene);
+    const MemoryNeed need = GpuBvh::memory_need(count);
+    if (count <= max_triangle_count) require_memory(device, {&need, 1});  // else world_triangles() refuses it
+    return build_bvh(world_triangles(scene));
+}
+
+}  // namespace
+
+std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& device, const GpuScene& scene) {
+    return std::make_unique<ComputeBackend>(device, scene, GpuBvh(device, build(device, scene.scene())));
+}
+
+std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device, const GpuScene& scene) {
+    return std::make_unique<QueryBackend>(device, scene, HardwareBvh(device, scene));
+}
+
+}  // namespace lab
