@@ -51,14 +51,6 @@ size_t size_limit(const Device& device, const MemoryNeed& need) {
     return SIZE_MAX;
 }
 
-void check_extent(const Device& device, uint32_t width, uint32_t height) {
-    const uint32_t limit = device.limits().maxImageDimension2D;
-    if (std::max(width, height) > limit)
-        throw DeviceFailure("an image of " + std::to_string(width) + "x" + std::to_string(height) +
-                            " is larger than the device allows (" + std::to_string(limit) +
-                            "): make it smaller");
-}
-
 }  // namespace
 
 void require_memory(const Device& device, std::span<const MemoryNeed> needs) {
@@ -134,56 +126,43 @@ void Buffer::clear() {
         });
 }
 
-SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
-                           std::span<const std::byte> pixels) {
-    check_extent(device, width, height);
-    image_ = {device.handle(),
-              vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
-                                  vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
-                                  vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst)};
-    const auto requirements = image_.getMemoryRequirements();
-    bytes_ = requirements.size;
-    memory_ = allocate(device, requirements, {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
-    image_.bindMemory(*memory_, 0);
-
-    Buffer staging(device, pixels.size(), {}, Buffer::Location::host);
-    staging.write(pixels.data(), pixels.size());
-    device.submit([&](const vk::raii::CommandBuffer& commands) {
-        const auto move_to = [&](vk::ImageLayout from, vk::ImageLayout to, vk::AccessFlags before,
-                                 vk::AccessFlags after, vk::PipelineStageFlags source,
-                                 vk::PipelineStageFlags destination) {
-            commands.pipelineBarrier(source, destination, {}, {}, {},
-                                     vk::ImageMemoryBarrier(before, after, from, to, VK_QUEUE_FAMILY_IGNORED,
-                                                            VK_QUEUE_FAMILY_IGNORED, *image_, whole_image));
-        };
-        move_to(vk::ImageLayout::eUndefined, vk::ImageLayout::eTransferDstOptimal, {},
-                vk::AccessFlagBits::eTransferWrite, vk::PipelineStageFlagBits::eTopOfPipe,
-                vk::PipelineStageFlagBits::eTransfer);
-        commands.copyBufferToImage(staging.handle(), *image_, vk::ImageLayout::eTransferDstOptimal,
-                                   vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {width, height, 1}));
-        move_to(vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::eShaderReadOnlyOptimal,
-                vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eShaderRead,
-                vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eComputeShader);
-    });
-    view_ = {device.handle(),
-             vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole_image)};
-    sampler_ = {device.handle(), vk::SamplerCreateInfo()};
-}
-
-StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height)
-    : device_(&device), width_(width), height_(height) {
-    check_extent(device, width, height);
-    constexpr vk::Format format = vk::Format::eR8G8B8A8Unorm;
-    image_ = {device.handle(),
-              vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
-                                  vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
-                                  vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc |
-                                      vk::ImageUsageFlagBits::eTransferDst)};
+DeviceImage::DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
+                         vk::ImageUsageFlags usage) {
+    const uint32_t limit = device.limits().maxImageDimension2D;
+    if (std::max(width, height) > limit)
+        throw DeviceFailure("an image of " + std::to_string(width) + "x" + std::to_string(height) +
+                            " is larger than the device allows (" + std::to_string(limit) +
+                            "): make it smaller");
+    image_ = {device.handle(), vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
+                                                   vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                                                   usage | vk::ImageUsageFlagBits::eTransferDst)};
     memory_ =
         allocate(device, image_.getMemoryRequirements(), {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
     image_.bindMemory(*memory_, 0);
     view_ = {device.handle(),
              vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole_image)};
+}
+
+SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
+                           std::span<const std::byte> pixels)
+    : DeviceImage(device, width, height, format, vk::ImageUsageFlagBits::eSampled) {
+    const Buffer staging(device, pixels, {}, Buffer::Location::host);
+    device.submit([&](const vk::raii::CommandBuffer& commands) {
+        constexpr auto target = vk::ImageLayout::eTransferDstOptimal;
+        change_layout(commands, *image_, vk::ImageLayout::eUndefined, target);
+        commands.copyBufferToImage(staging.handle(), *image_, target,
+                                   vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {width, height, 1}));
+        change_layout(commands, *image_, target, vk::ImageLayout::eShaderReadOnlyOptimal);
+    });
+    sampler_ = {device.handle(), vk::SamplerCreateInfo()};
+}
+
+StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height)
+    : DeviceImage(device, width, height, vk::Format::eR8G8B8A8Unorm,
+                  vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc),
+      device_(&device),
+      width_(width),
+      height_(height) {
     device.submit([&](const vk::raii::CommandBuffer& commands) {
         constexpr auto target = vk::ImageLayout::eTransferDstOptimal;
         change_layout(commands, *image_, vk::ImageLayout::eUndefined, target);

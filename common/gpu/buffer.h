@@ -1,4 +1,4 @@
-// Memory of a device: buffers, views of them as texels, and sampled images.
+// Memory of a device: buffers and images.
 #pragma once
 #include <span>
 
@@ -31,10 +31,11 @@ class Buffer {
 
     Buffer(const Device& device, const MemoryNeed& need, Location location = Location::device);
 
-    // Device buffer that holds a copy of `data`.
+    // Holds a copy of `data`.
     template <typename T>
-    Buffer(const Device& device, std::span<const T> data, vk::BufferUsageFlags usage)
-        : Buffer(device, data.size_bytes(), usage) {
+    Buffer(const Device& device, std::span<const T> data, vk::BufferUsageFlags usage,
+           Location location = Location::device)
+        : Buffer(device, data.size_bytes(), usage, location) {
         write(data.data(), data.size_bytes());
     }
 
@@ -61,8 +62,23 @@ class Buffer {
     void* mapped_ = nullptr;
 };
 
-// Two-dimensional image that shaders read texel by texel.
-class SampledImage {
+// Two-dimensional colour image of the device's own.
+class DeviceImage {
+  public:
+    vk::Image handle() const { return *image_; }
+
+  protected:
+    // Its layout is eUndefined. Throws DeviceFailure if it does not fit the device.
+    DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
+                vk::ImageUsageFlags usage);
+
+    vk::raii::Image image_ = nullptr;
+    vk::raii::DeviceMemory memory_ = nullptr;
+    vk::raii::ImageView view_ = nullptr;
+};
+
+// Image that shaders read texel by texel.
+class SampledImage : public DeviceImage {
   public:
     // `pixels` row by row without gaps in `format`.
     SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
@@ -71,25 +87,18 @@ class SampledImage {
     vk::DescriptorImageInfo info() const {
         return {*sampler_, *view_, vk::ImageLayout::eShaderReadOnlyOptimal};
     }
-    size_t bytes() const { return bytes_; }  // of device memory
 
   private:
-    size_t bytes_ = 0;
-    vk::raii::Image image_ = nullptr;
-    vk::raii::DeviceMemory memory_ = nullptr;
-    vk::raii::ImageView view_ = nullptr;
     vk::raii::Sampler sampler_ = nullptr;
 };
 
-// Two-dimensional image of 8-bit RGBA that compute shaders write, always in the layout eGeneral. Starts
-// black.
-class StorageImage {
+// Image of 8-bit RGBA that compute shaders write, always in the layout eGeneral. Starts black.
+class StorageImage : public DeviceImage {
   public:
     StorageImage(const Device& device, uint32_t width, uint32_t height);
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    vk::Image handle() const { return *image_; }
     vk::DescriptorImageInfo info() const { return {{}, *view_, vk::ImageLayout::eGeneral}; }
     std::vector<uint8_t> read() const;  // row by row, four bytes a pixel
 
@@ -97,9 +106,6 @@ class StorageImage {
     const Device* device_;
     uint32_t width_;
     uint32_t height_;
-    vk::raii::Image image_ = nullptr;
-    vk::raii::DeviceMemory memory_ = nullptr;
-    vk::raii::ImageView view_ = nullptr;
 };
 
 // All of a colour image, and one of its kind in copies and blits.

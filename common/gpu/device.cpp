@@ -36,8 +36,8 @@ std::string kind_text(vk::PhysicalDeviceType type) {
 }
 
 bool contains(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name) {
-    return std::any_of(extensions.begin(), extensions.end(),
-                       [&](const auto& extension) { return extension.extensionName.data() == name; });
+    return std::ranges::any_of(extensions,
+                               [&](const auto& extension) { return extension.extensionName.data() == name; });
 }
 
 // What a device must offer. The ray tracing structures count only where the extensions are there.
@@ -53,6 +53,10 @@ std::vector<const char*> extensions_for(Backend backend) {
                                       : VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME};
 }
 
+bool computes(const vk::QueueFamilyProperties& family) {
+    return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
+}
+
 // What the device lacks for every backend.
 std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device,
                                             const Features& features) {
@@ -61,10 +65,7 @@ std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& devi
     if (!vulkan12.scalarBlockLayout) missing.emplace_back("scalarBlockLayout");
     if (!vulkan12.shaderSampledImageArrayNonUniformIndexing)
         missing.emplace_back("shaderSampledImageArrayNonUniformIndexing");
-    const auto families = device.getQueueFamilyProperties();
-    if (std::none_of(families.begin(), families.end(), [](const vk::QueueFamilyProperties& family) {
-            return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
-        }))
+    if (std::ranges::none_of(device.getQueueFamilyProperties(), computes))
         missing.emplace_back("a compute queue with timestamps");
     return missing;
 }
@@ -232,22 +233,18 @@ Device::Device(const DeviceOptions& options)
 
 void Device::choose_queue_family() {
     const auto families = physical_.getQueueFamilyProperties();
-    const auto computes = [&](uint32_t family) {
-        return families[family].queueFlags & vk::QueueFlagBits::eCompute &&
-               families[family].timestampValidBits > 0;
-    };
     if (*surface_) {
         const bool has_swapchain =
             contains(physical_.enumerateDeviceExtensionProperties(), VK_KHR_SWAPCHAIN_EXTENSION_NAME);
         for (uint32_t family = 0; has_swapchain && family < families.size(); ++family)
-            if (computes(family) && families[family].queueFlags & vk::QueueFlagBits::eGraphics &&
+            if (computes(families[family]) && families[family].queueFlags & vk::QueueFlagBits::eGraphics &&
                 physical_.getSurfaceSupportKHR(family, *surface_)) {
                 queue_family_ = family;
                 return;
             }
         surface_ = nullptr;
     }
-    while (!computes(queue_family_)) ++queue_family_;
+    while (!computes(families[queue_family_])) ++queue_family_;
 }
 
 void Device::create_device() {
@@ -267,20 +264,16 @@ void Device::create_device() {
     if (*surface_) extensions.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     constexpr const char* portability = "VK_KHR_portability_subset";  // must be named where a device has it
     if (contains(physical_.enumerateDeviceExtensionProperties(), portability)) extensions.insert(portability);
-    if (has_acceleration_structures()) {
-        vulkan12.bufferDeviceAddress = true;
-        features.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure = true;
-    } else {
-        features.unlink<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
-    }
-    if (description_.supports(Backend::pipeline))
-        features.get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>().rayTracingPipeline = true;
-    else
-        features.unlink<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
-    if (description_.supports(Backend::query))
-        features.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery = true;
-    else
-        features.unlink<vk::PhysicalDeviceRayQueryFeaturesKHR>();
+    vulkan12.bufferDeviceAddress = has_acceleration_structures();
+    const auto switch_on = [&]<typename Structure>(vk::Bool32 Structure::*feature, bool is_there) {
+        features.get<Structure>().*feature = true;
+        if (!is_there) features.unlink<Structure>();
+    };
+    switch_on(&vk::PhysicalDeviceAccelerationStructureFeaturesKHR::accelerationStructure,
+              has_acceleration_structures());
+    switch_on(&vk::PhysicalDeviceRayTracingPipelineFeaturesKHR::rayTracingPipeline,
+              description_.supports(Backend::pipeline));
+    switch_on(&vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery, description_.supports(Backend::query));
 
     std::vector<const char*> names;
     for (const auto& extension : extensions) names.push_back(extension.c_str());

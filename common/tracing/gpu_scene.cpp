@@ -11,10 +11,8 @@ namespace {
 
 // An array that is to be copied to the device.
 struct Array {
-    std::string name;
     uint32_t binding;
     std::span<const std::byte> data;
-    vk::BufferUsageFlags usage;
 };
 
 size_t bytes_of(const Image& probe) { return probe.pixels.size() / 3 * 4 * sizeof(float); }
@@ -27,8 +25,9 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
     std::vector<Array> arrays;
     const auto add = [&](const char* name, uint32_t binding, const auto& data,
                          vk::BufferUsageFlags usage = {}) {
-        arrays.push_back(
-            {name, binding, std::as_bytes(std::span(data)), usage | vk::BufferUsageFlagBits::eStorageBuffer});
+        arrays.push_back({binding, std::as_bytes(std::span(data))});
+        memory_needs_.push_back(
+            {name, arrays.back().data.size(), usage | vk::BufferUsageFlagBits::eStorageBuffer});
     };
     // The driver builds its acceleration structure from the first two.
     vk::BufferUsageFlags build_input;
@@ -68,34 +67,27 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
         add("other sides of triangles", BINDING_OTHER_SIDES, other_sides);
     }
 
-    std::vector<MemoryNeed> needs;
-    for (const Array& array : arrays) needs.push_back({array.name, array.data.size(), array.usage});
-    for (const auto& texture : scene.textures) needs.push_back({"textures", texture.pixels.size()});
-    if (features.light_probe) needs.push_back({"light probe's texels", bytes_of(*scene.light_probe)});
-    require_memory(device, needs);
-    buffers_.reserve(arrays.size());  // the bindings refer to the buffers
-    for (const Array& array : arrays) {
-        buffers_.emplace_back(device, array.data, array.usage);
-        bindings_.push_back(storage_binding(array.binding, buffers_.back()));
-        allocations_.push_back({array.name, array.binding, buffers_.back().size()});
+    for (const auto& texture : scene.textures) memory_needs_.push_back({"textures", texture.pixels.size()});
+    if (features.light_probe) memory_needs_.push_back({"light probe's texels", bytes_of(*scene.light_probe)});
+    require_memory(device, memory_needs_);
+    for (size_t i = 0; i < arrays.size(); ++i) {
+        buffers_.emplace_back(device, arrays[i].data, memory_needs_[i].usage);
+        bindings_.push_back(storage_binding(arrays[i].binding, buffers_.back()));
     }
     add_images(device, features);
 }
 
 void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
-    const auto bind = [&](const char* name, uint32_t binding, size_t first_image) {
-        bindings_.push_back({.index = binding, .type = vk::DescriptorType::eCombinedImageSampler});
-        allocations_.push_back({name, binding, 0});
-        for (size_t i = first_image; i < images_.size(); ++i) {
-            bindings_.back().images.push_back(images_[i].info());
-            allocations_.back().bytes += images_[i].bytes();
-        }
+    const auto add = [&](const auto& image, vk::Format format, const auto& pixels) {
+        images_.emplace_back(device, image.width, image.height, format, std::as_bytes(std::span(pixels)));
+        bindings_.back().images.push_back(images_.back().info());
+    };
+    const auto add_binding = [&](uint32_t index) {
+        bindings_.push_back({.index = index, .type = vk::DescriptorType::eCombinedImageSampler});
     };
     if (features.textures) {
-        for (const auto& texture : scene_->textures)
-            images_.emplace_back(device, texture.width, texture.height, vk::Format::eR8G8B8A8Unorm,
-                                 std::as_bytes(std::span(texture.pixels)));
-        bind("textures", BINDING_TEXTURES, 0);
+        add_binding(BINDING_TEXTURES);
+        for (const auto& texture : scene_->textures) add(texture, vk::Format::eR8G8B8A8Unorm, texture.pixels);
         defines_.push_back("TEXTURE_COUNT " + std::to_string(scene_->textures.size()));
     }
     if (features.light_probe) {
@@ -106,10 +98,8 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
         rgba.reserve(probe.pixels.size() / 3 * 4);
         for (size_t i = 0; i < probe.pixels.size(); i += 3)
             rgba.insert(rgba.end(), {probe.pixels[i], probe.pixels[i + 1], probe.pixels[i + 2], 1.0f});
-        const size_t first = images_.size();
-        images_.emplace_back(device, probe.width, probe.height, vk::Format::eR32G32B32A32Sfloat,
-                             std::as_bytes(std::span(rgba)));
-        bind("light probe", BINDING_LIGHT_PROBE, first);
+        add_binding(BINDING_LIGHT_PROBE);
+        add(probe, vk::Format::eR32G32B32A32Sfloat, rgba);
     }
 }
 

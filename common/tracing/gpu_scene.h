@@ -14,13 +14,6 @@ enum class LightSampling { off, on, with_probe };
 
 class GpuScene {
   public:
-    // Memory that the scene takes: an array, or images.
-    struct Allocation {
-        std::string name;
-        uint32_t binding;
-        size_t bytes;
-    };
-
     // Throws DeviceFailure before it allocates anything if the device cannot hold the scene.
     GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling = LightSampling::on);
 
@@ -32,7 +25,8 @@ class GpuScene {
     const std::vector<Binding>& bindings() const { return bindings_; }
     const std::vector<std::string>& defines() const { return defines_; }
 
-    const std::vector<Allocation>& allocations() const { return allocations_; }
+    // What it takes on the device, one for each array and image.
+    const std::vector<MemoryNeed>& memory_needs() const { return memory_needs_; }
 
   private:
     void add_images(const Device& device, const SceneFeatures& features);
@@ -42,7 +36,7 @@ class GpuScene {
     std::vector<SampledImage> images_;
     std::vector<Binding> bindings_;
     std::vector<std::string> defines_;
-    std::vector<Allocation> allocations_;
+    std::vector<MemoryNeed> memory_needs_;
 };
 
 }  // namespace lab

@@ -32,7 +32,8 @@ struct Options {
 // Of each array and image of a scene on the device.
 json bytes_of(const GpuScene& scene) {
     json bytes = json::object();
-    for (const auto& allocation : scene.allocations()) bytes[allocation.name] = allocation.bytes;
+    for (const auto& need : scene.memory_needs())
+        bytes[need.what] = bytes.value(need.what, size_t{0}) + need.bytes;
     return bytes;
 }
 

@@ -10,10 +10,10 @@
 namespace lab {
 namespace {
 
-// What a scene makes of a chapter's shaders, and the memory that it takes on the device.
+// What a scene makes of a chapter's shaders, and what it puts on the device.
 struct Footprint {
     ShaderCode code;
-    std::vector<GpuScene::Allocation> allocations;
+    std::set<uint32_t> bindings;
 };
 
 // What a feature adds to those of the bare scene.
@@ -70,7 +70,8 @@ class FeatureCode : public testing::TestWithParam<std::string> {
         std::set<std::string> functions;
         for (const auto& [name, needs] : needs_of_features())
             functions.insert(needs.functions.begin(), needs.functions.end());
-        Footprint result{.code = {}, .allocations = gpu_scene.allocations()};
+        Footprint result;
+        for (const auto& binding : gpu_scene.bindings()) result.bindings.insert(binding.index);
         for (const auto& shader : structure->shaders(chapter_estimator(GetParam())))
             result.code.merge(read_code(shader, functions));
         return result;
@@ -86,12 +87,6 @@ std::set<T> joined(std::set<T> a, const std::set<T>& b) {
     return a;
 }
 
-std::set<uint32_t> bindings_of(const Footprint& footprint) {
-    std::set<uint32_t> bindings;
-    for (const auto& allocation : footprint.allocations) bindings.insert(allocation.binding);
-    return bindings;
-}
-
 void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
     const Footprint bare = footprint(bare_scene(), backend);
     const std::set<uint32_t> arrays{BINDING_POSITIONS, BINDING_TRIANGLES, BINDING_TRIANGLE_MATERIALS,
@@ -101,7 +96,7 @@ void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
         others.insert({BINDING_BVH_NODES, BINDING_BVH_TRIANGLES});
     else
         others.insert({BINDING_ACCELERATION_STRUCTURE, BINDING_GEOMETRY_FIRST_TRIANGLES});
-    EXPECT_EQ(bindings_of(bare), arrays);
+    EXPECT_EQ(bare.bindings, arrays);
     EXPECT_EQ(bare.code.bindings, joined(arrays, others));
     EXPECT_FALSE(bare.code.samples_images);
     EXPECT_EQ(bare.code.functions, std::set<std::string>{});
@@ -128,7 +123,7 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
         Scene scene = bare_scene();
         feature.add(scene);
         const Footprint actual = footprint(scene, backend);
-        EXPECT_EQ(bindings_of(actual), joined(bindings_of(bare), needs.bindings));
+        EXPECT_EQ(actual.bindings, joined(bare.bindings, needs.bindings));
         EXPECT_EQ(actual.code.bindings, joined(bare.code.bindings, needs.bindings));
         EXPECT_EQ(actual.code.functions, needs.functions);
         EXPECT_EQ(actual.code.material_members, joined(bare.code.material_members, needs.material_members));
