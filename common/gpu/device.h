@@ -56,6 +56,12 @@ class Device {
     const vk::raii::PipelineCache& pipeline_cache() const { return pipeline_cache_; }
     const DeviceDescription& description() const { return description_; }
     const vk::PhysicalDeviceLimits& limits() const { return limits_; }
+    // Those in a structure of their own.
+    template <typename Properties>
+    Properties properties() const {
+        return physical_.getProperties2<vk::PhysicalDeviceProperties2, Properties>()
+            .template get<Properties>();
+    }
     bool has_acceleration_structures() const {
         return description_.supports(Backend::pipeline) || description_.supports(Backend::query);
     }

@@ -15,8 +15,8 @@ struct AliasTable {
         uint32_t alias = 0;
     };
     std::vector<Entry> entries;
-    // With which the two words choose each item, to the last bit of the table's integers. Weights are met up
-    // to 2^-32; estimators that divide by these probabilities are not biased by that.
+    // Of each item, exactly as the table's integers make them. The weights are met up to 2^-32: estimators
+    // that divide by these probabilities stay unbiased.
     std::vector<double> probabilities;
 };
 

@@ -95,7 +95,6 @@ struct Bounds {
     vec3 low{std::numeric_limits<float>::infinity()};
     vec3 high{-std::numeric_limits<float>::infinity()};
     void grow(const vec3& point) { low = glm::min(low, point), high = glm::max(high, point); }
-    void grow(const Bounds& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
 };
 // Contains all instances in world space; tight unless a mesh is rotated. Without instances low > high.
 Bounds world_bounds(const Scene& scene);

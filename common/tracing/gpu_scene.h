@@ -8,8 +8,8 @@
 
 namespace lab {
 
-// What estimators choose light samples from, which takes tables: nothing, emissive triangles, or the light
-// probe, too.
+// What estimators choose light samples from: nothing, emissive triangles, or these and the light probe.
+// Triangles and probe have a table each.
 enum class LightSampling { off, on, with_probe };
 
 class GpuScene {

@@ -11,7 +11,7 @@ using LevelType = vk::AccelerationStructureTypeKHR;
 
 constexpr auto addressable = vk::BufferUsageFlagBits::eShaderDeviceAddress;
 
-// Records stand in the order of the classes, those that the scene does not have left out.
+// Only the classes that the scene has get a record, in ascending order.
 uint32_t hit_record_offset(const Scene& scene, const Mesh& mesh) {
     const auto classes = material_classes(scene);
     const auto ranges = material_class_ranges(mesh);
@@ -53,9 +53,9 @@ std::vector<uint32_t> material_classes(const Scene& scene) {
 
 HardwareBvh::HardwareBvh(const Device& device, const GpuScene& scene) : device_(&device) {
     for (const Mesh& mesh : scene.scene().meshes) meshes_.push_back(build_mesh(scene, mesh));
-    top_.push_back(build_top(scene.scene()));
+    top_ = build_top(scene.scene());
     for (const auto& level : meshes_) bytes_ += level.buffer.size();
-    bytes_ += top_.front().buffer.size();
+    bytes_ += top_->buffer.size();
 
     std::vector<uint32_t> first_triangles;
     for (const uint32_t mesh : scene.scene().instance_meshes) {
@@ -63,15 +63,15 @@ HardwareBvh::HardwareBvh(const Device& device, const GpuScene& scene) : device_(
             first_triangles.push_back(range.first_triangle);
         first_triangles.resize((first_triangles.size() + 1) / 2 * 2);  // two geometries an instance at most
     }
-    first_triangles_.emplace_back(device, std::span<const uint32_t>(first_triangles),
-                                  vk::BufferUsageFlagBits::eStorageBuffer);
+    first_triangles_.emplace(device, std::span<const uint32_t>(first_triangles),
+                             vk::BufferUsageFlagBits::eStorageBuffer);
 }
 
 std::vector<Binding> HardwareBvh::bindings() const {
     return {{.index = BINDING_ACCELERATION_STRUCTURE,
              .type = vk::DescriptorType::eAccelerationStructureKHR,
-             .acceleration_structures = {*top_.front().handle}},
-            storage_binding(BINDING_GEOMETRY_FIRST_TRIANGLES, first_triangles_.front())};
+             .acceleration_structures = {*top_->handle}},
+            storage_binding(BINDING_GEOMETRY_FIRST_TRIANGLES, *first_triangles_)};
 }
 
 HardwareBvh::Level HardwareBvh::make_level(LevelType type, vk::DeviceSize size) const {
@@ -98,10 +98,7 @@ HardwareBvh::Level HardwareBvh::build_level(
     Level level = make_level(type, sizes.accelerationStructureSize);
 
     const vk::DeviceSize alignment =
-        device_->physical()
-            .getProperties2<vk::PhysicalDeviceProperties2,
-                            vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
-            .get<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
+        device_->properties<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
             .minAccelerationStructureScratchOffsetAlignment;
     const Buffer scratch(*device_, sizes.buildScratchSize + alignment,
                          vk::BufferUsageFlagBits::eStorageBuffer | addressable);

@@ -1,6 +1,8 @@
 // The driver's acceleration structure: a bottom level (BLAS) of triangles for every mesh file and a top level
 // (TLAS) of instances. The backends `pipeline` and `query` trace rays through it.
 #pragma once
+#include <optional>
+
 #include "tracing/gpu_scene.h"
 
 namespace lab {
@@ -39,8 +41,8 @@ class HardwareBvh {
     size_t bytes_ = 0;
     double build_seconds_ = 0;
     std::vector<Level> meshes_;
-    std::vector<Level> top_;               // exactly one
-    std::vector<Buffer> first_triangles_;  // exactly one
+    std::optional<Level> top_;
+    std::optional<Buffer> first_triangles_;
 };
 
 }  // namespace lab

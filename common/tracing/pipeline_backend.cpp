@@ -72,10 +72,7 @@ class PipelineTracer : public Tracer {
     // The table of shader handles that the driver reads. A record is a handle with room behind it, and each
     // section of records starts at a multiple of the larger of two alignments: here every record does.
     void fill_shader_binding_table(const Device& device, uint32_t group_count) {
-        const auto properties = device.physical()
-                                    .getProperties2<vk::PhysicalDeviceProperties2,
-                                                    vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>()
-                                    .get<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
+        const auto properties = device.properties<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
         const vk::DeviceSize handle_size = properties.shaderGroupHandleSize;
         const vk::DeviceSize alignment =
             std::max(properties.shaderGroupBaseAlignment, properties.shaderGroupHandleAlignment);
@@ -83,15 +80,15 @@ class PipelineTracer : public Tracer {
         const auto handles =
             pipeline_.getRayTracingShaderGroupHandlesKHR<uint8_t>(0, group_count, group_count * handle_size);
         // Buffers start at an address of their own, so the table is moved to the next aligned one.
-        table_.emplace_back(
+        table_.emplace(
             device, group_count * stride + alignment,
             vk::BufferUsageFlagBits::eShaderBindingTableKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress);
-        const vk::DeviceAddress start = align(table_.front().address(), alignment);
-        std::vector<uint8_t> table(table_.front().size());
+        const vk::DeviceAddress start = align(table_->address(), alignment);
+        std::vector<uint8_t> table(table_->size());
         for (uint32_t group = 0; group < group_count; ++group)
-            std::memcpy(&table[start - table_.front().address() + group * stride],
-                        &handles[group * handle_size], handle_size);
-        table_.front().write(table.data(), table.size());
+            std::memcpy(&table[start - table_->address() + group * stride], &handles[group * handle_size],
+                        handle_size);
+        table_->write(table.data(), table.size());
         const auto section = [&](uint32_t first, uint32_t end) {
             return vk::StridedDeviceAddressRegionKHR(start + first * stride, stride, (end - first) * stride);
         };
@@ -103,7 +100,7 @@ class PipelineTracer : public Tracer {
     DescriptorSet descriptors_;
     vk::raii::PipelineLayout layout_ = nullptr;
     vk::raii::Pipeline pipeline_ = nullptr;
-    std::vector<Buffer> table_;  // exactly one
+    std::optional<Buffer> table_;
     vk::StridedDeviceAddressRegionKHR ray_generation_records_, miss_records_, hit_records_;
 };
 

@@ -18,6 +18,11 @@ bool contains(const Bounds& outer, const Bounds& inner) {
            glm::all(glm::lessThanEqual(inner.high, outer.high));
 }
 
+void grow(Bounds& bounds, const Bounds& other) {
+    bounds.grow(other.low);
+    bounds.grow(other.high);
+}
+
 // Walks through the tree and checks all that the traversal relies on.
 class TreeWalk {
   public:
@@ -35,7 +40,7 @@ class TreeWalk {
     double surface_area_cost() const {
         Bounds all;
         for (size_t slot = 0; slot < 4; ++slot)
-            if (bvh_.nodes[0].children[slot] != 0) all.grow(bvh_.nodes[0].child_bounds(slot));
+            if (bvh_.nodes[0].children[slot] != 0) grow(all, bvh_.nodes[0].child_bounds(slot));
         return 1 + cost_ / area(all);
     }
 
@@ -68,7 +73,7 @@ class TreeWalk {
             cost_ += area(bounds) * (is_bvh_leaf(child) ? child >> bvh_leaf_shift : 1);
             const Bounds inside = is_bvh_leaf(child) ? leaf_bounds(child) : visit(child, entries);
             EXPECT_TRUE(contains(bounds, inside));
-            all.grow(inside);
+            grow(all, inside);
         }
         return all;
     }
