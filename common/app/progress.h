@@ -1,7 +1,8 @@
 // Tells on the terminal how far a long render is.
 #pragma once
-#include <chrono>
-#include <string>
+#include <cstdint>
+
+#include "clock.h"
 
 namespace lab {
 
@@ -15,9 +16,6 @@ class Progress {
     void update(double samples, uint64_t rays);
 
   private:
-    using Clock = std::chrono::steady_clock;
-    void print(const std::string& line);
-
     uint32_t target_samples_;
     double first_samples_;
     bool quiet_;

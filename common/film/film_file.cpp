@@ -50,9 +50,9 @@ std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t
 }
 
 // Splits a sum in double into the two floats that the device goes on with.
-void set_sum(FilmPixel& pixel, int channel, double sum) {
-    pixel.sum[channel] = static_cast<float>(sum);
-    pixel.compensation[channel] = static_cast<float>(sum - double{pixel.sum[channel]});
+void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
+    pixel.sum = vec3(sum);
+    pixel.compensation = vec3(sum - glm::dvec3(pixel.sum));
 }
 
 }  // namespace
@@ -107,12 +107,10 @@ FilmFile read_film(const std::filesystem::path& file) {
             FilmPixel& pixel = film.image.pixels[i];
             pixel.sample_count = samples + further_samples[i];
             pixel.invalid_count = invalid[i];
-            for (int channel = 0; channel < 3; ++channel) {
-                const double mean = exr.image.pixels[3 * i + static_cast<size_t>(channel)];
-                if (!std::isfinite(mean))
-                    throw UserError(file.string() + ": has infinite pixels: render again");
-                set_sum(pixel, channel, mean * pixel.sample_count);
-            }
+            const float* rgb = &exr.image.pixels[3 * i];
+            if (!std::all_of(rgb, rgb + 3, [](float value) { return std::isfinite(value); }))
+                throw UserError(file.string() + ": has infinite pixels: render again");
+            set_sum(pixel, glm::dvec3(rgb[0], rgb[1], rgb[2]) * static_cast<double>(pixel.sample_count));
         }
     });
     return film;
@@ -143,10 +141,7 @@ static void add(FilmFile& sum, const FilmFile& part) {
         for (size_t i = begin; i < end; ++i) {
             FilmPixel& pixel = sum.image.pixels[i];
             const FilmPixel& added = part.image.pixels[i];
-            for (int channel = 0; channel < 3; ++channel)
-                set_sum(pixel, channel,
-                        double{pixel.sum[channel]} + double{pixel.compensation[channel]} +
-                            double{added.sum[channel]} + double{added.compensation[channel]});
+            set_sum(pixel, sum_of(pixel) + glm::dvec3(added.sum) + glm::dvec3(added.compensation));
             pixel.sample_count += added.sample_count;
             pixel.invalid_count += added.invalid_count;
         }

@@ -7,6 +7,11 @@
 
 namespace lab {
 
+// The sum of a pixel's samples, which two floats hold together.
+inline glm::dvec3 sum_of(const FilmPixel& pixel) {
+    return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation);
+}
+
 // The contents of a film: pixels row by row from the top.
 struct FilmImage {
     uint32_t width = 0;

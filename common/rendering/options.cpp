@@ -61,19 +61,21 @@ void add_image_options(CLI::App& app, Options& options) {
 }
 
 void add_scene_options(CLI::App& app, Options& options) {
-    const auto finite = within(-1e30, 1e30, "a finite number");
-    const auto vector = [&](const char* name, OptionalVector& value, const char* help) {
-        app.add_option(name, value, help)->delimiter(',')->check(finite)->type_name("X,Y,Z");
+    const auto vector = [&](const char* name, std::optional<vec3>& value, const char* help) {
+        using Numbers = std::array<float, 3>;
+        const auto set = [&value](const Numbers& given) { value = {given[0], given[1], given[2]}; };
+        return app.add_option_function<Numbers>(name, set, help)->delimiter(',');
     };
-    vector("--camera-position", options.camera.position, "Where the camera stands");
-    vector("--camera-target", options.camera.target, "What it looks at");
-    vector("--camera-up", options.camera.up, "What it holds upwards");
+    const auto place = [&](const char* name, std::optional<vec3>& value, const char* help) {
+        vector(name, value, help)->check(within(-1e30, 1e30, "a finite number"))->type_name("X,Y,Z");
+    };
+    place("--camera-position", options.camera.position, "Where the camera stands");
+    place("--camera-target", options.camera.target, "What it looks at");
+    place("--camera-up", options.camera.up, "What it holds upwards");
     app.add_option("--vertical-fov", options.camera.vertical_fov,
                    "Angle between the picture's top and bottom in degrees")
         ->check(within(1e-6, 179.999, "an angle between 0 and 180 degrees"));
-    app.add_option("--background", options.light.background,
-                   "Radiance of the sky; with a light probe its factor")
-        ->delimiter(',')
+    vector("--background", options.light.background, "Radiance of the sky; with a light probe its factor")
         ->check(within(0, 1e30, "a radiance (finite and not negative)"))
         ->type_name("R,G,B");
     app.add_flag("--specular", options.scene.specular, "Use the Phong lobe Ks, Ns of the materials");

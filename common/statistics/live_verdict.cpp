@@ -53,31 +53,21 @@ LiveVerdict::LiveVerdict(Reference reference, glm::uvec2 image_size, double fals
     const auto samples = reference_.attributes.find("samples");
     reference_samples_ =
         samples == reference_.attributes.end() ? 0 : std::strtod(samples->second.c_str(), nullptr);
-    restart();
-}
-
-void LiveVerdict::restart() {
     const double paths_of_sample = square(scale_) * reference_.mean.width * reference_.mean.height;
     next_samples_ = first_test;
     while (next_samples_ * paths_of_sample < reliable_paths) next_samples_ *= 2;
-    tests_ = 0;
-    verdict_.reset();
 }
 
 void LiveVerdict::add(const FilmImage& film) {
     const Image& mean = reference_.mean;
-    differences_.assign(size_t{mean.width} * mean.height, {});
+    differences_.assign(size_t{mean.width} * mean.height, glm::dvec3(0));
     const double part = 1 / (square(scale_) * next_samples_);
     for (uint32_t y = 0; y < film.height; ++y)
-        for (uint32_t x = 0; x < film.width; ++x) {
-            const FilmPixel& pixel = film.pixels[size_t{y} * film.width + x];
-            auto& difference = differences_[size_t{y / scale_} * mean.width + x / scale_];
-            for (int channel = 0; channel < 3; ++channel)
-                difference[static_cast<size_t>(channel)] +=
-                    part * (double{pixel.sum[channel]} + double{pixel.compensation[channel]});
-        }
+        for (uint32_t x = 0; x < film.width; ++x)
+            differences_[size_t{y / scale_} * mean.width + x / scale_] +=
+                part * sum_of(film.pixels[size_t{y} * film.width + x]);
     for (size_t i = 0; i < differences_.size(); ++i)
-        for (size_t channel = 0; channel < 3; ++channel)
+        for (int channel = 0; channel < 3; ++channel)
             differences_[i][channel] -= double{mean.pixels[3 * i + channel]};
     samples_ = next_samples_;
     next_samples_ *= 2;
@@ -85,7 +75,7 @@ void LiveVerdict::add(const FilmImage& film) {
 }
 
 // Of a channel's mean over a region, in units of radiance.
-Difference LiveVerdict::difference(const Region& region, size_t channel) const {
+Difference LiveVerdict::difference(const Region& region, int channel) const {
     const glm::uvec2 corner = region.first * tile;
     const glm::uvec2 end =
         glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
@@ -129,7 +119,7 @@ void LiveVerdict::test() {
         return difference.p_value() < level_of_one;
     };
     std::array<double, 3> scales;
-    for (size_t channel = 0; channel < 3; ++channel) {
+    for (int channel = 0; channel < 3; ++channel) {
         const double mean =
             reference_.part(channel, {0, 0}, {reference_.mean.width, reference_.mean.height}).mean;
         scales[channel] = mean > 0 ? mean : 1;
@@ -141,7 +131,7 @@ void LiveVerdict::test() {
     // Of a region the channel that is farthest off.
     const auto worst = [&](uint32_t x, uint32_t y, uint32_t edge) {
         Difference farthest;
-        for (size_t channel = 0; channel < 3; ++channel) {
+        for (int channel = 0; channel < 3; ++channel) {
             Difference d = difference({{x, y}, glm::min(glm::uvec2(x, y) + edge, tiles_)}, channel);
             d.standard_error = std::hypot(d.standard_error, tile_floor * scales[channel]);
             if (channel == 0 || std::abs(d.z()) > std::abs(farthest.z())) farthest = d;
@@ -164,6 +154,12 @@ void LiveVerdict::test() {
             }
     }
     verdict_ = std::move(verdict);
+}
+
+std::array<uint8_t, 3> z_colour(double z) {
+    const double x = std::clamp(z / 5, -1.0, 1.0);
+    const auto byte = [](double part) { return static_cast<uint8_t>(std::lround(255 * part)); };
+    return {byte(1 + std::min(x, 0.0)), byte(1 - std::abs(x)), byte(1 - std::max(x, 0.0))};
 }
 
 std::string to_text(const Verdict& verdict) {

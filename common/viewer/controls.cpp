@@ -161,10 +161,8 @@ void Controls::draw_scene(Session& session, Options& options) {
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Or drop a .json or .obj file on the window");
     vec3 background = session.background();
-    if (ImGui::ColorEdit3("background", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
-        background = glm::max(background, vec3(0));
-        options.light.background = {background.x, background.y, background.z};
-    }
+    if (ImGui::ColorEdit3("background", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR))
+        options.light.background = glm::max(background, vec3(0));
     ImGui::Checkbox("specular lobes (Ks)", &options.scene.specular);
 }
 

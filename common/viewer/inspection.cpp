@@ -7,6 +7,11 @@
 
 namespace lab {
 
+// Not of glass, which reflects and refracts into single directions.
+static bool has_brdf(const PathVertex& vertex, const Scene& scene) {
+    return vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
+}
+
 std::shared_ptr<Inspection::Tools> Inspection::wanted_tools(const Session& session) const {
     const WindowBuild& build = session.build();
     Options options = build.job.options;
@@ -59,31 +64,24 @@ void Inspection::update(const Session& session, double seconds) {
         return;
     }
     const RenderParameters& parameters = session.build().job.parameters;
+    if (std::memcmp(&parameters, &parameters_, sizeof parameters) != 0) shown_.reset();
+    parameters_ = parameters;
     selection_->pixel = glm::min(selection_->pixel, parameters.image_size - 1u);
-    if (shown_ != selection_ || std::memcmp(&parameters, &parameters_, sizeof parameters) != 0) {
-        const bool is_new_path = !shown_ || shown_->pixel != selection_->pixel ||
-                                 shown_->sample != selection_->sample ||
-                                 std::memcmp(&parameters, &parameters_, sizeof parameters) != 0;
-        parameters_ = parameters;
-        if (is_new_path)
+    if (shown_ != selection_) {
+        if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample)
             path_ = tools_->recorder->record(parameters, selection_->pixel,
                                              parameters.first_sample + selection_->sample);
-        if (path_->vertices.empty()) {  // an estimator that traces no ray
-            has_hemisphere_ = false;
-            shown_ = selection_;
-            return;
+        has_hemisphere_ = false;
+        if (const auto& vertices = path_->vertices; !vertices.empty()) {  // else it traces no ray
+            selection_->vertex = std::min(selection_->vertex, vertices.size() - 1);
+            const PathVertex& vertex = vertices[selection_->vertex];
+            has_hemisphere_ = has_brdf(vertex, *tools_->scene);
+            if (has_hemisphere_) tools_->hemisphere->look_at(vertex, parameters);
         }
-        selection_->vertex = std::min(selection_->vertex, path_->vertices.size() - 1);
-        const PathVertex& vertex = path_->vertices[selection_->vertex];
-        const Scene& scene = *tools_->scene;
-        // Glass reflects and refracts into single directions: its BRDF is no function.
-        has_hemisphere_ =
-            vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
-        if (has_hemisphere_) tools_->hemisphere->look_at(vertex, parameters);
         shown_ = selection_;
     }
-    constexpr uint32_t enough_samples = 256;
     if (!has_hemisphere_) return;
+    constexpr uint32_t enough_samples = 256;
     tools_->hemisphere->set_dispatch_seconds(seconds);
     tools_->hemisphere->advance(enough_samples);
 }

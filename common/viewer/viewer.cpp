@@ -6,14 +6,11 @@
 
 #include <cstdio>
 
-#include "clock.h"
 #include "rendering/interrupt.h"
 #include "viewer/frame_pacing.h"
 
 namespace lab {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Follows a series of numbers with a memory of about ten of them.
 double smooth(double average, double number) { return average + 0.1 * (number - average); }

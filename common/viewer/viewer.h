@@ -1,5 +1,6 @@
 // The window of a chapter: shows the picture while it is rendered, and lets its user change everything.
 #pragma once
+#include "clock.h"
 #include "viewer/camera_control.h"
 #include "viewer/comparison_panel.h"
 #include "viewer/controls.h"
@@ -43,8 +44,8 @@ class Viewer {
     bool shows_controls_ = true;
     double interface_seconds_ = 0.01;  // of a frame, smoothed
     double frames_per_second_ = 0;     // smoothed
-    std::chrono::steady_clock::time_point last_frame_ = std::chrono::steady_clock::now();
-    std::chrono::steady_clock::time_point last_motion_{};
+    Clock::time_point last_frame_ = Clock::now();
+    Clock::time_point last_motion_{};
 };
 
 // Opens the window and renders until it is closed; then writes the outputs that the options name, as a run
