@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/progress.h"
 #include "clock.h"
 #include "error.h"
+#include "platform.h"
 #include "rendering/interrupt.h"
 #include "rendering/numbers_text.h"
 #include "rendering/outputs.h"
@@ -15,6 +15,46 @@
 
 namespace lab {
 namespace {
+
+// Tells on the terminal how far a long render is.
+class Progress {
+  public:
+    // `target_samples` a pixel. A quiet progress prints nothing.
+    Progress(uint32_t target_samples, double first_samples, bool quiet)
+        : target_samples_(target_samples), first_samples_(first_samples), quiet_(quiet) {}
+    ~Progress() {
+        if (printed_ && terminal_) std::fputs("\r\033[K", stderr);
+    }
+
+    // `samples` a pixel and `rays` of this run so far; prints a few times a second.
+    void update(double samples, uint64_t rays) {
+        // A log file gets a line now and then, a terminal one line that is rewritten.
+        if (quiet_ || seconds_since(last_) < (terminal_ ? 0.2 : 10.0)) return;
+        last_ = Clock::now();
+        const double seconds = seconds_since(start_);
+        const double rate = (samples - first_samples_) / seconds;
+        const double fraction = std::min(samples / target_samples_, 1.0);
+        constexpr int bar_width = 24;
+        const int filled = static_cast<int>(fraction * bar_width);
+        std::fprintf(stderr, "%s[%s%s] %.4g/%u samples  %s samples/s  %s rays/s  %s left%s",
+                     terminal_ ? "\r\033[K" : "", std::string(filled, '#').c_str(),
+                     std::string(bar_width - filled, '.').c_str(), samples, target_samples_,
+                     short_number(rate).c_str(), short_number(static_cast<double>(rays) / seconds).c_str(),
+                     rate > 0 ? duration_text((target_samples_ - samples) / rate).c_str() : "?",
+                     terminal_ ? "" : "\n");
+        std::fflush(stderr);
+        printed_ = true;
+    }
+
+  private:
+    const uint32_t target_samples_;
+    const double first_samples_;
+    const bool quiet_;
+    const bool terminal_ = is_terminal(stderr);
+    bool printed_ = false;
+    const Clock::time_point start_ = Clock::now();
+    Clock::time_point last_ = start_;
+};
 
 class HeadlessRender {
   public:

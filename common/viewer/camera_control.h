@@ -29,7 +29,6 @@ class CameraControl {
 
     Navigation navigation = Navigation::first_person;
     float speed() const { return speed_; }  // scene units a second
-    void set_speed(float speed) { speed_ = speed; }
 
   private:
     float size_ = 1;  // diagonal of the scene

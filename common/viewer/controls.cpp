@@ -218,11 +218,11 @@ void Controls::draw_picture(const Session& session, Options& options) {
 
 void Controls::draw_camera(Session& session, CameraControl& camera_control) {
     ImGui::Separator();
-    int navigation = static_cast<int>(camera_control.navigation);
-    ImGui::RadioButton("first person", &navigation, static_cast<int>(Navigation::first_person));
+    Navigation& navigation = camera_control.navigation;
+    if (ImGui::RadioButton("first person", navigation == Navigation::first_person))
+        navigation = Navigation::first_person;
     ImGui::SameLine();
-    ImGui::RadioButton("orbit", &navigation, static_cast<int>(Navigation::orbit));
-    camera_control.navigation = static_cast<Navigation>(navigation);
+    if (ImGui::RadioButton("orbit", navigation == Navigation::orbit)) navigation = Navigation::orbit;
     CameraPose pose = session.camera();
     if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees",
                            ImGuiSliderFlags_AlwaysClamp))

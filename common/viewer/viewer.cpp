@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "rendering/interrupt.h"
+#include "viewer/comparison_panel.h"
 #include "viewer/frame_pacing.h"
 
 namespace lab {
@@ -38,7 +39,7 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
       screen_(device, window),
       session_(device, chapter, build_while_waiting(window, screen_, device, chapter, job)),
       inside_panel_(device),
-      comparison_panel_(device) {}
+      comparison_(device) {}
 
 bool Viewer::frame() {
     const bool has_work =
@@ -55,10 +56,10 @@ bool Viewer::frame() {
     open_dropped_files();
     if (shows_controls_) {
         inside_panel_.draw(session_, picture_rectangle(), 0.15 * budget);
-        comparison_panel_.draw_split(picture_rectangle());
+        draw_split(comparison_, picture_rectangle());
         controls_.draw(session_, camera_control_, frames_per_second_, [&] {
             inside_panel_.draw_controls(session_);
-            comparison_panel_.draw_controls(session_);
+            draw_controls(comparison_, session_);
         });
     }
     handle_keys();
@@ -67,11 +68,10 @@ bool Viewer::frame() {
 
     const auto rendering = Clock::now();
     constexpr double rest = 0.2;  // seconds without motion after which the picture is rendered as asked for
-    Comparison& comparison = comparison_panel_.comparison();
-    comparison.update(session_, budget, seconds_since(last_motion_) < rest);
+    comparison_.update(session_, budget, seconds_since(last_motion_) < rest);
     const double rendered = seconds_since(rendering);
 
-    const double waited = screen_.show(comparison.layers(session_, picture_rectangle()));
+    const double waited = screen_.show(comparison_.layers(session_, picture_rectangle()));
     interface_seconds_ = smooth(interface_seconds_, seconds_since(start) - rendered - waited);
     return true;
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include "clock.h"
 #include "viewer/camera_control.h"
-#include "viewer/comparison_panel.h"
+#include "viewer/comparison.h"
 #include "viewer/controls.h"
 #include "viewer/inside_panel.h"
 #include "viewer/screen.h"
@@ -24,8 +24,7 @@ class Viewer {
     Screen& screen() { return screen_; }
     const Controls& controls() const { return controls_; }
     const InsidePanel& inside_panel() const { return inside_panel_; }
-    Comparison& comparison() { return comparison_panel_.comparison(); }
-    double frames_per_second() const { return frames_per_second_; }
+    Comparison& comparison() { return comparison_; }
     Rectangle picture_rectangle() const;  // where the window shows the picture
 
   private:
@@ -40,7 +39,7 @@ class Viewer {
     std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed fits to
     Controls controls_;
     InsidePanel inside_panel_;
-    ComparisonPanel comparison_panel_;
+    Comparison comparison_;
     bool shows_controls_ = true;
     double interface_seconds_ = 0.01;  // of a frame, smoothed
     double frames_per_second_ = 0;     // smoothed
