@@ -12,20 +12,6 @@ static bool has_brdf(const PathVertex& vertex, const Scene& scene) {
     return vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
 }
 
-std::shared_ptr<Inspection::Tools> Inspection::wanted_tools(const Session& session) const {
-    const WindowBuild& build = session.build();
-    Options options = build.job.options;
-    options.image.view = nullptr;
-    auto tools = std::make_shared<Tools>();
-    tools->scene = build.job.scene;
-    tools->gpu_scene = build.gpu_scene;
-    tools->acceleration_structure = build.acceleration_structure;
-    tools->estimator = make_estimator(session.chapter(), options);
-    tools->shader_hash = build.shader_hash;
-    tools->image_size = build.job.parameters.image_size;
-    return tools;
-}
-
 // Whether there are tools for what the session renders; if not, starts making them.
 bool Inspection::have_tools(const Session& session) {
     if (work_.is_under_way()) {
@@ -39,7 +25,15 @@ bool Inspection::have_tools(const Session& session) {
             failed_shader_hash_ = work_shader_hash_;
         }
     }
-    const auto wanted = wanted_tools(session);
+    const WindowBuild& build = session.build();
+    Options options = build.job.options;
+    options.image.view = nullptr;
+    const auto wanted = std::make_shared<Tools>(Tools{.scene = build.job.scene,
+                                                      .gpu_scene = build.gpu_scene,
+                                                      .acceleration_structure = build.acceleration_structure,
+                                                      .estimator = make_estimator(session.chapter(), options),
+                                                      .shader_hash = build.shader_hash,
+                                                      .image_size = build.job.parameters.image_size});
     if (tools_ && tools_->acceleration_structure == wanted->acceleration_structure &&
         tools_->shader_hash == wanted->shader_hash && tools_->estimator.file == wanted->estimator.file &&
         tools_->image_size == wanted->image_size)
