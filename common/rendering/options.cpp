@@ -1,7 +1,6 @@
 #include "rendering/options.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <iostream>
 #include <sstream>
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "error.h"
 #include "files/hash.h"
 #include "files/project_folder.h"
 

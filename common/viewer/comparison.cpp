@@ -1,6 +1,5 @@
 #include "viewer/comparison.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "error.h"

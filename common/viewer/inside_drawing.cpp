@@ -1,6 +1,5 @@
 #include "viewer/inside_drawing.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "inside/hemisphere_view.h"

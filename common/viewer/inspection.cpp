@@ -2,7 +2,6 @@
 
 #include <cstring>
 
-#include "error.h"
 #include "rendering/settings.h"
 
 namespace lab {

@@ -53,7 +53,7 @@ bool Viewer::frame() {
 
     const double budget = rendering_seconds(window_.refresh_seconds(), interface_seconds_);
     screen_.begin_frame();
-    open_dropped_files();
+    for (const auto& file : window_.dropped_files()) session_.open_scene(file);
     if (shows_controls_) {
         inside_panel_.draw(session_, picture_rectangle(), 0.15 * budget);
         draw_split(comparison_, picture_rectangle());
@@ -128,10 +128,6 @@ void Viewer::handle_keys() {
     if (window_.was_key_pressed(GLFW_KEY_SPACE)) session_.is_paused = !session_.is_paused;
     if (window_.was_key_pressed(GLFW_KEY_R)) session_.restart();
     if (window_.was_key_pressed(GLFW_KEY_T)) inside_panel_.show_next_overlay();
-}
-
-void Viewer::open_dropped_files() {
-    for (const auto& file : window_.dropped_files()) session_.open_scene(file);
 }
 
 void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job) {

@@ -30,7 +30,6 @@ class Viewer {
   private:
     void move_camera(double seconds);
     void handle_keys();
-    void open_dropped_files();
 
     Window& window_;
     Screen screen_;
