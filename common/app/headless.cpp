@@ -65,12 +65,11 @@ class HeadlessRender {
           acceleration_structure_(*build.acceleration_structure) {
         if (!options_.reference.empty()) {
             reference_ = read_reference(options_.reference);
-            const Image& image = reference_->mean;
-            if (image.width != renderer_.film().width() || image.height != renderer_.film().height())
-                throw UserError(options_.reference.string() + ": has " + std::to_string(image.width) + "x" +
-                                std::to_string(image.height) + " pixels, the image has " +
-                                std::to_string(renderer_.film().width()) + "x" +
-                                std::to_string(renderer_.film().height()) + ": they must agree");
+            const uvec2 size(reference_->mean.width, reference_->mean.height);
+            if (size != job_.parameters.image_size)
+                throw UserError(options_.reference.string() + ": has " + size_text(size) +
+                                " pixels, the image has " + size_text(job_.parameters.image_size) +
+                                ": they must agree");
             const std::string difference = mismatch(*reference_, *job_.scene, job_.parameters);
             if (!difference.empty() && !options_.quiet)
                 std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(),

@@ -117,10 +117,7 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
             throw UserError(name_a + " and " + name_b + " do not belong together: " + what + " '" + value_a +
                             "' against '" + value_b + "'");
     };
-    const auto size = [](const FilmImage& image) {
-        return std::to_string(image.width) + "x" + std::to_string(image.height);
-    };
-    require("size", size(a.image), size(b.image));
+    require("size", size_text({a.image.width, a.image.height}), size_text({b.image.width, b.image.height}));
     require("chapter", a.record.chapter, b.record.chapter);
     require("seed", std::to_string(a.record.seed), std::to_string(b.record.seed));
     require("settings", a.record.settings, b.record.settings);

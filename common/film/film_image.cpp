@@ -54,6 +54,8 @@ std::array<double, 3> FilmImage::mean_radiance() const {
     return {mean.r, mean.g, mean.b};
 }
 
+std::string size_text(const uvec2& size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }
+
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole) {
     FilmImage rest = whole;
     in_parallel(rest.pixels.size(), pixels_per_piece, [&](size_t begin, size_t end) {

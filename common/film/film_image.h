@@ -1,5 +1,6 @@
 // What the samples of an image have added up to.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "image/image.h"
@@ -24,6 +25,9 @@ struct FilmImage {
     Image mean() const;                           // mean radiance of a pixel; 0 where there are no samples
     std::array<double, 3> mean_radiance() const;  // of the whole image
 };
+
+// For messages: "640x480".
+std::string size_text(const uvec2& size);
 
 // The samples of `whole` that came after those of `first`, an earlier state of the same film.
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole);

@@ -44,6 +44,7 @@ struct EstimatorOptions {
 struct ImageOptions {
     std::optional<uint32_t> width, height;
     const View* view = nullptr;  // null: radiance
+    DisplayTransform display() const { return view ? view->display : DisplayTransform::exposure; }
     bool operator==(const ImageOptions&) const = default;
 };
 

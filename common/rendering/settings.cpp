@@ -100,6 +100,12 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
     return parameters;
 }
 
+std::string camera_flags(const CameraPose& pose, char separator) {
+    return "--camera-position" + (separator + exact_text(pose.position)) + " --camera-target" + separator +
+           exact_text(pose.target) + " --camera-up" + separator + exact_text(pose.up) + " --vertical-fov" +
+           separator + exact_text(pose.vertical_fov);
+}
+
 std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
                           const Options& options) {
     std::ostringstream text;
@@ -113,10 +119,8 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     if (options.estimator.split_every_hit) text << " --split-every-hit";
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
-    const CameraPose pose = camera_of(scene, options);
-    text << " --camera-position " << exact_text(pose.position) << " --camera-target "
-         << exact_text(pose.target) << " --camera-up " << exact_text(pose.up) << " --vertical-fov "
-         << pose.vertical_fov << " --background " << exact_text(background_of(scene, options));
+    text << ' ' << camera_flags(camera_of(scene, options), ' ') << " --background "
+         << exact_text(background_of(scene, options));
     return text.str();
 }
 

@@ -39,9 +39,8 @@ LiveVerdict::LiveVerdict(Reference reference, glm::uvec2 image_size, double fals
     : reference_(std::move(reference)), false_alarms_(false_alarms) {
     const glm::uvec2 size(reference_.mean.width, reference_.mean.height);
     if (image_size % size != glm::uvec2(0) || image_size.x / size.x != image_size.y / size.y)
-        throw UserError("the reference has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
-                        " pixels, the image " + std::to_string(image_size.x) + "x" +
-                        std::to_string(image_size.y) + ": it must be a whole number of times larger");
+        throw UserError("the reference has " + size_text(size) + " pixels, the image " +
+                        size_text(image_size) + ": it must be a whole number of times larger");
     scale_ = image_size.x / size.x;
     tiles_ = (size + tile - 1u) / tile;
     reference_samples_ = std::strtod(reference_.attributes["samples"].c_str(), nullptr);  // 0 if unknown

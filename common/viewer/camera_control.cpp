@@ -65,11 +65,6 @@ CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motio
     return moved.position == moved.target ? pose : moved;
 }
 
-std::string camera_flags(const CameraPose& pose) {
-    return "--camera-position=" + exact_text(pose.position) + " --camera-target=" + exact_text(pose.target) +
-           " --camera-up=" + exact_text(pose.up) + " --vertical-fov=" + exact_text(pose.vertical_fov);
-}
-
 std::string camera_json(const CameraPose& pose) {
     const auto array = [](const vec3& v) { return "[" + exact_text(v, ", ") + "]"; };
     return "\"camera\": {\"position\": " + array(pose.position) + ", \"target\": " + array(pose.target) +

@@ -35,9 +35,7 @@ class CameraControl {
     float speed_ = 0.25f;
 };
 
-// The pose as options of the command line, and as the value of "camera" in a scene file. The numbers are
-// exact.
-std::string camera_flags(const CameraPose& pose);
+// The pose as the value of "camera" in a scene file. The numbers are exact.
 std::string camera_json(const CameraPose& pose);
 
 }  // namespace lab

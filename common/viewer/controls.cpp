@@ -11,6 +11,7 @@
 #include "files/project_folder.h"
 #include "rendering/backend_choice.h"
 #include "rendering/numbers_text.h"
+#include "rendering/settings.h"
 
 namespace lab {
 namespace {
@@ -233,7 +234,7 @@ void Controls::draw_camera(Session& session, CameraControl& camera_control) {
         std::fflush(stdout);
         notice_ = "copied the camera";
     };
-    copy("Copy flags", camera_flags(pose));
+    copy("Copy flags", camera_flags(pose, '='));
     ImGui::SameLine();
     copy("Copy JSON", camera_json(pose));
     ImGui::TextWrapped(

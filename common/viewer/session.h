@@ -57,6 +57,10 @@ class Session {
     // Whether the picture will be the scene's reference: null where there is nothing to compare with, and
     // why in verdict_text().
     const LiveVerdict* verdict() const { return std::get_if<LiveVerdict>(&verdict_); }
+    // The latest of it; null before the first.
+    const Verdict* latest_verdict() const {
+        return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr;
+    }
     std::string verdict_text() const {
         return verdict() ? verdict()->text() : "no verdict: " + std::get<std::string>(verdict_);
     }

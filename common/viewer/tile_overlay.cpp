@@ -62,9 +62,8 @@ void TileOverlay::update(const Session& session) {
         return;
     }
     uint32_t samples = session.last_snapshot().min_samples();
-    if (shown == Overlay::bias)
-        samples =
-            session.verdict() && session.verdict()->verdict() ? session.verdict()->verdict()->samples : 0;
+    const Verdict* verdict = session.latest_verdict();
+    if (shown == Overlay::bias) samples = verdict ? verdict->samples : 0;
     const bool is_old = shown == Overlay::samples && seconds_since(last_update_) > 0.5;
     if (coloured_ == shown && coloured_samples_ == samples && !is_old) return;
     coloured_ = shown;
@@ -80,14 +79,14 @@ void TileOverlay::update(const Session& session) {
 }
 
 void TileOverlay::colour_bias(const Session& session) {
-    if (!session.verdict() || !session.verdict()->verdict()) {
+    const Verdict* verdict = session.latest_verdict();
+    if (!verdict) {
         legend_ = session.verdict_text();
         return;
     }
-    const Verdict& verdict = *session.verdict()->verdict();
-    tile_size_ = verdict.map_tile_size;
-    tiles_ = {verdict.map.width, verdict.map.height};
-    for (const double z : verdict.map.values) {
+    tile_size_ = verdict->map_tile_size;
+    tiles_ = {verdict->map.width, verdict->map.height};
+    for (const double z : verdict->map.values) {
         const auto [red, green, blue] = z_colour(z);
         colours_.push_back(IM_COL32(red, green, blue, 255 * opacity));
     }
