@@ -1,20 +1,60 @@
 #include "app/headless.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
-#include "app/progress.h"
 #include "clock.h"
 #include "error.h"
+#include "platform.h"
 #include "rendering/interrupt.h"
 #include "rendering/numbers_text.h"
 #include "rendering/outputs.h"
+#include "rendering/report.h"
 #include "rendering/scene_reference.h"
 
 namespace lab {
 namespace {
+
+// Tells on the terminal how far a long render is.
+class Progress {
+  public:
+    // `target_samples` a pixel. A quiet progress prints nothing.
+    Progress(uint32_t target_samples, double first_samples, bool quiet)
+        : target_samples_(target_samples), first_samples_(first_samples), quiet_(quiet) {}
+    ~Progress() {
+        if (printed_ && terminal_) std::fputs("\r\033[K", stderr);
+    }
+
+    // `samples` a pixel and `rays` of this run so far; prints a few times a second.
+    void update(double samples, uint64_t rays) {
+        // A log file gets a line now and then, a terminal one line that is rewritten.
+        if (quiet_ || seconds_since(last_) < (terminal_ ? 0.2 : 10.0)) return;
+        last_ = Clock::now();
+        const double seconds = seconds_since(start_);
+        const double rate = (samples - first_samples_) / seconds;
+        const double fraction = std::min(samples / target_samples_, 1.0);
+        constexpr int bar_width = 24;
+        const int filled = static_cast<int>(fraction * bar_width);
+        std::fprintf(stderr, "%s[%s%s] %.4g/%u samples  %s samples/s  %s rays/s  %s left%s",
+                     terminal_ ? "\r\033[K" : "", std::string(filled, '#').c_str(),
+                     std::string(bar_width - filled, '.').c_str(), samples, target_samples_,
+                     short_number(rate).c_str(), short_number(static_cast<double>(rays) / seconds).c_str(),
+                     rate > 0 ? duration_text((target_samples_ - samples) / rate).c_str() : "?",
+                     terminal_ ? "" : "\n");
+        std::fflush(stderr);
+        printed_ = true;
+    }
+
+  private:
+    const uint32_t target_samples_;
+    const double first_samples_;
+    const bool quiet_;
+    const bool terminal_ = is_terminal(stderr);
+    bool printed_ = false;
+    const Clock::time_point start_ = Clock::now();
+    Clock::time_point last_ = start_;
+};
 
 class HeadlessRender {
   public:
@@ -22,15 +62,14 @@ class HeadlessRender {
         : job_(build.job),
           options_(job_.options.run),
           renderer_(*build.renderer),
-          acceleration_(build.acceleration()) {
+          acceleration_structure_(*build.acceleration_structure) {
         if (!options_.reference.empty()) {
             reference_ = read_reference(options_.reference);
-            const Image& image = reference_->mean;
-            if (image.width != renderer_.film().width() || image.height != renderer_.film().height())
-                throw UserError(options_.reference.string() + ": has " + std::to_string(image.width) + "x" +
-                                std::to_string(image.height) + " pixels, the image has " +
-                                std::to_string(renderer_.film().width()) + "x" +
-                                std::to_string(renderer_.film().height()) + ": they must agree");
+            const uvec2 size(reference_->mean.width, reference_->mean.height);
+            if (size != job_.parameters.image_size)
+                throw UserError(options_.reference.string() + ": has " + size_text(size) +
+                                " pixels, the image has " + size_text(job_.parameters.image_size) +
+                                ": they must agree");
             const std::string difference = mismatch(*reference_, *job_.scene, job_.parameters);
             if (!difference.empty() && !options_.quiet)
                 std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(),
@@ -42,7 +81,7 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
-        start_ = last_save_ = std::chrono::steady_clock::now();
+        start_ = last_save_ = Clock::now();
         try {
             sample();
         } catch (const std::exception& error) {
@@ -58,15 +97,11 @@ class HeadlessRender {
     }
 
   private:
-    // Stops at 1, 2, 4, … samples for a row of the report: errors are compared at powers of two, and a test
-    // for the target error at every dispatch would prefer images that look converged by chance.
     void sample() {
         Progress progress(job_.samples, renderer_.samples(), options_.quiet);
         uint32_t done = snapshot_.min_samples();
         while (done < job_.samples && !is_interrupted()) {
-            uint32_t next = 1;
-            while (next <= done) next = next > job_.samples / 2 ? job_.samples : 2 * next;
-            next = std::min(next, job_.samples);
+            const uint32_t next = next_look(done, job_.samples);
             bool more = true;
             while (more && !is_interrupted() && !is_time_over()) {
                 more = renderer_.advance(next);
@@ -101,7 +136,7 @@ class HeadlessRender {
         constexpr double seconds_between_snapshots = 10;
         const double interval = options_.save_every.value_or(seconds_between_snapshots);
         if (seconds_since(last_save_) < interval) return;
-        last_save_ = std::chrono::steady_clock::now();
+        last_save_ = Clock::now();
         take_snapshot();
         if (!options_.save_every) return;
         try {
@@ -123,23 +158,16 @@ class HeadlessRender {
 
     void add_row(uint32_t samples) {
         if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
-        const auto start = std::chrono::steady_clock::now();
+        const auto start = Clock::now();
         take_snapshot();
-        const FilmImage& film = snapshot_;
-        ReportRow row{.samples = samples,
-                      .seconds = record_.seconds,
-                      .device_seconds = renderer_.device_seconds(),
-                      .rays = record_.rays,
-                      .mean = film.mean_radiance(),
-                      .error = std::nullopt};
-        if (reference_) {
-            row.error = compare(film.mean(), *reference_);
-        } else if (const uint32_t before = last_row_film_.min_samples();
-                   job_.has_independent_halves() && before > 0 && samples == 2 * before) {
-            row.error = estimate_error(last_row_film_.mean(), samples_after(last_row_film_, film).mean());
-        }
-        rows_.push_back(row);
-        last_row_film_ = film;
+        rows_.push_back({.samples = samples,
+                         .seconds = record_.seconds,
+                         .device_seconds = renderer_.device_seconds(),
+                         .rays = record_.rays,
+                         .mean = snapshot_.mean_radiance(),
+                         .error = reference_ ? compare(snapshot_.mean(), *reference_)
+                                             : job_.error_from(last_row_film_, snapshot_)});
+        last_row_film_ = snapshot_;
         measuring_seconds_ += seconds_since(start);
     }
 
@@ -148,7 +176,7 @@ class HeadlessRender {
         if (!options_.report.empty()) files.push_back(options_.report);
         write_each(files, [&](const std::filesystem::path& file) {
             if (file == options_.report)
-                write_report(file, snapshot_, record_, acceleration_,
+                write_report(file, snapshot_, record_, acceleration_structure_,
                              reference_ ? ErrorSource::reference : ErrorSource::halves, rows_);
             else
                 write_picture(file, snapshot_, record_, job_.options);
@@ -177,8 +205,8 @@ class HeadlessRender {
             "time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
             short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
         std::printf("acceleration   structure of %s bytes, built in %s\n",
-                    short_number(static_cast<double>(acceleration_.bytes)).c_str(),
-                    duration_text(acceleration_.build_seconds).c_str());
+                    short_number(static_cast<double>(acceleration_structure_.bytes())).c_str(),
+                    duration_text(acceleration_structure_.build_seconds()).c_str());
         if (!rows_.empty() && rows_.back().error)
             std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n",
                         100 * std::sqrt(rows_.back().error->rel_mse),
@@ -192,14 +220,14 @@ class HeadlessRender {
     const RenderJob& job_;
     const RunOptions& options_;
     Renderer& renderer_;
-    const AccelerationRecord acceleration_;
+    const AccelerationStructure& acceleration_structure_;
     std::optional<Reference> reference_;
     FilmImage snapshot_;       // last read from the device
     FilmRecord record_;        // of that film
     FilmImage last_row_film_;  // at the last row of the report
     std::vector<ReportRow> rows_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();  // of rendering
-    std::chrono::steady_clock::time_point last_save_;
+    Clock::time_point start_ = Clock::now();  // of rendering
+    Clock::time_point last_save_;
     double measuring_seconds_ = 0;  // for the rows of the report
 };
 

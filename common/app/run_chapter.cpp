@@ -104,9 +104,9 @@ bool run_in_window(Window& window, const Chapter& chapter, const RenderJob& job)
 
 void print_start(const Chapter& chapter, const Device& device, const Build& build) {
     const RenderJob& job = build.job;
-    std::cout << chapter.name << ", " << job.record.scene << ", " << job.parameters.image_size.x << "x"
-              << job.parameters.image_size.y << ", " << job.samples << " samples, "
-              << device.description().name << ", backend " << to_string(build.backend) << std::endl;
+    std::cout << chapter.name << ", " << job.record.scene << ", " << size_text(job.parameters.image_size)
+              << ", " << job.samples << " samples, " << device.description().name << ", backend "
+              << to_string(build.backend) << std::endl;
     if (chapter.unlimited_path_length && !job.options.light.max_path_length &&
         !job.options.estimator.split_every_hit)
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;

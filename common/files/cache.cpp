@@ -3,9 +3,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "error.h"
+#include "files/file.h"
 #include "files/hash.h"
 #include "platform.h"
 
@@ -20,43 +20,35 @@ std::filesystem::path cache_folder() {
     return home.empty() ? home : home / ".cache" / "path_tracing_lab";
 }
 
-// The last eight bytes of an entry are the hash of the others.
-uint64_t checksum(const uint8_t* bytes, size_t size) {
-    return hash_text({reinterpret_cast<const char*>(bytes), size});
-}
-
 }  // namespace
 
-std::optional<std::vector<uint8_t>> read_cache(const std::string& name) {
+// The last eight bytes of an entry are the hash of the others.
+std::optional<std::string> read_cache(const std::string& name) try {
     const auto folder = cache_folder();
     if (folder.empty()) return std::nullopt;
-    std::ifstream stream(folder / name, std::ios::binary);
-    std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(stream), {}};
+    std::string bytes = read_file(folder / name, UINT64_MAX);
     uint64_t stored = 0;
     if (bytes.size() < sizeof stored) return std::nullopt;
     const size_t size = bytes.size() - sizeof stored;
     std::memcpy(&stored, bytes.data() + size, sizeof stored);
-    if (stored != checksum(bytes.data(), size)) return std::nullopt;
     bytes.resize(size);
-    return bytes;
+    return stored == hash_text(bytes) ? std::optional(std::move(bytes)) : std::nullopt;
+} catch (const UserError&) {
+    return std::nullopt;
 }
 
-void write_cache(const std::string& name, const std::vector<uint8_t>& contents) {
+void write_cache(const std::string& name, std::string_view contents) {
     const auto folder = cache_folder();
     if (folder.empty()) return;
     std::error_code ignored;
     std::filesystem::create_directories(folder, ignored);
-    const auto temporary = folder / (name + "." + std::to_string(process_id()));
-    const uint64_t sum = checksum(contents.data(), contents.size());
-    std::ofstream stream(temporary, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(contents.data()),
-                 static_cast<std::streamsize>(contents.size()));
-    stream.write(reinterpret_cast<const char*>(&sum), sizeof sum);
-    stream.close();
-    if (stream)
-        rename_file(temporary, folder / name, ignored);
-    else
-        std::filesystem::remove(temporary, ignored);
+    const uint64_t hash = hash_text(contents);
+    std::string bytes(contents);
+    bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+    try {
+        write_file(folder / name, bytes);
+    } catch (const UserError&) {  // the next start takes longer
+    }
 }
 
 }  // namespace lab

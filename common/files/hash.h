@@ -1,5 +1,6 @@
 // Hashes that name contents: of cache entries, scenes and estimators.
 #pragma once
+#include <charconv>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -7,9 +8,15 @@
 namespace lab {
 
 // FNV-1a of a text, continued from `hash`.
-uint64_t hash_text(std::string_view text, uint64_t hash = 14695981039346656037ull);
+inline uint64_t hash_text(std::string_view text, uint64_t hash = 14695981039346656037ull) {
+    for (const char c : text) hash = (hash ^ static_cast<uint8_t>(c)) * 1099511628211ull;
+    return hash;
+}
 
 // A hash as records and reports write it: without leading zeros.
-std::string hexadecimal(uint64_t number);
+inline std::string hexadecimal(uint64_t number) {
+    char text[16];
+    return {text, std::to_chars(text, text + sizeof text, number, 16).ptr};
+}
 
 }  // namespace lab

@@ -24,10 +24,12 @@ T number(const ExrFile& exr, const std::string& name, const std::filesystem::pat
                     "' that is a number: only an EXR written by a chapter can be continued or merged");
 }
 
-std::string text(const ExrFile& exr, const std::string& name) {
-    const auto found = exr.attributes.find(name);
-    return found == exr.attributes.end() ? "" : found->second;
-}
+// The attributes that are texts.
+constexpr std::pair<const char*, std::string FilmRecord::*> texts[] = {
+    {"chapter", &FilmRecord::chapter},       {"scene", &FilmRecord::scene},
+    {"scene_hash", &FilmRecord::scene_hash}, {"estimator_hash", &FilmRecord::estimator_hash},
+    {"settings", &FilmRecord::settings},     {"backend", &FilmRecord::backend},
+    {"device", &FilmRecord::device}};
 
 std::string to_text(double value) {
     char buffer[32];
@@ -49,10 +51,15 @@ std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t
     return result;
 }
 
+// Not inlined: in loops over floats and doubles GCC 12 drops this rounding.
+[[gnu::noinline]] float to_float(double number) { return static_cast<float>(number); }
+
 // Splits a sum in double into the two floats that the device goes on with.
-void set_sum(FilmPixel& pixel, int channel, double sum) {
-    pixel.sum[channel] = static_cast<float>(sum);
-    pixel.compensation[channel] = static_cast<float>(sum - double{pixel.sum[channel]});
+void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
+    for (int channel = 0; channel < 3; ++channel) {
+        pixel.sum[channel] = to_float(sum[channel]);
+        pixel.compensation[channel] = to_float(sum[channel] - double{pixel.sum[channel]});
+    }
 }
 
 }  // namespace
@@ -60,19 +67,11 @@ void set_sum(FilmPixel& pixel, int channel, double sum) {
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record) {
     ExrFile exr{.image = image.mean(), .channels = {}, .attributes = {}};
     const uint32_t samples = image.min_samples();
-    exr.attributes = {{"chapter", record.chapter},
-                      {"scene", record.scene},
-                      {"scene_hash", record.scene_hash},
-                      {"estimator_hash", record.estimator_hash},
-                      {"settings", record.settings},
-                      {"backend", record.backend},
-                      {"device", record.device},
-                      {"seed", std::to_string(record.seed)},
-                      {"first_sample", std::to_string(record.first_sample)},
-                      {"samples", std::to_string(samples)},
-                      {"invalid_samples", std::to_string(image.invalid_samples())},
-                      {"rays", std::to_string(record.rays)},
-                      {"seconds", to_text(record.seconds)}};
+    exr.attributes = {
+        {"seed", std::to_string(record.seed)}, {"first_sample", std::to_string(record.first_sample)},
+        {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
+        {"rays", std::to_string(record.rays)}, {"seconds", to_text(record.seconds)}};
+    for (const auto& [name, text] : texts) exr.attributes[name] = record.*text;
     // Relative to the fewest, since floats hold whole numbers only up to 2^24.
     if (!image.has_equal_sample_counts())
         for (const auto& pixel : image.pixels)
@@ -84,19 +83,13 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
 }
 
 FilmFile read_film(const std::filesystem::path& file) {
-    const ExrFile exr = read_exr(file);
+    ExrFile exr = read_exr(file);
     FilmFile film;
-    film.record = {.chapter = text(exr, "chapter"),
-                   .scene = text(exr, "scene"),
-                   .scene_hash = text(exr, "scene_hash"),
-                   .estimator_hash = text(exr, "estimator_hash"),
-                   .settings = text(exr, "settings"),
-                   .backend = text(exr, "backend"),
-                   .device = text(exr, "device"),
-                   .seed = number<uint32_t>(exr, "seed", file),
-                   .first_sample = number<uint32_t>(exr, "first_sample", file),
-                   .rays = number<uint64_t>(exr, "rays", file),
-                   .seconds = number<double>(exr, "seconds", file)};
+    for (const auto& [name, text] : texts) film.record.*text = exr.attributes[name];
+    film.record.seed = number<uint32_t>(exr, "seed", file);
+    film.record.first_sample = number<uint32_t>(exr, "first_sample", file);
+    film.record.rays = number<uint64_t>(exr, "rays", file);
+    film.record.seconds = number<double>(exr, "seconds", file);
     const size_t count = size_t{exr.image.width} * exr.image.height;
     const auto samples = number<uint32_t>(exr, "samples", file);
     const auto further_samples = counts(exr, "further_samples", count, file);
@@ -107,12 +100,10 @@ FilmFile read_film(const std::filesystem::path& file) {
             FilmPixel& pixel = film.image.pixels[i];
             pixel.sample_count = samples + further_samples[i];
             pixel.invalid_count = invalid[i];
-            for (int channel = 0; channel < 3; ++channel) {
-                const double mean = exr.image.pixels[3 * i + static_cast<size_t>(channel)];
-                if (!std::isfinite(mean))
-                    throw UserError(file.string() + ": has infinite pixels: render again");
-                set_sum(pixel, channel, mean * pixel.sample_count);
-            }
+            const float* rgb = &exr.image.pixels[3 * i];
+            if (!std::all_of(rgb, rgb + 3, [](float value) { return std::isfinite(value); }))
+                throw UserError(file.string() + ": has infinite pixels: render again");
+            set_sum(pixel, glm::dvec3(rgb[0], rgb[1], rgb[2]) * static_cast<double>(pixel.sample_count));
         }
     });
     return film;
@@ -126,10 +117,7 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
             throw UserError(name_a + " and " + name_b + " do not belong together: " + what + " '" + value_a +
                             "' against '" + value_b + "'");
     };
-    const auto size = [](const FilmImage& image) {
-        return std::to_string(image.width) + "x" + std::to_string(image.height);
-    };
-    require("size", size(a.image), size(b.image));
+    require("size", size_text({a.image.width, a.image.height}), size_text({b.image.width, b.image.height}));
     require("chapter", a.record.chapter, b.record.chapter);
     require("seed", std::to_string(a.record.seed), std::to_string(b.record.seed));
     require("settings", a.record.settings, b.record.settings);
@@ -143,10 +131,7 @@ static void add(FilmFile& sum, const FilmFile& part) {
         for (size_t i = begin; i < end; ++i) {
             FilmPixel& pixel = sum.image.pixels[i];
             const FilmPixel& added = part.image.pixels[i];
-            for (int channel = 0; channel < 3; ++channel)
-                set_sum(pixel, channel,
-                        double{pixel.sum[channel]} + double{pixel.compensation[channel]} +
-                            double{added.sum[channel]} + double{added.compensation[channel]});
+            set_sum(pixel, sum_of(pixel) + glm::dvec3(added.sum) + glm::dvec3(added.compensation));
             pixel.sample_count += added.sample_count;
             pixel.invalid_count += added.invalid_count;
         }

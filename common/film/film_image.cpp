@@ -5,29 +5,24 @@
 #include "parallel.h"
 
 namespace lab {
-
 namespace {
 
 constexpr size_t pixels_per_piece = 1 << 16;  // that a thread works on at a time
 
 glm::dvec3 mean_of(const FilmPixel& pixel) {
-    return (glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation)) /
-           static_cast<double>(std::max(pixel.sample_count, 1u));
+    return sum_of(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u));
 }
 
 }  // namespace
 
 uint32_t FilmImage::min_samples() const {
-    const auto fewest = std::min_element(
-        pixels.begin(), pixels.end(),
-        [](const FilmPixel& a, const FilmPixel& b) { return a.sample_count < b.sample_count; });
-    return fewest == pixels.end() ? 0 : fewest->sample_count;
+    return pixels.empty() ? 0 : std::ranges::min(pixels, {}, &FilmPixel::sample_count).sample_count;
 }
 
 bool FilmImage::has_equal_sample_counts() const {
-    return std::all_of(pixels.begin(), pixels.end(), [&](const FilmPixel& pixel) {
-        return pixel.sample_count == pixels.front().sample_count;
-    });
+    return std::ranges::all_of(
+        pixels, [&](uint32_t count) { return count == pixels.front().sample_count; },
+        &FilmPixel::sample_count);
 }
 
 uint64_t FilmImage::invalid_samples() const {
@@ -58,6 +53,8 @@ std::array<double, 3> FilmImage::mean_radiance() const {
     const glm::dvec3 mean = sum / static_cast<double>(std::max<size_t>(pixels.size(), 1));
     return {mean.r, mean.g, mean.b};
 }
+
+std::string size_text(const uvec2& size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }
 
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole) {
     FilmImage rest = whole;

@@ -1,11 +1,17 @@
 // What the samples of an image have added up to.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "image/image.h"
 #include "shaders/interface.h"
 
 namespace lab {
+
+// The sum of a pixel's samples, which two floats hold together.
+inline glm::dvec3 sum_of(const FilmPixel& pixel) {
+    return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation);
+}
 
 // The contents of a film: pixels row by row from the top.
 struct FilmImage {
@@ -19,6 +25,9 @@ struct FilmImage {
     Image mean() const;                           // mean radiance of a pixel; 0 where there are no samples
     std::array<double, 3> mean_radiance() const;  // of the whole image
 };
+
+// For messages: "640x480".
+std::string size_text(const uvec2& size);
 
 // The samples of `whole` that came after those of `first`, an earlier state of the same film.
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole);

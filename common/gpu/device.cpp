@@ -332,7 +332,7 @@ static std::string pipeline_cache_name(const vk::raii::PhysicalDevice& device) {
 }
 
 void Device::load_pipeline_cache() {
-    const auto cached = read_cache(pipeline_cache_name(physical_)).value_or(std::vector<uint8_t>());
+    const auto cached = read_cache(pipeline_cache_name(physical_)).value_or("");
     pipeline_cache_ = {device_, vk::PipelineCacheCreateInfo({}, cached.size(), cached.data())};
     pipeline_cache_size_ = cached.size();
 }
@@ -340,7 +340,9 @@ void Device::load_pipeline_cache() {
 Device::~Device() {
     try {
         const auto contents = pipeline_cache_.getData();
-        if (contents.size() != pipeline_cache_size_) write_cache(pipeline_cache_name(physical_), contents);
+        if (contents.size() != pipeline_cache_size_)
+            write_cache(pipeline_cache_name(physical_),
+                        {reinterpret_cast<const char*>(contents.data()), contents.size()});
     } catch (const vk::SystemError&) {
         // A lost device has no pipelines to keep.
     }

@@ -139,8 +139,7 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
         return words;
     }
     words = compile(source, text, preamble);
-    const auto* bytes = reinterpret_cast<const uint8_t*>(words.data());
-    write_cache(name, {bytes, bytes + words.size() * sizeof(uint32_t)});
+    write_cache(name, {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)});
     return words;
 }
 

@@ -20,10 +20,6 @@ RenderParameters with_size(RenderParameters parameters) {
     return parameters;
 }
 
-std::vector<Binding> with_point(const Buffer& point) {
-    return {storage_binding(BINDING_SHADING_POINT, point)};
-}
-
 Image cut(const Image& image, uint32_t left, uint32_t width) {
     Image part{width, image.height, {}};
     for (uint32_t y = 0; y < image.height; ++y) {
@@ -39,7 +35,7 @@ HemisphereView::HemisphereView(const Device& device, const AccelerationStructure
                                const Estimator& estimator)
     : point_(device, sizeof(ShadingPoint), vk::BufferUsageFlagBits::eStorageBuffer),
       renderer_(device, acceleration_structure, hemisphere_estimator(estimator), with_size({}),
-                with_point(point_)) {}
+                std::vector{storage_binding(BINDING_SHADING_POINT, point_)}) {}
 
 void HemisphereView::look_at(const PathVertex& vertex, const RenderParameters& parameters) {
     // Upwards is what is further up, or further away, in the render's picture.

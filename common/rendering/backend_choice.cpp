@@ -1,10 +1,10 @@
 #include "rendering/backend_choice.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
+#include "clock.h"
 #include "error.h"
 #include "files/cache.h"
 #include "files/hash.h"
@@ -23,11 +23,11 @@ double measure_speed(Backend backend, const Device& device, const GpuScene& scen
     const double first_samples = renderer.samples();
     const double first_seconds = renderer.device_seconds();
     constexpr double seconds = 0.1;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     // At least one dispatch more, also where the device's clock is coarse.
     do {
         renderer.advance(UINT32_MAX);
-    } while (std::chrono::steady_clock::now() < start + std::chrono::duration<double>(seconds));
+    } while (seconds_since(start) < seconds);
     return (renderer.samples() - first_samples) / std::max(renderer.device_seconds() - first_seconds, 1e-9);
 }
 
@@ -57,38 +57,33 @@ bool fits_compute(const Device& device, const Scene& scene) {
     }
 }
 
-}  // namespace
-
-Backend choose_backend(const std::string& name, const Device& device, const GpuScene& scene,
-                       const Estimator& estimator, RenderParameters parameters) {
-    if (const auto named = find_backend(name)) return *named;
+Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {
     const auto is_usable = [&](Backend backend) {
         return device.description().supports(backend) &&
-               (backend != Backend::compute || fits_compute(device, scene.scene()));
+               (backend != Backend::compute || fits_compute(device, *job.scene));
     };
     const std::string entry = cache_name(device, scene);
     if (const auto cached = read_cache(entry))
-        if (const auto backend = find_backend({cached->begin(), cached->end()});
-            backend && is_usable(*backend))
-            return *backend;
+        if (const auto backend = find_backend(*cached); backend && is_usable(*backend)) return *backend;
 
+    RenderParameters parameters = job.parameters;
     parameters.image_size = glm::min(parameters.image_size, uvec2(128));
-    parameters.max_path_length =
-        scene.scene().defaults.max_path_length;  // the choice serves later renders, too
+    parameters.max_path_length = job.scene->defaults.max_path_length;  // the choice serves later renders, too
     Backend fastest = Backend::compute;
     double highest_speed = 0;
     for (const Backend backend : all_backends) {
         if (!is_usable(backend)) continue;
-        const double speed = measure_speed(backend, device, scene, estimator, parameters);
+        const double speed = measure_speed(backend, device, scene, job.estimator, parameters);
         if (speed > highest_speed) {
             highest_speed = speed;
             fastest = backend;
         }
     }
-    const std::string chosen = to_string(fastest);
-    write_cache(entry, {chosen.begin(), chosen.end()});
+    write_cache(entry, to_string(fastest));
     return fastest;
 }
+
+}  // namespace
 
 bool can_show(const View& view, Backend backend) {
     if (backend == Backend::compute) return true;
@@ -97,14 +92,14 @@ bool can_show(const View& view, Backend backend) {
     return view.name != "idle-lanes" || backend == Backend::query;
 }
 
-Backend choose_backend(const Options& options, const Device& device, const GpuScene& scene,
-                       const Estimator& estimator, const RenderParameters& parameters) {
-    if (!options.image.view) return choose_backend(options.run.backend, device, scene, estimator, parameters);
-    const Backend backend = choose_backend(options.run.backend == "auto" ? "compute" : options.run.backend,
-                                           device, scene, estimator, parameters);
-    if (!can_show(*options.image.view, backend))
-        throw UserError("--view " + options.image.view->name + " does not work with the backend " +
-                        to_string(backend) + ": leave --backend out or use compute");
+Backend choose_backend(const RenderJob& job, const Device& device, const GpuScene& scene) {
+    const View* view = job.options.image.view;
+    const std::string& name = job.options.run.backend;
+    if (name == "auto" && !view) return find_fastest(job, device, scene);
+    const Backend backend = find_backend(name).value_or(Backend::compute);
+    if (view && !can_show(*view, backend))
+        throw UserError("--view " + view->name + " does not work with the backend " + to_string(backend) +
+                        ": leave --backend out or use compute");
     return backend;
 }
 

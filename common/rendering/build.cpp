@@ -43,8 +43,7 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
         if (chapter.light_sampling && wanted.options.estimator.strategy != Strategy::brdf)
             light_sampling = chapter.light_probe_sampling ? LightSampling::with_probe : LightSampling::on;
         build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene, light_sampling);
-        build.backend =
-            choose_backend(wanted.options, device, *build.gpu_scene, wanted.estimator, wanted.parameters);
+        build.backend = choose_backend(wanted, device, *build.gpu_scene);
         build.acceleration_structure = build_acceleration_structure(build.backend, device, *build.gpu_scene);
     } else {
         build.gpu_scene = before->gpu_scene;

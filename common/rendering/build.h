@@ -1,7 +1,6 @@
 // The way from options to a render, the same without a window, in one, and beside another render in it.
 #pragma once
 #include "rendering/render_job.h"
-#include "rendering/report.h"
 
 namespace lab {
 
@@ -12,10 +11,6 @@ struct Build {
     Backend backend = Backend::compute;
     std::shared_ptr<const AccelerationStructure> acceleration_structure;
     std::unique_ptr<Renderer> renderer;
-
-    AccelerationRecord acceleration() const {
-        return {acceleration_structure->bytes(), acceleration_structure->build_seconds()};
-    }
 };
 
 // What has to be made anew, each with all that follows.

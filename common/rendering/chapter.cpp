@@ -10,34 +10,19 @@
 namespace lab {
 namespace {
 
-// All options that chapters may have. The defaults are measured, see docs/results.md.
+// All options that chapters may have: name, help, parameter, default, smallest and largest number. The
+// defaults are measured, see docs/results.md.
 const std::vector<ChapterOption>& chapter_options() {
+    using Parameters = RenderParameters;
     static const std::vector<ChapterOption> all{
-        {.name = "--splitting-factor",
-         .help = "Branches in which a path goes on",
-         .parameter = &RenderParameters::splitting_factor,
-         .default_value = 4,
-         .low = 1,
-         .high = 1024},
-        {.name = "--survival-cap",
-         .help =
-             "Largest survival probability of Russian roulette; with 1, paths among white walls never end",
-         .parameter = &RenderParameters::survival_cap,
-         .default_value = 0.95,
-         .low = 0.001,
-         .high = 1},
-        {.name = "--survival-weight",
-         .help = "Throughput below which Russian roulette ends paths, and which survivors have",
-         .parameter = &RenderParameters::survival_weight,
-         .default_value = 0.5,
-         .low = 0.001,
-         .high = 1},
-        {.name = "--roulette-start",
-         .help = "Bounce at which Russian roulette begins",
-         .parameter = &RenderParameters::roulette_start,
-         .default_value = 3,
-         .low = 1,
-         .high = 1000000}};
+        {"--splitting-factor", "Branches in which a path goes on", &Parameters::splitting_factor, 4, 1, 1024},
+        {"--survival-cap",
+         "Largest survival probability of Russian roulette; with 1, paths among white walls never end",
+         &Parameters::survival_cap, 0.95, 0.001, 1},
+        {"--survival-weight", "Throughput below which Russian roulette ends paths, and which survivors have",
+         &Parameters::survival_weight, 0.5, 0.001, 1},
+        {"--roulette-start", "Bounce at which Russian roulette begins", &Parameters::roulette_start, 3, 1,
+         1000000}};
     return all;
 }
 

@@ -6,6 +6,16 @@
 
 namespace lab {
 
+std::string exact_text(float number) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.9g", number);
+    return text;
+}
+
+std::string exact_text(const vec3& v, const char* separator) {
+    return exact_text(v.x) + separator + exact_text(v.y) + separator + exact_text(v.z);
+}
+
 std::string short_number(double number) {
     const char* prefixes[] = {"", " k", " M", " G", " T"};
     size_t prefix = 0;

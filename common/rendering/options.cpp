@@ -1,7 +1,6 @@
 #include "rendering/options.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <iostream>
 #include <sstream>
 
@@ -22,11 +21,13 @@ CLI::Validator within(double low, double high, const std::string& meaning) {
             meaning};
 }
 
+// To be used with transform(): takes zeros off that stand in front, which would make the number an octal one.
 CLI::Validator whole_number(uint32_t low, uint32_t high) {
     const std::string meaning = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
     return {[=](std::string& text) -> std::string {
                 const bool digits =
                     !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+                if (digits) text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
                 if (digits && text.size() <= 10 && std::stoull(text) >= low && std::stoull(text) <= high)
                     return {};
                 return "'" + text + "' is not " + meaning;
@@ -37,22 +38,22 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
 void add_image_options(CLI::App& app, Options& options) {
     constexpr uint32_t max_count = 4294967295u;
     app.add_option("--width", options.image.width, "Pixels in a row")
-        ->check(whole_number(1, max_image_extent));
+        ->transform(whole_number(1, max_image_extent));
     app.add_option("--height", options.image.height, "Pixels in a column")
-        ->check(whole_number(1, max_image_extent));
+        ->transform(whole_number(1, max_image_extent));
     app.add_option("--samples", options.appearance.sample_count, "Samples a pixel")
-        ->check(whole_number(1, max_count));
+        ->transform(whole_number(1, max_count));
     app.add_option("--seed", options.samples.seed, "Chooses the random numbers")
-        ->check(whole_number(0, max_count));
+        ->transform(whole_number(0, max_count));
     app.add_option("--first-sample", options.samples.first_sample,
                    "Index of the first sample: splits a render into ranges")
-        ->check(whole_number(0, max_count));
+        ->transform(whole_number(0, max_count));
     app.add_option("--max-path-length", options.light.max_path_length,
                    "Bounces after which a path ends; 0: emission only")
-        ->check(whole_number(0, path_length_limit));
+        ->transform(whole_number(0, path_length_limit));
     app.add_option("--only-path-length", options.light.only_path_length,
                    "Show only light after exactly this many bounces")
-        ->check(whole_number(0, path_length_limit));
+        ->transform(whole_number(0, path_length_limit));
     app.add_option("--target-error", options.run.target_error,
                    "Stop when the relative error is below this: 0.01 is 1 %")
         ->check(within(1e-12, 1e12, "a positive number"));
@@ -61,19 +62,21 @@ void add_image_options(CLI::App& app, Options& options) {
 }
 
 void add_scene_options(CLI::App& app, Options& options) {
-    const auto finite = within(-1e30, 1e30, "a finite number");
-    const auto vector = [&](const char* name, OptionalVector& value, const char* help) {
-        app.add_option(name, value, help)->delimiter(',')->check(finite)->type_name("X,Y,Z");
+    const auto vector = [&](const char* name, std::optional<vec3>& value, const char* help) {
+        using Numbers = std::array<float, 3>;
+        const auto set = [&value](const Numbers& given) { value = {given[0], given[1], given[2]}; };
+        return app.add_option_function<Numbers>(name, set, help)->delimiter(',');
     };
-    vector("--camera-position", options.camera.position, "Where the camera stands");
-    vector("--camera-target", options.camera.target, "What it looks at");
-    vector("--camera-up", options.camera.up, "What it holds upwards");
+    const auto place = [&](const char* name, std::optional<vec3>& value, const char* help) {
+        vector(name, value, help)->check(within(-1e30, 1e30, "a finite number"))->type_name("X,Y,Z");
+    };
+    place("--camera-position", options.camera.position, "Where the camera stands");
+    place("--camera-target", options.camera.target, "What it looks at");
+    place("--camera-up", options.camera.up, "What it holds upwards");
     app.add_option("--vertical-fov", options.camera.vertical_fov,
                    "Angle between the picture's top and bottom in degrees")
         ->check(within(1e-6, 179.999, "an angle between 0 and 180 degrees"));
-    app.add_option("--background", options.light.background,
-                   "Radiance of the sky; with a light probe its factor")
-        ->delimiter(',')
+    vector("--background", options.light.background, "Radiance of the sky; with a light probe its factor")
         ->check(within(0, 1e30, "a radiance (finite and not negative)"))
         ->type_name("R,G,B");
     app.add_flag("--specular", options.scene.specular, "Use the Phong lobe Ks, Ns of the materials");
@@ -147,9 +150,9 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
         default_value << option.default_value;
         app.add_option(option.name, options.samples.chapter_values[i], option.help)
             ->default_str(default_value.str())
-            ->check(is_whole
-                        ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
-                        : within(option.low, option.high, range.str()));
+            ->transform(
+                is_whole ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
+                         : within(option.low, option.high, range.str()));
     }
 }
 

@@ -1,6 +1,5 @@
 // The command line, the same for every chapter.
 #pragma once
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -24,8 +23,6 @@ const std::vector<View>& views();
 // Whether a window opens: yes, no, or where there is a display and someone at a terminal who can see it.
 enum class WindowChoice { automatic, always, never };
 
-using OptionalVector = std::optional<std::array<float, 3>>;
-
 // What is read from files.
 struct SceneOptions {
     std::filesystem::path file;
@@ -47,18 +44,19 @@ struct EstimatorOptions {
 struct ImageOptions {
     std::optional<uint32_t> width, height;
     const View* view = nullptr;  // null: radiance
+    DisplayTransform display() const { return view ? view->display : DisplayTransform::exposure; }
     bool operator==(const ImageOptions&) const = default;
 };
 
 struct CameraOptions {
-    OptionalVector position, target, up;
+    std::optional<vec3> position, target, up;
     std::optional<float> vertical_fov;  // degrees
     bool operator==(const CameraOptions&) const = default;
 };
 
 // Which light the picture shows.
 struct LightOptions {
-    OptionalVector background;
+    std::optional<vec3> background;
     std::optional<uint32_t> max_path_length, only_path_length;
     bool operator==(const LightOptions&) const = default;
 };

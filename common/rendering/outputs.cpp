@@ -8,17 +8,15 @@ namespace lab {
 
 void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record,
                    const Options& options) {
-    const DisplayTransform transform =
-        options.image.view ? options.image.view->display : DisplayTransform::exposure;
     const std::string ending = lower_case_extension(file);
     if (ending == ".exr")
         write_film(file, film, record);
     else if (ending == ".hdr")
         write_hdr(file, film.mean());
     else if (ending == ".png")
-        write_png(file, to_display(film, transform, options.appearance.exposure));
+        write_png(file, to_display(film, options.image.display(), options.appearance.exposure));
     else
-        write_jpg(file, to_display(film, transform, options.appearance.exposure));
+        write_jpg(file, to_display(film, options.image.display(), options.appearance.exposure));
 }
 
 void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write) {

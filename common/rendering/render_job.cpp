@@ -1,5 +1,8 @@
 #include "rendering/render_job.h"
 
+#include <algorithm>
+#include <bit>
+
 #include "error.h"
 #include "files/hash.h"
 #include "rendering/settings.h"
@@ -40,6 +43,16 @@ void check_scene(const Chapter& chapter, const Scene& scene) {
 }
 
 }  // namespace
+
+std::optional<ErrorMetrics> RenderJob::error_from(const FilmImage& half, const FilmImage& whole) const {
+    const uint32_t before = half.min_samples();
+    if (!has_independent_halves() || before == 0 || whole.min_samples() != 2 * before) return std::nullopt;
+    return estimate_error(half.mean(), samples_after(half, whole).mean());
+}
+
+uint32_t next_look(uint32_t samples, uint32_t target) {
+    return static_cast<uint32_t>(std::min<uint64_t>(std::bit_ceil(uint64_t{samples} + 1), target));
+}
 
 RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_ptr<const Scene> scene) {
     check_scene(chapter, *scene);

@@ -1,7 +1,6 @@
 #include "rendering/renderer.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "clock.h"
 #include "files/project_folder.h"
@@ -143,7 +142,7 @@ bool Renderer::advance(uint32_t target_samples) {
 
     const auto counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     device_seconds_ +=
         device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
     const double seconds = seconds_since(start);

@@ -16,27 +16,22 @@ json to_json(const ReportRow& row) {
                 {"seconds", row.seconds},
                 {"device_seconds", row.device_seconds},
                 {"rays", row.rays}};
-    const ErrorMetrics error = row.error.value_or(ErrorMetrics{});
-    const auto set = [&](const char* name, double value) {
-        if (row.error)
-            result[name] = value;
-        else
-            result[name] = nullptr;
+    const auto set = [&](const char* name, double ErrorMetrics::*metric) {
+        result[name] = row.error ? json((*row.error).*metric) : json();
     };
-    set("mse", error.mse);
-    set("rel_mse", error.rel_mse);
-    set("rel_rmse", error.rel_rmse);
-    set("mse_uncorrected", error.mse_uncorrected);
-    set("rel_mse_uncorrected", error.rel_mse_uncorrected);
+    set("mse", &ErrorMetrics::mse);
+    set("rel_mse", &ErrorMetrics::rel_mse);
+    set("rel_rmse", &ErrorMetrics::rel_rmse);
+    set("mse_uncorrected", &ErrorMetrics::mse_uncorrected);
+    set("rel_mse_uncorrected", &ErrorMetrics::rel_mse_uncorrected);
     result["mean"] = row.mean;
     return result;
 }
 
 std::string to_csv(const json& rows) {
-    std::ostringstream text;
-    bool first = true;
+    std::ostringstream names, values;
     for (const auto& row : rows) {
-        std::ostringstream names, values;
+        names.str("");  // the same for every row
         for (const auto& [name, value] : row.items()) {
             if (name == "mean") {
                 names << "mean_r,mean_g,mean_b";
@@ -47,17 +42,15 @@ std::string to_csv(const json& rows) {
                 values << ',';
             }
         }
-        if (first) text << names.str() << "\n";
-        first = false;
-        text << values.str() << "\n";
+        values << "\n";
     }
-    return text.str();
+    return rows.empty() ? "" : names.str() + "\n" + values.str();
 }
 
 }  // namespace
 
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationRecord& acceleration, ErrorSource source,
+                  const AccelerationStructure& acceleration_structure, ErrorSource source,
                   const std::vector<ReportRow>& rows) {
     json report{{"chapter", record.chapter},
                 {"scene", record.scene},
@@ -69,8 +62,8 @@ void write_report(const std::filesystem::path& file, const FilmImage& image, con
                 {"device", record.device},
                 {"seed", record.seed},
                 {"first_sample", record.first_sample},
-                {"acceleration_structure_bytes", acceleration.bytes},
-                {"acceleration_structure_seconds", acceleration.build_seconds},
+                {"acceleration_structure_bytes", acceleration_structure.bytes()},
+                {"acceleration_structure_seconds", acceleration_structure.build_seconds()},
                 {"invalid_samples", image.invalid_samples()},
                 {"error_source", source == ErrorSource::reference ? "reference" : "halves"},
                 {"rows", json::array()}};

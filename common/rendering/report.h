@@ -6,6 +6,7 @@
 
 #include "film/film_file.h"
 #include "statistics/error_metrics.h"
+#include "tracing/tracer.h"
 
 namespace lab {
 
@@ -21,15 +22,9 @@ struct ReportRow {
 // What the errors of a report are: against a reference, or estimated from two halves of the samples.
 enum class ErrorSource { reference, halves };
 
-// What the acceleration structure has cost.
-struct AccelerationRecord {
-    size_t bytes = 0;  // of device memory
-    double build_seconds = 0;
-};
-
 // Writes .json or .csv, by the file's ending.
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationRecord& acceleration, ErrorSource source,
+                  const AccelerationStructure& acceleration_structure, ErrorSource source,
                   const std::vector<ReportRow>& rows);
 
 }  // namespace lab

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "error.h"
 #include "files/hash.h"
 #include "files/project_folder.h"
 
@@ -63,7 +62,7 @@ std::variant<Reference, std::string> find_reference(const Scene& scene, const Re
         const uvec2 size(reference.mean.width, reference.mean.height);
         if (parameters.image_size % size != uvec2(0) ||
             parameters.image_size.x / size.x != parameters.image_size.y / size.y)
-            return "the reference has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+            return "the reference has " + size_text(size) +
                    " pixels, the image is no whole number of times larger";
         const std::string difference = difference_from_file(scene, parameters);
         if (!difference.empty()) return difference;

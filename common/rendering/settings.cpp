@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "files/project_folder.h"
+#include "rendering/numbers_text.h"
 
 namespace lab {
 namespace {
@@ -20,15 +21,6 @@ constexpr double split_every_hit_factor = 2;
 
 // More branches would keep a device busy with one sample for longer than drivers allow.
 constexpr double max_branches = 1 << 20;
-
-vec3 to_vector(const std::array<float, 3>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
-
-std::string to_text(const vec3& v) {
-    std::ostringstream text;
-    text.precision(9);
-    text << v.x << ',' << v.y << ',' << v.z;
-    return text.str();
-}
 
 uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Options& options) {
     const uint32_t only = options.light.only_path_length.value_or(0);
@@ -74,21 +66,18 @@ double largest_albedo(const Scene& scene) {
 }  // namespace
 
 CameraPose camera_of(const Scene& scene, const Options& options) {
-    CameraPose pose = scene.camera;
-    if (options.camera.position) pose.position = to_vector(*options.camera.position);
-    if (options.camera.target) pose.target = to_vector(*options.camera.target);
-    if (options.camera.up) pose.up = to_vector(*options.camera.up);
-    pose.vertical_fov = options.camera.vertical_fov.value_or(pose.vertical_fov);
-    return pose;
+    const CameraOptions& wanted = options.camera;
+    return {.position = wanted.position.value_or(scene.camera.position),
+            .target = wanted.target.value_or(scene.camera.target),
+            .up = wanted.up.value_or(scene.camera.up),
+            .vertical_fov = wanted.vertical_fov.value_or(scene.camera.vertical_fov)};
 }
 
 vec3 background_of(const Scene& scene, const Options& options) {
-    return options.light.background ? to_vector(*options.light.background) : scene.background;
+    return options.light.background.value_or(scene.background);
 }
 
-bool asks_for_sky(const Options& options) {
-    return options.light.background && to_vector(*options.light.background) != vec3(0);
-}
+bool asks_for_sky(const Options& options) { return options.light.background.value_or(vec3(0)) != vec3(0); }
 
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
     const uvec2 image_size(options.image.width.value_or(scene.defaults.width),
@@ -111,6 +100,12 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
     return parameters;
 }
 
+std::string camera_flags(const CameraPose& pose, char separator) {
+    return "--camera-position" + (separator + exact_text(pose.position)) + " --camera-target" + separator +
+           exact_text(pose.target) + " --camera-up" + separator + exact_text(pose.up) + " --vertical-fov" +
+           separator + exact_text(pose.vertical_fov);
+}
+
 std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
                           const Options& options) {
     std::ostringstream text;
@@ -124,10 +119,8 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     if (options.estimator.split_every_hit) text << " --split-every-hit";
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
-    const CameraPose pose = camera_of(scene, options);
-    text << " --camera-position " << to_text(pose.position) << " --camera-target " << to_text(pose.target)
-         << " --camera-up " << to_text(pose.up) << " --vertical-fov " << pose.vertical_fov << " --background "
-         << to_text(background_of(scene, options));
+    text << ' ' << camera_flags(camera_of(scene, options), ' ') << " --background "
+         << exact_text(background_of(scene, options));
     return text.str();
 }
 

@@ -16,6 +16,9 @@ bool asks_for_sky(const Options& options);
 // Throws UserError for options that contradict each other.
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options);
 
+// The pose as options of the command line, with this character before each value. The numbers are exact.
+std::string camera_flags(const CameraPose& pose, char separator);
+
 // The options that decide what is estimated and how, in a fixed order: renders with equal settings can be
 // joined.
 std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,

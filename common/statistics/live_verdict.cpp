@@ -22,12 +22,6 @@ constexpr double renderer_rounding = 1e-5;
 
 double square(double x) { return x * x; }
 
-std::string percent(const char* format, double part) {
-    char text[32];
-    std::snprintf(text, sizeof text, format, 100 * part);
-    return text;
-}
-
 // "-14 % ± 1 %": the interval holds the bias with probability 0.95. As many digits as the interval has one.
 std::string interval_text(const Difference& difference) {
     const double half_width = 1.96 * difference.standard_error;
@@ -45,39 +39,26 @@ LiveVerdict::LiveVerdict(Reference reference, glm::uvec2 image_size, double fals
     : reference_(std::move(reference)), false_alarms_(false_alarms) {
     const glm::uvec2 size(reference_.mean.width, reference_.mean.height);
     if (image_size % size != glm::uvec2(0) || image_size.x / size.x != image_size.y / size.y)
-        throw UserError("the reference has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
-                        " pixels, the image " + std::to_string(image_size.x) + "x" +
-                        std::to_string(image_size.y) + ": it must be a whole number of times larger");
+        throw UserError("the reference has " + size_text(size) + " pixels, the image " +
+                        size_text(image_size) + ": it must be a whole number of times larger");
     scale_ = image_size.x / size.x;
     tiles_ = (size + tile - 1u) / tile;
-    const auto samples = reference_.attributes.find("samples");
-    reference_samples_ =
-        samples == reference_.attributes.end() ? 0 : std::strtod(samples->second.c_str(), nullptr);
-    restart();
-}
-
-void LiveVerdict::restart() {
+    reference_samples_ = std::strtod(reference_.attributes["samples"].c_str(), nullptr);  // 0 if unknown
     const double paths_of_sample = square(scale_) * reference_.mean.width * reference_.mean.height;
     next_samples_ = first_test;
     while (next_samples_ * paths_of_sample < reliable_paths) next_samples_ *= 2;
-    tests_ = 0;
-    verdict_.reset();
 }
 
 void LiveVerdict::add(const FilmImage& film) {
     const Image& mean = reference_.mean;
-    differences_.assign(size_t{mean.width} * mean.height, {});
+    differences_.assign(size_t{mean.width} * mean.height, glm::dvec3(0));
     const double part = 1 / (square(scale_) * next_samples_);
     for (uint32_t y = 0; y < film.height; ++y)
-        for (uint32_t x = 0; x < film.width; ++x) {
-            const FilmPixel& pixel = film.pixels[size_t{y} * film.width + x];
-            auto& difference = differences_[size_t{y / scale_} * mean.width + x / scale_];
-            for (int channel = 0; channel < 3; ++channel)
-                difference[static_cast<size_t>(channel)] +=
-                    part * (double{pixel.sum[channel]} + double{pixel.compensation[channel]});
-        }
+        for (uint32_t x = 0; x < film.width; ++x)
+            differences_[size_t{y / scale_} * mean.width + x / scale_] +=
+                part * sum_of(film.pixels[size_t{y} * film.width + x]);
     for (size_t i = 0; i < differences_.size(); ++i)
-        for (size_t channel = 0; channel < 3; ++channel)
+        for (int channel = 0; channel < 3; ++channel)
             differences_[i][channel] -= double{mean.pixels[3 * i + channel]};
     samples_ = next_samples_;
     next_samples_ *= 2;
@@ -85,7 +66,7 @@ void LiveVerdict::add(const FilmImage& film) {
 }
 
 // Of a channel's mean over a region, in units of radiance.
-Difference LiveVerdict::difference(const Region& region, size_t channel) const {
+Difference LiveVerdict::difference(const Region& region, int channel) const {
     const glm::uvec2 corner = region.first * tile;
     const glm::uvec2 end =
         glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
@@ -125,23 +106,20 @@ void LiveVerdict::test() {
                     .differences = {},
                     .map = {tiles_.x, tiles_.y, std::vector<double>(size_t{tiles_.x} * tiles_.y)},
                     .map_tile_size = tile * scale_};
-    const auto is_off = [](const Difference& difference, double level_of_one) {
-        return difference.p_value() < level_of_one;
-    };
     std::array<double, 3> scales;
-    for (size_t channel = 0; channel < 3; ++channel) {
+    for (int channel = 0; channel < 3; ++channel) {
         const double mean =
             reference_.part(channel, {0, 0}, {reference_.mean.width, reference_.mean.height}).mean;
         scales[channel] = mean > 0 ? mean : 1;
-        verdict.differences[channel] = difference({{0, 0}, tiles_}, channel).relative_to(scales[channel]);
-        verdict.smallest_detectable[channel] =
-            verdict.differences[channel].smallest_detectable(sidak(level, 3), power);
-        verdict.is_biased |= is_off(verdict.differences[channel], sidak(level, 3));
+        const Difference of_image = difference({{0, 0}, tiles_}, channel).relative_to(scales[channel]);
+        verdict.differences[channel] = of_image;
+        verdict.smallest_detectable[channel] = of_image.smallest_detectable(sidak(level, 3), power);
+        verdict.is_biased |= of_image.p_value() < sidak(level, 3);
     }
     // Of a region the channel that is farthest off.
     const auto worst = [&](uint32_t x, uint32_t y, uint32_t edge) {
         Difference farthest;
-        for (size_t channel = 0; channel < 3; ++channel) {
+        for (int channel = 0; channel < 3; ++channel) {
             Difference d = difference({{x, y}, glm::min(glm::uvec2(x, y) + edge, tiles_)}, channel);
             d.standard_error = std::hypot(d.standard_error, tile_floor * scales[channel]);
             if (channel == 0 || std::abs(d.z()) > std::abs(farthest.z())) farthest = d;
@@ -158,7 +136,7 @@ void LiveVerdict::test() {
         for (uint32_t y = 0; y < tiles_.y; y += edge)
             for (uint32_t x = 0; x < tiles_.x; x += edge) {
                 const Difference d = worst(x, y, edge);
-                if (!is_off(d, sidak(level, size_t{3} * verdict.tiles))) continue;
+                if (!(d.p_value() < sidak(level, size_t{3} * verdict.tiles))) continue;
                 ++(d.value > 0 ? verdict.bright_tiles : verdict.dark_tiles);
                 verdict.is_biased = true;
             }
@@ -166,12 +144,20 @@ void LiveVerdict::test() {
     verdict_ = std::move(verdict);
 }
 
+std::array<uint8_t, 3> z_colour(double z) {
+    const double x = std::clamp(z / 5, -1.0, 1.0);
+    const auto byte = [](double part) { return static_cast<uint8_t>(std::lround(255 * part)); };
+    return {byte(1 + std::min(x, 0.0)), byte(1 - std::abs(x)), byte(1 - std::max(x, 0.0))};
+}
+
 std::string to_text(const Verdict& verdict) {
     if (!verdict.is_biased) {
         const double largest =
             *std::max_element(verdict.smallest_detectable.begin(), verdict.smallest_detectable.end());
-        return "agrees with the reference: a bias above " + percent("%.2g %%", largest) +
-               " would show by now";
+        char text[96];
+        std::snprintf(text, sizeof text, "agrees with the reference: a bias above %.2g %% would show by now",
+                      100 * largest);
+        return text;
     }
     const auto& differences = verdict.differences;
     std::string text = "biased: red " + interval_text(differences[0]) + ", green " +

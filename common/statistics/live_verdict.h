@@ -1,6 +1,7 @@
 // Tells while an image renders whether it will be that of the reference.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,9 +9,19 @@
 #include "film/film_image.h"
 #include "statistics/error_metrics.h"
 #include "statistics/statistics.h"
-#include "statistics/z_map.h"
 
 namespace lab {
+
+// How many standard errors each tile is off; positive where it is too bright. Row by row, one channel.
+struct ZMap {
+    uint32_t width = 0;
+    uint32_t height = 0;
+    std::vector<double> values;
+};
+
+// What such a number is shown as: red where it is too bright, blue where too dark, full colour at 5 standard
+// errors.
+std::array<uint8_t, 3> z_colour(double z);
 
 struct Verdict {
     uint32_t samples = 0;  // a pixel, when it was found
@@ -43,8 +54,6 @@ class LiveVerdict {
     // The image may be a whole number of times larger than the reference. Throws UserError if it is not.
     LiveVerdict(Reference reference, glm::uvec2 image_size, double false_alarms = default_false_alarms);
 
-    // The film has begun anew.
-    void restart();
     // Samples a pixel at which add() wants the film: a power of two.
     uint32_t next_samples() const { return next_samples_; }
     // The film when all pixels have next_samples() samples.
@@ -59,7 +68,7 @@ class LiveVerdict {
     struct Region {
         glm::uvec2 first, end;  // in tiles
     };
-    Difference difference(const Region& region, size_t channel) const;
+    Difference difference(const Region& region, int channel) const;
     uint32_t finest_reliable_edge() const;
     void test();
 
@@ -69,9 +78,9 @@ class LiveVerdict {
     uint32_t scale_;  // image pixels in a row of a reference pixel
     glm::uvec2 tiles_;
     // From the reference, of each of its pixels.
-    std::vector<std::array<double, 3>> differences_;
+    std::vector<glm::dvec3> differences_;
     uint32_t samples_ = 0;  // a pixel of the image
-    uint32_t next_samples_ = 0;
+    uint32_t next_samples_;
     uint32_t tests_ = 0;
     std::optional<Verdict> verdict_;
 };

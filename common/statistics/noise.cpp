@@ -11,9 +11,6 @@ NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, g
     double variance = 0;
     const glm::uvec2 end = glm::min(corner + size, glm::uvec2(later.width, later.height));
     const double pixels = std::max((end.x - corner.x) * (end.y - corner.y), 1u);
-    const auto sum = [](const FilmPixel& pixel, int channel) {
-        return double{pixel.sum[channel]} + double{pixel.compensation[channel]};
-    };
     for (uint32_t y = corner.y; y < end.y; ++y)
         for (uint32_t x = corner.x; x < end.x; ++x) {
             const size_t i = size_t{y} * later.width + x;
@@ -24,15 +21,13 @@ NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, g
                          second = count - first;
             estimate.samples += count / pixels;
             estimate.invalid_samples += whole.invalid_count;
-            for (int channel = 0; channel < 3; ++channel) {
-                estimate.mean[static_cast<size_t>(channel)] += sum(whole, channel) / count / pixels;
-                if (first == 0 || second == 0) continue;
-                const double sum_of_first = sum(earlier.pixels[i], channel);
-                const double difference =
-                    sum_of_first / first - (sum(whole, channel) - sum_of_first) / second;
-                // Its expected square is the variance of a sample times 1/first + 1/second.
-                variance += difference * difference / (1 / first + 1 / second) / count / (3 * pixels);
-            }
+            const glm::dvec3 sum = sum_of(whole);
+            estimate.mean += sum / count / pixels;
+            if (first == 0 || second == 0) continue;
+            const glm::dvec3 sum_of_first = sum_of(earlier.pixels[i]);
+            const glm::dvec3 difference = sum_of_first / first - (sum - sum_of_first) / second;
+            // Its expected square is the variance of a sample times 1/first + 1/second.
+            variance += glm::dot(difference, difference) / (1 / first + 1 / second) / count / (3 * pixels);
         }
     estimate.standard_error = std::sqrt(variance);
     const double mean = (estimate.mean[0] + estimate.mean[1] + estimate.mean[2]) / 3;

@@ -6,7 +6,7 @@ namespace lab {
 
 // Of a rectangle of pixels.
 struct NoiseEstimate {
-    std::array<double, 3> mean{};
+    glm::dvec3 mean{0};
     // Root mean square of the standard deviation of the pixels' means, over pixels and channels, and the same
     // as part of the mean of the rectangle.
     double standard_error = 0;

@@ -6,11 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "gpu/failure.h"
+#include "gpu/vulkan.h"
+
 namespace lab {
 
 // To be called where an exception of the work is caught: what the window shows of it while it goes on. The
 // loss of the device is thrown again, since nothing can go on without it.
-std::string window_message(const std::exception& error);
+inline std::string window_message(const std::exception& error) {
+    if (dynamic_cast<const vk::DeviceLostError*>(&error)) throw;
+    return failure_of(error).message;
+}
 
 template <typename Result>
 class BackgroundWork {

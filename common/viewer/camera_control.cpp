@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
-#include <sstream>
+
+#include "rendering/numbers_text.h"
 
 namespace lab {
 namespace {
@@ -30,13 +31,6 @@ dvec3 turn(dvec3 direction, const dvec3& up, double right_angle, double up_angle
     return std::cos(turned) * level + std::sin(turned) * up;
 }
 
-std::string vector_text(const vec3& v, const char* separator) {
-    std::ostringstream text;
-    text.precision(9);
-    text << v.x << separator << v.y << separator << v.z;
-    return text.str();
-}
-
 }  // namespace
 
 void CameraControl::fit_to(const Bounds& bounds) {
@@ -50,14 +44,13 @@ CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motio
     dvec3 position(pose.position), target(pose.target);
     const double distance = glm::distance(position, target);
     dvec3 forward = (target - position) / distance;
-    const dvec3 angles(radians_per_height * motion.drag.x, -radians_per_height * motion.drag.y, 0);
+    if (motion.drag != vec2(0))
+        forward = turn(forward, up, radians_per_height * motion.drag.x, -radians_per_height * motion.drag.y);
     if (navigation == Navigation::first_person) {
-        if (motion.drag != vec2(0)) forward = turn(forward, up, angles.x, angles.y);
         target = position + distance * forward;
         speed_ = static_cast<float>(
             std::clamp(speed_ * std::pow(speed_per_notch, motion.zoom), 1e-4 * size_, 1e2 * size_));
     } else {
-        if (motion.drag != vec2(0)) forward = turn(forward, up, angles.x, angles.y);
         const double closer = distance * std::pow(distance_per_notch, motion.zoom);
         position = target - std::clamp(closer, 1e-4 * size_, std::max(1e3 * size_, distance)) * forward;
     }
@@ -72,22 +65,10 @@ CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motio
     return moved.position == moved.target ? pose : moved;
 }
 
-std::string camera_flags(const CameraPose& pose) {
-    std::ostringstream text;
-    text.precision(9);
-    text << "--camera-position=" << vector_text(pose.position, ",")
-         << " --camera-target=" << vector_text(pose.target, ",")
-         << " --camera-up=" << vector_text(pose.up, ",") << " --vertical-fov=" << pose.vertical_fov;
-    return text.str();
-}
-
 std::string camera_json(const CameraPose& pose) {
-    std::ostringstream text;
-    text.precision(9);
-    text << "\"camera\": {\"position\": [" << vector_text(pose.position, ", ") << "], \"target\": ["
-         << vector_text(pose.target, ", ") << "], \"up\": [" << vector_text(pose.up, ", ")
-         << "], \"vertical_fov\": " << pose.vertical_fov << "}";
-    return text.str();
+    const auto array = [](const vec3& v) { return "[" + exact_text(v, ", ") + "]"; };
+    return "\"camera\": {\"position\": " + array(pose.position) + ", \"target\": " + array(pose.target) +
+           ", \"up\": " + array(pose.up) + ", \"vertical_fov\": " + exact_text(pose.vertical_fov) + "}";
 }
 
 }  // namespace lab

@@ -29,16 +29,13 @@ class CameraControl {
 
     Navigation navigation = Navigation::first_person;
     float speed() const { return speed_; }  // scene units a second
-    void set_speed(float speed) { speed_ = speed; }
 
   private:
     float size_ = 1;  // diagonal of the scene
     float speed_ = 0.25f;
 };
 
-// The pose as options of the command line, and as the value of "camera" in a scene file. The numbers are
-// exact.
-std::string camera_flags(const CameraPose& pose);
+// The pose as the value of "camera" in a scene file. The numbers are exact.
 std::string camera_json(const CameraPose& pose);
 
 }  // namespace lab

@@ -1,6 +1,5 @@
 #include "viewer/comparison.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "error.h"
@@ -86,14 +85,12 @@ void Comparison::update(Session& first, double seconds, bool is_moving) {
 
 std::vector<Layer> Comparison::layers(const Session& first, const Rectangle& where) const {
     const auto layer = [&](const Session& session, float from, float to) {
-        const Options& options = session.build().job.options;
-        return Layer{
-            .pass = session.build().display.get(),
-            .transform = options.image.view ? options.image.view->display : DisplayTransform::exposure,
-            .exposure = session.options().appearance.exposure,
-            .where = where,
-            .from = from,
-            .to = to};
+        return Layer{.pass = session.build().display.get(),
+                     .transform = session.build().job.options.image.display(),
+                     .exposure = session.options().appearance.exposure,
+                     .where = where,
+                     .from = from,
+                     .to = to};
     };
     if (!second_) return {layer(first, 0, 1)};
     return {layer(first, 0, split), layer(*second_, split, 1)};

@@ -6,45 +6,29 @@
 #include "viewer/inside_drawing.h"
 
 namespace lab {
+namespace {
 
-void ComparisonPanel::draw_split(const Rectangle& picture) const {
-    if (!comparison_.is_active()) return;
-    const Placement placement(picture);
-    ImGui::GetBackgroundDrawList()->AddLine(placement.at({comparison_.split, 0}),
-                                            placement.at({comparison_.split, 1}),
-                                            IM_COL32(255, 255, 255, 200));
-}
-
-void ComparisonPanel::draw_controls(const Session& first) {
-    if (!ImGui::CollapsingHeader("compare")) return;
-    draw_choice(first);
-    if (comparison_.is_building()) ImGui::TextUnformatted("building ...");
-    if (!comparison_.message().empty()) ImGui::TextWrapped("%s", comparison_.message().c_str());
-    if (comparison_.is_active()) draw_numbers(first);
-}
-
-void ComparisonPanel::draw_choice(const Session& first) {
-    const std::string chosen = comparison_.is_active() ? comparison_.second().chapter().name : "none";
+void draw_choice(Comparison& comparison, const Session& first) {
+    const std::string chosen = comparison.is_active() ? comparison.second().chapter().name : "none";
     if (ImGui::BeginCombo("beside", chosen.c_str())) {
-        if (ImGui::Selectable("none")) comparison_.stop();
+        if (ImGui::Selectable("none")) comparison.stop();
         const std::string same = first.chapter().name + ", with the settings of now";
-        if (ImGui::Selectable(same.c_str())) comparison_.start(first, first.chapter().name);
-        for (const std::string& chapter : comparison_.chapters())
+        if (ImGui::Selectable(same.c_str())) comparison.start(first, first.chapter().name);
+        for (const std::string& chapter : comparison.chapters())
             if (chapter != first.chapter().name && ImGui::Selectable(chapter.c_str()))
-                comparison_.start(first, chapter);
+                comparison.start(first, chapter);
         ImGui::EndCombo();
     }
-    if (!comparison_.is_active()) return;
-    int equal = static_cast<int>(comparison_.equal);
-    ImGui::RadioButton("equal time", &equal, static_cast<int>(Equal::time));
+    if (!comparison.is_active()) return;
+    Equal& equal = comparison.equal;
+    if (ImGui::RadioButton("equal time", equal == Equal::time)) equal = Equal::time;
     ImGui::SameLine();
-    ImGui::RadioButton("equal samples", &equal, static_cast<int>(Equal::samples));
-    comparison_.equal = static_cast<Equal>(equal);
-    ImGui::SliderFloat("split", &comparison_.split, 0, 1, "%.2f");
+    if (ImGui::RadioButton("equal samples", equal == Equal::samples)) equal = Equal::samples;
+    ImGui::SliderFloat("split", &comparison.split, 0, 1, "%.2f");
 }
 
-void ComparisonPanel::draw_numbers(const Session& first) const {
-    const Session& second = comparison_.second();
+void draw_numbers(const Comparison& comparison, const Session& first) {
+    const Session& second = comparison.second();
     const auto row = [](const char* side, const Session& session) {
         const auto error = session.relative_error();
         ImGui::Text("%s %.6g samples, %s, error %s", side, session.samples(),
@@ -53,16 +37,34 @@ void ComparisonPanel::draw_numbers(const Session& first) const {
     };
     row("left: ", first);
     row("right:", second);
-    if (const auto difference = comparison_.difference(first))
+    if (const auto difference = comparison.difference(first))
         ImGui::Text("left - right: %+.2f %% ± %.2f %%", 100 * difference->value,
                     100 * 1.96 * difference->standard_error);
-    if (const auto speedup = comparison_.speedup(first))
+    if (const auto speedup = comparison.speedup(first))
         ImGui::TextWrapped("to equal error, right takes %.3g times as long as left", *speedup);
     const uint32_t length = first.build().job.parameters.max_path_length,
                    other = second.build().job.parameters.max_path_length;
     if (length != other)
         ImGui::TextWrapped("paths end after %u bounces left, %u right: the images differ", length, other);
     if (!second.message().empty()) ImGui::TextWrapped("%s", second.message().c_str());
+}
+
+}  // namespace
+
+void draw_split(const Comparison& comparison, const Rectangle& picture) {
+    if (!comparison.is_active()) return;
+    const Placement placement(picture);
+    ImGui::GetBackgroundDrawList()->AddLine(placement.at({comparison.split, 0}),
+                                            placement.at({comparison.split, 1}),
+                                            IM_COL32(255, 255, 255, 200));
+}
+
+void draw_controls(Comparison& comparison, const Session& first) {
+    if (!ImGui::CollapsingHeader("compare")) return;
+    draw_choice(comparison, first);
+    if (comparison.is_building()) ImGui::TextUnformatted("building ...");
+    if (!comparison.message().empty()) ImGui::TextWrapped("%s", comparison.message().c_str());
+    if (comparison.is_active()) draw_numbers(comparison, first);
 }
 
 }  // namespace lab

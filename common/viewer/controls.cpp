@@ -61,6 +61,64 @@ void draw_chapter_option(const ChapterOption& option, const RenderParameters& pa
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", option.help.c_str());
 }
 
+void draw_progress(const Session& session, double frames_per_second) {
+    const FilmRecord& record = session.build().job.record;
+    const double seconds = std::max(session.seconds(), 1e-9), samples = session.samples();
+    ImGui::TextWrapped("%s", session.chapter().title.c_str());
+    ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
+    ImGui::Separator();
+    if (session.target_samples() < UINT32_MAX - record.first_sample)
+        ImGui::Text("%.6g of %u samples a pixel, %s", samples, session.target_samples(),
+                    duration_text(seconds).c_str());
+    else
+        ImGui::Text("%.6g samples a pixel, %s", samples, duration_text(seconds).c_str());
+    ImGui::Text("%s samples/s, %s rays/s, %.0f frames/s", short_number(samples / seconds).c_str(),
+                short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
+    constexpr double wanted = 0.01;
+    if (const auto error = session.relative_error(); error && *error > wanted)
+        ImGui::Text("error about %.3g %%, 1 %% in %s", 100 * *error,
+                    duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
+    else if (error)
+        ImGui::Text("error about %.2g %%", 100 * *error);
+    else
+        ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves"
+                                                       : "error not known yet");
+    if (session.is_building()) ImGui::TextUnformatted("building ...");
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
+    if (!session.message().empty()) ImGui::TextWrapped("%s", session.message().c_str());
+    ImGui::PopStyleColor();
+}
+
+void draw_strategy(const Chapter& chapter, EstimatorOptions& estimator) {
+    int strategy = static_cast<int>(estimator.strategy);
+    if (chapter.strategies) {
+        ImGui::Combo("light is found by", &strategy, "both\0light samples\0bounces\0");
+        estimator.strategy = static_cast<Strategy>(strategy);
+    } else if (chapter.light_sampling) {
+        bool light_sampling = estimator.strategy == Strategy::both;
+        if (ImGui::Checkbox("light sampling", &light_sampling))
+            estimator.strategy = light_sampling ? Strategy::both : Strategy::brdf;
+    }
+}
+
+void draw_picture(const Session& session, Options& options) {
+    ImGui::Separator();
+    const uvec2 size = session.build().job.parameters.image_size;
+    if (ImGui::BeginCombo("view", options.image.view ? options.image.view->name.c_str() : "radiance")) {
+        if (ImGui::Selectable("radiance", !options.image.view)) options.image.view = nullptr;
+        for (const View& view : views()) {
+            if (can_show(view, session.build().backend) &&
+                ImGui::Selectable(view.name.c_str(), options.image.view == &view))
+                options.image.view = &view;
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::SliderFloat("exposure", &options.appearance.exposure, -10, 10, "%.1f EV");
+    uint32_t width = size.x, height = size.y;
+    if (number_field("width", width)) options.image.width = std::clamp(width, 1u, max_image_extent);
+    if (number_field("height", height)) options.image.height = std::clamp(height, 1u, max_image_extent);
+}
+
 }  // namespace
 
 Controls::Controls() {
@@ -94,34 +152,6 @@ void Controls::draw(Session& session, CameraControl& camera_control, double fram
     draw_camera(session, camera_control);
     ImGui::PopItemWidth();
     ImGui::End();
-}
-
-void Controls::draw_progress(Session& session, double frames_per_second) {
-    const FilmRecord& record = session.build().job.record;
-    const double seconds = std::max(session.seconds(), 1e-9), samples = session.samples();
-    ImGui::TextWrapped("%s", session.chapter().title.c_str());
-    ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
-    ImGui::Separator();
-    if (session.target_samples() < UINT32_MAX - record.first_sample)
-        ImGui::Text("%.6g of %u samples a pixel, %s", samples, session.target_samples(),
-                    duration_text(seconds).c_str());
-    else
-        ImGui::Text("%.6g samples a pixel, %s", samples, duration_text(seconds).c_str());
-    ImGui::Text("%s samples/s, %s rays/s, %.0f frames/s", short_number(samples / seconds).c_str(),
-                short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
-    constexpr double wanted = 0.01;
-    if (const auto error = session.relative_error(); error && *error > wanted)
-        ImGui::Text("error about %.3g %%, 1 %% in %s", 100 * *error,
-                    duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
-    else if (error)
-        ImGui::Text("error about %.2g %%", 100 * *error);
-    else
-        ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves"
-                                                       : "error not known yet");
-    if (session.is_building()) ImGui::TextUnformatted("building ...");
-    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
-    if (!session.message().empty()) ImGui::TextWrapped("%s", session.message().c_str());
-    ImGui::PopStyleColor();
 }
 
 void Controls::draw_actions(Session& session) {
@@ -161,23 +191,9 @@ void Controls::draw_scene(Session& session, Options& options) {
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Or drop a .json or .obj file on the window");
     vec3 background = session.background();
-    if (ImGui::ColorEdit3("background", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR)) {
-        background = glm::max(background, vec3(0));
-        options.light.background = {background.x, background.y, background.z};
-    }
+    if (ImGui::ColorEdit3("background", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR))
+        options.light.background = glm::max(background, vec3(0));
     ImGui::Checkbox("specular lobes (Ks)", &options.scene.specular);
-}
-
-void Controls::draw_strategy(const Chapter& chapter, EstimatorOptions& estimator) {
-    int strategy = static_cast<int>(estimator.strategy);
-    if (chapter.strategies) {
-        ImGui::Combo("light is found by", &strategy, "both\0light samples\0bounces\0");
-        estimator.strategy = static_cast<Strategy>(strategy);
-    } else if (chapter.light_sampling) {
-        bool light_sampling = estimator.strategy == Strategy::both;
-        if (ImGui::Checkbox("light sampling", &light_sampling))
-            estimator.strategy = light_sampling ? Strategy::both : Strategy::brdf;
-    }
 }
 
 void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options) {
@@ -200,31 +216,13 @@ void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parame
         options.appearance.sample_count = samples > 0 ? std::optional(samples) : std::nullopt;
 }
 
-void Controls::draw_picture(const Session& session, Options& options) {
-    ImGui::Separator();
-    const uvec2 size = session.build().job.parameters.image_size;
-    if (ImGui::BeginCombo("view", options.image.view ? options.image.view->name.c_str() : "radiance")) {
-        if (ImGui::Selectable("radiance", !options.image.view)) options.image.view = nullptr;
-        for (const View& view : views()) {
-            if (can_show(view, session.build().backend) &&
-                ImGui::Selectable(view.name.c_str(), options.image.view == &view))
-                options.image.view = &view;
-        }
-        ImGui::EndCombo();
-    }
-    ImGui::SliderFloat("exposure", &options.appearance.exposure, -10, 10, "%.1f EV");
-    uint32_t width = size.x, height = size.y;
-    if (number_field("width", width)) options.image.width = std::clamp(width, 1u, max_image_extent);
-    if (number_field("height", height)) options.image.height = std::clamp(height, 1u, max_image_extent);
-}
-
 void Controls::draw_camera(Session& session, CameraControl& camera_control) {
     ImGui::Separator();
-    int navigation = static_cast<int>(camera_control.navigation);
-    ImGui::RadioButton("first person", &navigation, static_cast<int>(Navigation::first_person));
+    Navigation& navigation = camera_control.navigation;
+    if (ImGui::RadioButton("first person", navigation == Navigation::first_person))
+        navigation = Navigation::first_person;
     ImGui::SameLine();
-    ImGui::RadioButton("orbit", &navigation, static_cast<int>(Navigation::orbit));
-    camera_control.navigation = static_cast<Navigation>(navigation);
+    if (ImGui::RadioButton("orbit", navigation == Navigation::orbit)) navigation = Navigation::orbit;
     CameraPose pose = session.camera();
     if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees",
                            ImGuiSliderFlags_AlwaysClamp))
@@ -236,7 +234,7 @@ void Controls::draw_camera(Session& session, CameraControl& camera_control) {
         std::fflush(stdout);
         notice_ = "copied the camera";
     };
-    copy("Copy flags", camera_flags(pose));
+    copy("Copy flags", camera_flags(pose, '='));
     ImGui::SameLine();
     copy("Copy JSON", camera_json(pose));
     ImGui::TextWrapped(

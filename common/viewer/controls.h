@@ -21,12 +21,9 @@ class Controls {
     vec2 seed_field() const { return seed_field_; }  // where it was drawn last, for tests
 
   private:
-    void draw_progress(Session& session, double frames_per_second);
     void draw_actions(Session& session);
     void draw_scene(Session& session, Options& options);
-    void draw_strategy(const Chapter& chapter, EstimatorOptions& estimator);
     void draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options);
-    void draw_picture(const Session& session, Options& options);
     void draw_camera(Session& session, CameraControl& camera_control);
     void save(Session& session, const char* ending);
 

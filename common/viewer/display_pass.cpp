@@ -6,15 +6,6 @@
 #include "files/project_folder.h"
 
 namespace lab {
-namespace {
-
-std::vector<Binding> bindings(const Film& film, const StorageImage& picture, const Buffer& largest_value) {
-    return {film.binding(),
-            {.index = BINDING_PICTURE, .type = vk::DescriptorType::eStorageImage, .images = {picture.info()}},
-            storage_binding(BINDING_LARGEST_VALUE, largest_value)};
-}
-
-}  // namespace
 
 DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr<StorageImage> picture)
     : device_(&device),
@@ -22,7 +13,12 @@ DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr
       picture_(std::move(picture)),
       largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
       kernel_(device, {.file = project_folder() / "shaders" / "display.comp"},
-              bindings(film, *picture_, largest_value_), sizeof(DisplayParameters)) {}
+              std::vector<Binding>{film.binding(),
+                                   {.index = BINDING_PICTURE,
+                                    .type = vk::DescriptorType::eStorageImage,
+                                    .images = {picture_->info()}},
+                                   storage_binding(BINDING_LARGEST_VALUE, largest_value_)},
+              sizeof(DisplayParameters)) {}
 
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform,
                          float exposure) const {

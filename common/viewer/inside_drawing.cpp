@@ -1,6 +1,5 @@
 #include "viewer/inside_drawing.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "inside/hemisphere_view.h"
@@ -10,10 +9,8 @@ namespace lab {
 namespace {
 
 // Radiance as the picture shows it without exposure.
-uint32_t colour_of(const float* radiance, float scale) {
-    const auto channel = [&](int i) {
-        return static_cast<uint32_t>(std::lround(255 * linear_to_srgb(std::min(scale * radiance[i], 1.0f))));
-    };
+uint32_t colour_of(const vec3& radiance) {
+    const auto channel = [&](int i) { return std::lround(255 * linear_to_srgb(radiance[i])); };
     return IM_COL32(channel(0), channel(1), channel(2), 255);
 }
 
@@ -74,7 +71,7 @@ void draw_disc(const Image& picture, float scale, float width) {
                         sum[static_cast<int>(channel)] += picture.pixels[3 * (py * extent + px) + channel];
             const vec3 mean = sum / static_cast<float>((last.x - first.x) * (last.y - first.y));
             const ImVec2 a(corner.x + cell * static_cast<float>(x), corner.y + cell * static_cast<float>(y));
-            list.AddRectFilled(a, {a.x + cell, a.y + cell}, colour_of(&mean.x, scale));
+            list.AddRectFilled(a, {a.x + cell, a.y + cell}, colour_of(scale * mean));
         }
     ImGui::Dummy({cell * cells, cell * cells});
 }

@@ -73,16 +73,15 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
 }
 
 void InsidePanel::draw_verdict(const Session& session) {
-    const bool is_known = session.verdict() && session.verdict()->verdict();
-    const bool is_biased = is_known && session.verdict()->verdict()->is_biased;
+    const Verdict* verdict = session.latest_verdict();
     // Always as high, so that what follows does not jump.
     ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false,
                       ImGuiWindowFlags_NoScrollbar);
-    ImGui::PushStyleColor(ImGuiCol_Text, !is_known ? grey : is_biased ? red : green);
+    ImGui::PushStyleColor(ImGuiCol_Text, !verdict ? grey : verdict->is_biased ? red : green);
     ImGui::TextWrapped("%s", session.verdict_text().c_str());
     ImGui::PopStyleColor();
     ImGui::EndChild();
-    if (is_known && ImGui::IsItemHovered())
+    if (verdict && ImGui::IsItemHovered())
         ImGui::SetTooltip("An unbiased render is ever called biased with a probability of %.3g",
                           LiveVerdict::default_false_alarms);
 }

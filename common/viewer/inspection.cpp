@@ -2,23 +2,13 @@
 
 #include <cstring>
 
-#include "error.h"
 #include "rendering/settings.h"
 
 namespace lab {
 
-std::shared_ptr<Inspection::Tools> Inspection::wanted_tools(const Session& session) const {
-    const WindowBuild& build = session.build();
-    Options options = build.job.options;
-    options.image.view = nullptr;
-    auto tools = std::make_shared<Tools>();
-    tools->scene = build.job.scene;
-    tools->gpu_scene = build.gpu_scene;
-    tools->acceleration_structure = build.acceleration_structure;
-    tools->estimator = make_estimator(session.chapter(), options);
-    tools->shader_hash = build.shader_hash;
-    tools->image_size = build.job.parameters.image_size;
-    return tools;
+// Not of glass, which reflects and refracts into single directions.
+static bool has_brdf(const PathVertex& vertex, const Scene& scene) {
+    return vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
 }
 
 // Whether there are tools for what the session renders; if not, starts making them.
@@ -34,7 +24,15 @@ bool Inspection::have_tools(const Session& session) {
             failed_shader_hash_ = work_shader_hash_;
         }
     }
-    const auto wanted = wanted_tools(session);
+    const WindowBuild& build = session.build();
+    Options options = build.job.options;
+    options.image.view = nullptr;
+    const auto wanted = std::make_shared<Tools>(Tools{.scene = build.job.scene,
+                                                      .gpu_scene = build.gpu_scene,
+                                                      .acceleration_structure = build.acceleration_structure,
+                                                      .estimator = make_estimator(session.chapter(), options),
+                                                      .shader_hash = build.shader_hash,
+                                                      .image_size = build.job.parameters.image_size});
     if (tools_ && tools_->acceleration_structure == wanted->acceleration_structure &&
         tools_->shader_hash == wanted->shader_hash && tools_->estimator.file == wanted->estimator.file &&
         tools_->image_size == wanted->image_size)
@@ -59,31 +57,24 @@ void Inspection::update(const Session& session, double seconds) {
         return;
     }
     const RenderParameters& parameters = session.build().job.parameters;
+    if (std::memcmp(&parameters, &parameters_, sizeof parameters) != 0) shown_.reset();
+    parameters_ = parameters;
     selection_->pixel = glm::min(selection_->pixel, parameters.image_size - 1u);
-    if (shown_ != selection_ || std::memcmp(&parameters, &parameters_, sizeof parameters) != 0) {
-        const bool is_new_path = !shown_ || shown_->pixel != selection_->pixel ||
-                                 shown_->sample != selection_->sample ||
-                                 std::memcmp(&parameters, &parameters_, sizeof parameters) != 0;
-        parameters_ = parameters;
-        if (is_new_path)
+    if (shown_ != selection_) {
+        if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample)
             path_ = tools_->recorder->record(parameters, selection_->pixel,
                                              parameters.first_sample + selection_->sample);
-        if (path_->vertices.empty()) {  // an estimator that traces no ray
-            has_hemisphere_ = false;
-            shown_ = selection_;
-            return;
+        has_hemisphere_ = false;
+        if (const auto& vertices = path_->vertices; !vertices.empty()) {  // else it traces no ray
+            selection_->vertex = std::min(selection_->vertex, vertices.size() - 1);
+            const PathVertex& vertex = vertices[selection_->vertex];
+            has_hemisphere_ = has_brdf(vertex, *tools_->scene);
+            if (has_hemisphere_) tools_->hemisphere->look_at(vertex, parameters);
         }
-        selection_->vertex = std::min(selection_->vertex, path_->vertices.size() - 1);
-        const PathVertex& vertex = path_->vertices[selection_->vertex];
-        const Scene& scene = *tools_->scene;
-        // Glass reflects and refracts into single directions: its BRDF is no function.
-        has_hemisphere_ =
-            vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
-        if (has_hemisphere_) tools_->hemisphere->look_at(vertex, parameters);
         shown_ = selection_;
     }
-    constexpr uint32_t enough_samples = 256;
     if (!has_hemisphere_) return;
+    constexpr uint32_t enough_samples = 256;
     tools_->hemisphere->set_dispatch_seconds(seconds);
     tools_->hemisphere->advance(enough_samples);
 }

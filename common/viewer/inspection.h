@@ -42,10 +42,9 @@ class Inspection {
         Estimator estimator;
         uint64_t shader_hash;
         uvec2 image_size;
-        std::unique_ptr<PathRecorder> recorder;
-        std::unique_ptr<HemisphereView> hemisphere;
+        std::unique_ptr<PathRecorder> recorder = nullptr;
+        std::unique_ptr<HemisphereView> hemisphere = nullptr;
     };
-    std::shared_ptr<Tools> wanted_tools(const Session& session) const;
     bool have_tools(const Session& session);
 
     const Device& device_;

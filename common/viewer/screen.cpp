@@ -5,7 +5,6 @@
 #include <imgui_impl_vulkan.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "clock.h"
@@ -13,8 +12,6 @@
 
 namespace lab {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 void check(VkResult result) {
     if (result < 0)
@@ -96,7 +93,7 @@ void Screen::start_user_interface() {
     info.PipelineCache = *device_->pipeline_cache();
     info.DescriptorPool = *descriptor_pool_;
     info.MinImageCount = 2;
-    info.ImageCount = std::max(2u, static_cast<uint32_t>(images_.size()));
+    info.ImageCount = std::max(2u, static_cast<uint32_t>(targets_.size()));
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     info.CheckVkResultFn = check;
     if (!ImGui_ImplVulkan_Init(&info, *render_pass_))
@@ -112,6 +109,7 @@ void Screen::start_user_interface() {
 }
 
 void Screen::make_swapchain() {
+    device_->handle().waitIdle();
     const auto& surface = device_->surface();
     const auto limits = device_->physical().getSurfaceCapabilitiesKHR(*surface);
     extent_ = limits.currentExtent;
@@ -120,9 +118,7 @@ void Screen::make_swapchain() {
         extent_.width = std::clamp(size.x, limits.minImageExtent.width, limits.maxImageExtent.width);
         extent_.height = std::clamp(size.y, limits.minImageExtent.height, limits.maxImageExtent.height);
     }
-    framebuffers_.clear();
-    views_.clear();
-    drawn_.clear();
+    targets_.clear();
     if (extent_.width == 0 || extent_.height == 0) return;  // minimised
     const uint32_t most = limits.maxImageCount == 0 ? UINT32_MAX : limits.maxImageCount;
     vk::SwapchainCreateInfoKHR info({}, *surface, std::min(limits.minImageCount + 1, most), format_.format,
@@ -138,27 +134,21 @@ void Screen::make_swapchain() {
     info.clipped = true;
     info.oldSwapchain = *swapchain_;
     swapchain_ = vk::raii::SwapchainKHR(device_->handle(), info);
-    images_.clear();
-    for (const VkImage image : swapchain_.getImages()) images_.emplace_back(image);
-    for (const vk::Image image : images_) {
-        views_.emplace_back(device_->handle(), vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D,
-                                                                       format_.format, {}, whole_image));
-        framebuffers_.emplace_back(
+    for (const vk::Image image : swapchain_.getImages()) {
+        vk::raii::ImageView view(device_->handle(), vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D,
+                                                                            format_.format, {}, whole_image));
+        vk::raii::Framebuffer framebuffer(
             device_->handle(),
-            vk::FramebufferCreateInfo({}, *render_pass_, *views_.back(), extent_.width, extent_.height, 1));
-        drawn_.emplace_back(device_->handle(), vk::SemaphoreCreateInfo());
+            vk::FramebufferCreateInfo({}, *render_pass_, *view, extent_.width, extent_.height, 1));
+        targets_.push_back({image, std::move(view), std::move(framebuffer),
+                            vk::raii::Semaphore(device_->handle(), vk::SemaphoreCreateInfo())});
     }
-}
-
-void Screen::remake_swapchain() {
-    device_->handle().waitIdle();
-    make_swapchain();
 }
 
 void Screen::begin_frame() {
     if (const uvec2 window = window_->framebuffer_size(); window != size() && window.x > 0 && window.y > 0) {
         const auto lock = device_->lock_queue();
-        remake_swapchain();
+        make_swapchain();
     }
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
@@ -170,7 +160,7 @@ double Screen::show(std::span<const Layer> layers) {
     const uvec2 window_size = window_->framebuffer_size();
     if (window_size.x == 0 || window_size.y == 0) return 0;
     const auto lock = device_->lock_queue();
-    if (framebuffers_.empty()) return 0;
+    if (targets_.empty()) return 0;
 
     const auto start = Clock::now();
     uint32_t image = 0;
@@ -181,16 +171,17 @@ double Screen::show(std::span<const Layer> layers) {
         if (result == vk::Result::eTimeout || result == vk::Result::eNotReady) return seconds_since(start);
         image = index;
     } catch (const vk::OutOfDateKHRError&) {
-        remake_swapchain();  // the next frame will be shown
+        make_swapchain();  // the next frame will be shown
         return seconds_since(start);
     }
     double waited = seconds_since(start);
 
+    const Target& target = targets_[image];
     commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    record(commands_, image, layers);
+    record(commands_, target, layers);
     commands_.end();
     const vk::PipelineStageFlags stage = vk::PipelineStageFlagBits::eAllCommands;
-    device_->queue().submit(vk::SubmitInfo(*acquired_, stage, *commands_, *drawn_[image]), *fence_);
+    device_->queue().submit(vk::SubmitInfo(*acquired_, stage, *commands_, *target.drawn), *fence_);
     if (device_->handle().waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
         throw DeviceFailure("the device did not finish a frame");
     device_->handle().resetFences(*fence_);
@@ -199,24 +190,25 @@ double Screen::show(std::span<const Layer> layers) {
     const auto presenting = Clock::now();
     bool fits = true;
     try {
-        const vk::PresentInfoKHR info(*drawn_[image], *swapchain_, image);
+        const vk::PresentInfoKHR info(*target.drawn, *swapchain_, image);
         fits = device_->queue().presentKHR(info) == vk::Result::eSuccess;
     } catch (const vk::OutOfDateKHRError&) {
         fits = false;
     }
     waited += seconds_since(presenting);
-    if (!fits) remake_swapchain();
+    if (!fits) make_swapchain();
     return waited;
 }
 
-void Screen::record(const vk::raii::CommandBuffer& commands, uint32_t image, std::span<const Layer> layers) {
+void Screen::record(const vk::raii::CommandBuffer& commands, const Target& target,
+                    std::span<const Layer> layers) {
     constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
     const vk::ClearColorValue grey(std::array<float, 4>{0.07f, 0.07f, 0.07f, 1.0f});
     for (const Layer& layer : layers) layer.pass->record(commands, layer.transform, layer.exposure);
-    change_layout(commands, images_[image], vk::ImageLayout::eUndefined, target_layout);
-    commands.clearColorImage(images_[image], target_layout, grey, whole_image);
-    for (const Layer& layer : layers) draw(commands, image, layer);
-    commands.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *framebuffers_[image], {{0, 0}, extent_}),
+    change_layout(commands, target.image, vk::ImageLayout::eUndefined, target_layout);
+    commands.clearColorImage(target.image, target_layout, grey, whole_image);
+    for (const Layer& layer : layers) draw(commands, target.image, layer);
+    commands.beginRenderPass(vk::RenderPassBeginInfo(*render_pass_, *target.framebuffer, {{0, 0}, extent_}),
                              vk::SubpassContents::eInline);
     ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
     commands.endRenderPass();
@@ -225,16 +217,16 @@ void Screen::record(const vk::raii::CommandBuffer& commands, uint32_t image, std
     const size_t bytes = size_t{4} * extent_.width * extent_.height;
     if (!capture_buffer_ || capture_buffer_->size() < bytes)
         capture_buffer_.emplace(*device_, bytes, vk::BufferUsageFlags(), Buffer::Location::host);
-    change_layout(commands, images_[image], vk::ImageLayout::ePresentSrcKHR,
+    change_layout(commands, target.image, vk::ImageLayout::ePresentSrcKHR,
                   vk::ImageLayout::eTransferSrcOptimal);
     commands.copyImageToBuffer(
-        images_[image], vk::ImageLayout::eTransferSrcOptimal, capture_buffer_->handle(),
+        target.image, vk::ImageLayout::eTransferSrcOptimal, capture_buffer_->handle(),
         vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {extent_.width, extent_.height, 1}));
-    change_layout(commands, images_[image], vk::ImageLayout::eTransferSrcOptimal,
+    change_layout(commands, target.image, vk::ImageLayout::eTransferSrcOptimal,
                   vk::ImageLayout::ePresentSrcKHR);
 }
 
-void Screen::draw(const vk::raii::CommandBuffer& commands, uint32_t image, const Layer& layer) const {
+void Screen::draw(const vk::raii::CommandBuffer& commands, vk::Image image, const Layer& layer) const {
     constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
     const Rectangle& where = layer.where;
     const glm::ivec2 end = where.corner + where.size;
@@ -252,7 +244,7 @@ void Screen::draw(const vk::raii::CommandBuffer& commands, uint32_t image, const
     const auto place = [&](int pixel) {
         return where.corner.x + static_cast<int>(int64_t{pixel} * where.size.x / width);
     };
-    change_layout(commands, images_[image], target_layout, target_layout);  // what came before this blit
+    change_layout(commands, image, target_layout, target_layout);  // what came before this blit
     const vk::Image source = layer.pass->picture().handle();
     change_layout(commands, source, vk::ImageLayout::eGeneral, vk::ImageLayout::eTransferSrcOptimal);
     const vk::ImageBlit blit(
@@ -260,7 +252,7 @@ void Screen::draw(const vk::raii::CommandBuffer& commands, uint32_t image, const
         {vk::Offset3D(place(from), where.corner.y, 0), vk::Offset3D(place(to), end.y, 1)});
     // Enlarged pixels stay visible as such.
     const bool enlarges = where.size.x >= width;
-    commands.blitImage(source, vk::ImageLayout::eTransferSrcOptimal, images_[image], target_layout, blit,
+    commands.blitImage(source, vk::ImageLayout::eTransferSrcOptimal, image, target_layout, blit,
                        enlarges ? vk::Filter::eNearest : vk::Filter::eLinear);
     change_layout(commands, source, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::eGeneral);
 }

@@ -46,10 +46,17 @@ class Screen {
 
   private:
     void start_user_interface();
+    // Of the window's size. Needs the lock of the queue once something else uses it.
     void make_swapchain();
-    void remake_swapchain();  // needs the lock of the queue
-    void record(const vk::raii::CommandBuffer& commands, uint32_t image, std::span<const Layer> layers);
-    void draw(const vk::raii::CommandBuffer& commands, uint32_t image, const Layer& layer) const;
+    // An image of the swapchain and what it takes to draw to it.
+    struct Target {
+        vk::Image image;
+        vk::raii::ImageView view;
+        vk::raii::Framebuffer framebuffer;
+        vk::raii::Semaphore drawn;  // one each: presenting may still wait for it
+    };
+    void record(const vk::raii::CommandBuffer& commands, const Target& target, std::span<const Layer> layers);
+    void draw(const vk::raii::CommandBuffer& commands, vk::Image image, const Layer& layer) const;
     void keep_capture();
 
     const Device* device_;
@@ -63,10 +70,7 @@ class Screen {
     vk::raii::Fence fence_ = nullptr;
     vk::raii::Semaphore acquired_ = nullptr;
     vk::raii::SwapchainKHR swapchain_ = nullptr;
-    std::vector<vk::Image> images_;
-    std::vector<vk::raii::ImageView> views_;
-    std::vector<vk::raii::Framebuffer> framebuffers_;
-    std::vector<vk::raii::Semaphore> drawn_;  // one an image: presenting may still wait for it
+    std::vector<Target> targets_;  // empty while the window is minimised
     bool captures_ = false;
     std::optional<Buffer> capture_buffer_;
     Texture captured_;

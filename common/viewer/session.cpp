@@ -1,9 +1,9 @@
 #include "viewer/session.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
-#include "clock.h"
 #include "error.h"
 #include "files/project_folder.h"
 #include "rendering/outputs.h"
@@ -12,10 +12,6 @@
 
 namespace lab {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-std::array<float, 3> to_array(const vec3& v) { return {v.x, v.y, v.z}; }
 
 // Whether a render goes on with these options: they differ at most in what shows it.
 bool has_same_samples(const Options& a, const Options& b) {
@@ -53,10 +49,7 @@ void Session::change(const Options& options) {
 
 void Session::set_camera(const CameraPose& pose) {
     Options options = options_;
-    options.camera.position = to_array(pose.position);
-    options.camera.target = to_array(pose.target);
-    options.camera.up = to_array(pose.up);
-    options.camera.vertical_fov = pose.vertical_fov;
+    options.camera = {pose.position, pose.target, pose.up, pose.vertical_fov};
     change(options);
 }
 
@@ -66,8 +59,6 @@ void Session::open_scene(const std::filesystem::path& file) {
     options_.light.background.reset();
     reloads_scene_ = true;
 }
-
-void Session::restart() { needs_restart_ = true; }
 
 void Session::update(double dispatch_seconds, bool is_moving) {
     look_for_changed_shaders();
@@ -157,24 +148,20 @@ void Session::begin(uint32_t reduction) {
     seconds_ = 0;
     snapshot_ = earlier_snapshot_ = {};
     snapshot_error_.reset();
-    verdict_.reset();
-    no_verdict_ = "the picture is reduced";
-    if (reduction_ == 1) find_verdict();
+    verdict_ = find_verdict();
 }
 
-void Session::find_verdict() {
-    if (build_->job.options.image.view) {
-        no_verdict_ = "the picture shows no radiance";
-        return;
-    }
+// Or why there is none.
+std::variant<LiveVerdict, std::string> Session::find_verdict() const {
+    const RenderJob& job = build_->job;
+    if (reduction_ > 1) return "the picture is reduced";
+    if (job.options.image.view) return "the picture shows no radiance";
     try {
-        auto reference = find_reference(*build_->job.scene, build_->job.parameters);
-        if (auto* found = std::get_if<Reference>(&reference))
-            verdict_.emplace(std::move(*found), build_->job.parameters.image_size);
-        else
-            no_verdict_ = std::get<std::string>(reference);
+        auto reference = find_reference(*job.scene, job.parameters);
+        if (const auto* why = std::get_if<std::string>(&reference)) return *why;
+        return LiveVerdict(std::get<Reference>(std::move(reference)), job.parameters.image_size);
     } catch (const UserError& error) {
-        no_verdict_ = shortened(error.what());
+        return shortened(error.what());
     }
 }
 
@@ -200,12 +187,8 @@ void Session::render(double seconds) {
                (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
     };
     while (renderer.samples() < target_samples() && goes_on()) {
-        // Errors are estimated at powers of two.
-        const auto done = static_cast<uint32_t>(renderer.samples());
-        uint32_t next = 1;
-        while (next <= done) next = next > target_samples() / 2 ? target_samples() : 2 * next;
-        next = std::min(next, target_samples());
-        if (verdict_ && reduction_ == 1) next = std::min(next, verdict_->next_samples());
+        uint32_t next = next_look(static_cast<uint32_t>(renderer.samples()), target_samples());
+        if (verdict()) next = std::min(next, verdict()->next_samples());
         renderer.set_dispatch_seconds(std::max(seconds - elapsed, 0.1 * seconds));
         const bool is_complete = !renderer.advance(next);
         elapsed = seconds_since(start);
@@ -220,18 +203,16 @@ void Session::render(double seconds) {
 void Session::take_snapshots(uint32_t samples, double seconds) {
     // Reading the film back takes time: not while powers of two pass by in quick succession.
     constexpr double seconds_of_first_snapshot = 0.25;
-    const bool is_for_verdict = verdict_ && samples == verdict_->next_samples();
-    const bool is_power_of_two = (samples & (samples - 1)) == 0;
+    auto* live_verdict = std::get_if<LiveVerdict>(&verdict_);
+    const bool is_for_verdict = live_verdict && samples == live_verdict->next_samples();
     const bool is_for_error =
-        seconds > seconds_of_first_snapshot && (is_power_of_two || samples == target_samples());
+        seconds > seconds_of_first_snapshot && (std::has_single_bit(samples) || samples == target_samples());
     if (!is_for_verdict && !is_for_error) return;
     FilmImage film = build_->renderer->film().read();
-    if (is_for_verdict) verdict_->add(film);
+    if (is_for_verdict) live_verdict->add(film);
     if (!is_for_error) return;
-    if (build_->job.has_independent_halves() && snapshot_.min_samples() > 0 &&
-        samples == 2 * snapshot_.min_samples())
-        snapshot_error_ =
-            std::sqrt(estimate_error(snapshot_.mean(), samples_after(snapshot_, film).mean()).rel_mse);
+    if (const auto error = build_->job.error_from(snapshot_, film))
+        snapshot_error_ = std::sqrt(error->rel_mse);
     earlier_snapshot_ = std::move(snapshot_);
     snapshot_ = std::move(film);
     snapshot_record_ = record(seconds);

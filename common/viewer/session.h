@@ -1,7 +1,8 @@
 // What a window renders, and the changes that its user makes to it.
 #pragma once
-#include <chrono>
+#include <variant>
 
+#include "clock.h"
 #include "statistics/live_verdict.h"
 #include "viewer/background_work.h"
 #include "viewer/window_build.h"
@@ -26,7 +27,7 @@ class Session {
     void change(const Options& options);
     void set_camera(const CameraPose& pose);
     void open_scene(const std::filesystem::path& file);  // with its own camera and background
-    void restart();
+    void restart() { needs_restart_ = true; }
 
     // One frame's work: takes over what was built, looks for changed shaders, and renders for about so many
     // seconds. After a restart, and as long as the camera moves, the image is reduced until a sample of every
@@ -55,8 +56,14 @@ class Session {
 
     // Whether the picture will be the scene's reference: null where there is nothing to compare with, and
     // why in verdict_text().
-    const LiveVerdict* verdict() const { return verdict_ ? &*verdict_ : nullptr; }
-    std::string verdict_text() const { return verdict_ ? verdict_->text() : "no verdict: " + no_verdict_; }
+    const LiveVerdict* verdict() const { return std::get_if<LiveVerdict>(&verdict_); }
+    // The latest of it; null before the first.
+    const Verdict* latest_verdict() const {
+        return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr;
+    }
+    std::string verdict_text() const {
+        return verdict() ? verdict()->text() : "no verdict: " + std::get<std::string>(verdict_);
+    }
 
     // Writes what there is so far, each file in the format of its ending, as a run without a window does.
     void save(const std::vector<std::filesystem::path>& files);
@@ -75,7 +82,7 @@ class Session {
     void begin(uint32_t reduction);
     void render(double seconds);
     void take_snapshots(uint32_t samples, double seconds);
-    void find_verdict();
+    std::variant<LiveVerdict, std::string> find_verdict() const;
     void write(const std::vector<std::filesystem::path>& files, const FilmImage& film,
                const FilmRecord& record) const;
     FilmRecord record(double seconds) const;  // after so many of rendering
@@ -93,7 +100,7 @@ class Session {
     uint64_t shader_hash_ = 0;         // of their contents when last looked at
     uint64_t work_shader_hash_ = 0;    // the same when the build in progress was started
     uint64_t failed_shader_hash_ = 0;  // contents that did not compile; 0 if the last ones did
-    std::chrono::steady_clock::time_point last_look_{};
+    Clock::time_point last_look_{};
     std::string message_;
 
     bool needs_restart_ = true;
@@ -103,8 +110,7 @@ class Session {
     FilmImage snapshot_;  // at the last power of two
     FilmRecord snapshot_record_;
     FilmImage earlier_snapshot_;  // at the one before
-    std::optional<LiveVerdict> verdict_;
-    std::string no_verdict_ = "the render goes on from an earlier one";  // why there is none
+    std::variant<LiveVerdict, std::string> verdict_ = "the render goes on from an earlier one";
     std::optional<double> snapshot_error_;
 };
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "statistics/noise.h"
 #include "viewer/inside_drawing.h"
 
 namespace lab {
@@ -63,15 +62,13 @@ void TileOverlay::update(const Session& session) {
         return;
     }
     uint32_t samples = session.last_snapshot().min_samples();
-    if (shown == Overlay::bias)
-        samples =
-            session.verdict() && session.verdict()->verdict() ? session.verdict()->verdict()->samples : 0;
-    const auto now = std::chrono::steady_clock::now();
-    const bool is_old = shown == Overlay::samples && now - last_update_ > std::chrono::milliseconds(500);
+    const Verdict* verdict = session.latest_verdict();
+    if (shown == Overlay::bias) samples = verdict ? verdict->samples : 0;
+    const bool is_old = shown == Overlay::samples && seconds_since(last_update_) > 0.5;
     if (coloured_ == shown && coloured_samples_ == samples && !is_old) return;
     coloured_ = shown;
     coloured_samples_ = samples;
-    last_update_ = now;
+    last_update_ = Clock::now();
     colours_.clear();
     if (shown == Overlay::bias) return colour_bias(session);
     const glm::uvec2 image = session.build().job.parameters.image_size;
@@ -82,17 +79,27 @@ void TileOverlay::update(const Session& session) {
 }
 
 void TileOverlay::colour_bias(const Session& session) {
-    if (!session.verdict() || !session.verdict()->verdict()) {
+    const Verdict* verdict = session.latest_verdict();
+    if (!verdict) {
         legend_ = session.verdict_text();
         return;
     }
-    const Verdict& verdict = *session.verdict()->verdict();
-    tile_size_ = verdict.map_tile_size;
-    tiles_ = {verdict.map.width, verdict.map.height};
-    const Texture map = draw_z_map(verdict.map, 1);
-    for (size_t i = 0; i < map.pixels.size(); i += 4)
-        colours_.push_back(IM_COL32(map.pixels[i], map.pixels[i + 1], map.pixels[i + 2], 255 * opacity));
+    tile_size_ = verdict->map_tile_size;
+    tiles_ = {verdict->map.width, verdict->map.height};
+    for (const double z : verdict->map.values) {
+        const auto [red, green, blue] = z_colour(z);
+        colours_.push_back(IM_COL32(red, green, blue, 255 * opacity));
+    }
     legend_ = "red: too bright, blue: too dark, full colour at 5 standard errors";
+}
+
+// By `heat_of` what is estimated of each tile.
+void TileOverlay::colour_tiles(const FilmImage& earlier, const FilmImage& later,
+                               const std::function<double(const NoiseEstimate&)>& heat_of) {
+    for (uint32_t y = 0; y < tiles_.y; ++y)
+        for (uint32_t x = 0; x < tiles_.x; ++x)
+            colours_.push_back(heat(heat_of(
+                estimate_noise(earlier, later, glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_)))));
 }
 
 void TileOverlay::colour_noise(const Session& session) {
@@ -102,12 +109,9 @@ void TileOverlay::colour_noise(const Session& session) {
         return;
     }
     // Decades from 0.1 % to 100 %.
-    for (uint32_t y = 0; y < tiles_.y; ++y)
-        for (uint32_t x = 0; x < tiles_.x; ++x) {
-            const NoiseEstimate noise = estimate_noise(session.earlier_snapshot(), later,
-                                                       glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_));
-            colours_.push_back(heat((3 + std::log10(std::max(noise.relative_error, 1e-9))) / 3));
-        }
+    colour_tiles(session.earlier_snapshot(), later, [](const NoiseEstimate& noise) {
+        return (3 + std::log10(std::max(noise.relative_error, 1e-9))) / 3;
+    });
     legend_ =
         text("standard error of a pixel as part of its tile's mean: dark 0.1 %%, yellow 100 %%; %.0f samples",
              later.min_samples(), 0);
@@ -115,16 +119,11 @@ void TileOverlay::colour_noise(const Session& session) {
 
 void TileOverlay::colour_samples(const Session& session) {
     const FilmImage film = session.build().renderer->film().read();
-    const auto [fewest, most] = std::minmax_element(
-        film.pixels.begin(), film.pixels.end(),
-        [](const FilmPixel& a, const FilmPixel& b) { return a.sample_count < b.sample_count; });
-    const double low = fewest->sample_count, high = most->sample_count;
-    for (uint32_t y = 0; y < tiles_.y; ++y)
-        for (uint32_t x = 0; x < tiles_.x; ++x) {
-            const NoiseEstimate tile =
-                estimate_noise({}, film, glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_));
-            colours_.push_back(heat(high > low ? (tile.samples - low) / (high - low) : 1));
-        }
+    const auto [fewest, most] = std::ranges::minmax(film.pixels, {}, &FilmPixel::sample_count);
+    const double low = fewest.sample_count, high = most.sample_count;
+    colour_tiles({}, film, [&](const NoiseEstimate& tile) {
+        return high > low ? (tile.samples - low) / (high - low) : 1;
+    });
     legend_ = text("samples of a pixel: dark %.0f, yellow %.0f", low, high);
 }
 

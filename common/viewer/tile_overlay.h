@@ -1,9 +1,11 @@
 // Colours tiles of the picture by what is known about them.
 #pragma once
-#include <chrono>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "clock.h"
+#include "statistics/noise.h"
 #include "viewer/screen.h"
 #include "viewer/session.h"
 
@@ -24,12 +26,14 @@ class TileOverlay {
   private:
     void update(const Session& session);
     void colour_bias(const Session& session);
+    void colour_tiles(const FilmImage& earlier, const FilmImage& later,
+                      const std::function<double(const NoiseEstimate&)>& heat_of);
     void colour_noise(const Session& session);
     void colour_samples(const Session& session);
 
     Overlay coloured_ = Overlay::none;
     uint32_t coloured_samples_ = 0;
-    std::chrono::steady_clock::time_point last_update_{};
+    Clock::time_point last_update_{};
     uint32_t tile_size_ = 8;  // in pixels of the image
     glm::uvec2 tiles_{0};
     std::vector<uint32_t> colours_;  // as Dear ImGui has them

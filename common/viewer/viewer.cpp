@@ -6,14 +6,12 @@
 
 #include <cstdio>
 
-#include "clock.h"
 #include "rendering/interrupt.h"
+#include "viewer/comparison_panel.h"
 #include "viewer/frame_pacing.h"
 
 namespace lab {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // Follows a series of numbers with a memory of about ten of them.
 double smooth(double average, double number) { return average + 0.1 * (number - average); }
@@ -41,7 +39,7 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
       screen_(device, window),
       session_(device, chapter, build_while_waiting(window, screen_, device, chapter, job)),
       inside_panel_(device),
-      comparison_panel_(device) {}
+      comparison_(device) {}
 
 bool Viewer::frame() {
     const bool has_work =
@@ -55,13 +53,13 @@ bool Viewer::frame() {
 
     const double budget = rendering_seconds(window_.refresh_seconds(), interface_seconds_);
     screen_.begin_frame();
-    open_dropped_files();
+    for (const auto& file : window_.dropped_files()) session_.open_scene(file);
     if (shows_controls_) {
         inside_panel_.draw(session_, picture_rectangle(), 0.15 * budget);
-        comparison_panel_.draw_split(picture_rectangle());
+        draw_split(comparison_, picture_rectangle());
         controls_.draw(session_, camera_control_, frames_per_second_, [&] {
             inside_panel_.draw_controls(session_);
-            comparison_panel_.draw_controls(session_);
+            draw_controls(comparison_, session_);
         });
     }
     handle_keys();
@@ -70,11 +68,10 @@ bool Viewer::frame() {
 
     const auto rendering = Clock::now();
     constexpr double rest = 0.2;  // seconds without motion after which the picture is rendered as asked for
-    Comparison& comparison = comparison_panel_.comparison();
-    comparison.update(session_, budget, seconds_since(last_motion_) < rest);
+    comparison_.update(session_, budget, seconds_since(last_motion_) < rest);
     const double rendered = seconds_since(rendering);
 
-    const double waited = screen_.show(comparison.layers(session_, picture_rectangle()));
+    const double waited = screen_.show(comparison_.layers(session_, picture_rectangle()));
     interface_seconds_ = smooth(interface_seconds_, seconds_since(start) - rendered - waited);
     return true;
 }
@@ -131,10 +128,6 @@ void Viewer::handle_keys() {
     if (window_.was_key_pressed(GLFW_KEY_SPACE)) session_.is_paused = !session_.is_paused;
     if (window_.was_key_pressed(GLFW_KEY_R)) session_.restart();
     if (window_.was_key_pressed(GLFW_KEY_T)) inside_panel_.show_next_overlay();
-}
-
-void Viewer::open_dropped_files() {
-    for (const auto& file : window_.dropped_files()) session_.open_scene(file);
 }
 
 void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job) {

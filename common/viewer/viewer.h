@@ -1,7 +1,8 @@
 // The window of a chapter: shows the picture while it is rendered, and lets its user change everything.
 #pragma once
+#include "clock.h"
 #include "viewer/camera_control.h"
-#include "viewer/comparison_panel.h"
+#include "viewer/comparison.h"
 #include "viewer/controls.h"
 #include "viewer/inside_panel.h"
 #include "viewer/screen.h"
@@ -23,14 +24,12 @@ class Viewer {
     Screen& screen() { return screen_; }
     const Controls& controls() const { return controls_; }
     const InsidePanel& inside_panel() const { return inside_panel_; }
-    Comparison& comparison() { return comparison_panel_.comparison(); }
-    double frames_per_second() const { return frames_per_second_; }
+    Comparison& comparison() { return comparison_; }
     Rectangle picture_rectangle() const;  // where the window shows the picture
 
   private:
     void move_camera(double seconds);
     void handle_keys();
-    void open_dropped_files();
 
     Window& window_;
     Screen screen_;
@@ -39,12 +38,12 @@ class Viewer {
     std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed fits to
     Controls controls_;
     InsidePanel inside_panel_;
-    ComparisonPanel comparison_panel_;
+    Comparison comparison_;
     bool shows_controls_ = true;
     double interface_seconds_ = 0.01;  // of a frame, smoothed
     double frames_per_second_ = 0;     // smoothed
-    std::chrono::steady_clock::time_point last_frame_ = std::chrono::steady_clock::now();
-    std::chrono::steady_clock::time_point last_motion_{};
+    Clock::time_point last_frame_ = Clock::now();
+    Clock::time_point last_motion_{};
 };
 
 // Opens the window and renders until it is closed; then writes the outputs that the options name, as a run

@@ -24,12 +24,12 @@ Window::Window(const std::string& title, uvec2 size) {
     if (!has_display())
         throw UserError(
             "there is no display (DISPLAY and WAYLAND_DISPLAY are not set) for a window: use --headless");
-    if (!glfwInit()) throw UserError("no window can be opened (" + glfw_error() + "): use --headless");
-    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    if (glfwVulkanSupported())
+    if (glfwInit() && glfwVulkanSupported()) {
+        glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+        glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
         window_ = glfwCreateWindow(static_cast<int>(size.x), static_cast<int>(size.y), title.c_str(), nullptr,
                                    nullptr);
+    }
     if (!window_) {
         const std::string why = glfw_error();
         glfwTerminate();

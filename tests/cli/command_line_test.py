@@ -39,6 +39,10 @@ class Information(ProgramTest):
         written = {path.name for path in (self.folder / "output").iterdir()}
         self.assertEqual(written, {"01_uniform_sampling.png", "01_uniform_sampling.exr"})
 
+    def test_zeros_in_front_of_a_number_do_not_matter(self):
+        out = self.render("quad.json", "--width=008", "--height=00008", "--samples=0000000000010", "--seed=09")
+        self.assertRegex(out, r", 8x8, 10 samples,")
+
     def test_quiet_prints_nothing(self):
         code, out, err = self.run_program("quad.json", "--width", 8, "--height", 8, "--samples", 1, "--quiet")
         self.assertEqual((code, out, err), (0, "", ""))

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "statistics/statistics.h"
+#include "support/hypothesis_tests.h"
 
 namespace lab {
 

@@ -19,11 +19,11 @@ Texture blank(uint32_t width, uint32_t height) {
     return {width, height, std::vector<uint8_t>(size_t{4} * width * height, 255)};
 }
 
-void set_pixel(Texture& texture, uint32_t x, uint32_t y, const std::array<double, 3>& colour) {
-    for (size_t channel = 0; channel < 3; ++channel)
-        texture.pixels[4 * (size_t{y} * texture.width + x) + channel] =
-            static_cast<uint8_t>(std::lround(255 * std::clamp(colour[channel], 0.0, 1.0)));
+void set_pixel(Texture& texture, uint32_t x, uint32_t y, const std::array<uint8_t, 3>& colour) {
+    std::ranges::copy(colour, &texture.pixels[4 * (size_t{y} * texture.width + x)]);
 }
+
+uint8_t encode(float value) { return static_cast<uint8_t>(std::lround(255 * linear_to_srgb(value))); }
 
 void write_both(const std::filesystem::path& folder, const std::string& name, const Image& image) {
     write_exr(folder / (name + ".exr"), {.image = image, .channels = {}, .attributes = {}});
@@ -31,9 +31,18 @@ void write_both(const std::filesystem::path& folder, const std::string& name, co
     for (uint32_t i = 0; i < image.width * image.height; ++i) {
         const float* rgb = &image.pixels[3 * size_t{i}];
         set_pixel(texture, i % image.width, i / image.width,
-                  {linear_to_srgb(rgb[0]), linear_to_srgb(rgb[1]), linear_to_srgb(rgb[2])});
+                  {encode(rgb[0]), encode(rgb[1]), encode(rgb[2])});
     }
     write_png(folder / (name + ".png"), texture);
+}
+
+Texture draw_z_map(const ZMap& map) {
+    constexpr uint32_t tile = 8;
+    Texture texture = blank(tile * map.width, tile * map.height);
+    for (uint32_t y = 0; y < texture.height; ++y)
+        for (uint32_t x = 0; x < texture.width; ++x)
+            set_pixel(texture, x, y, z_colour(map.values[size_t{y / tile} * map.width + x / tile]));
+    return texture;
 }
 
 Texture draw_histogram(const ZMap& map) {
@@ -45,7 +54,7 @@ Texture draw_histogram(const ZMap& map) {
     Texture texture = blank(bars * bar_width, height);
     for (uint32_t x = 0; x < texture.width; ++x) {
         const uint32_t bar_height = static_cast<uint32_t>(counts[x / bar_width] * height / highest);
-        for (uint32_t y = height - bar_height; y < height; ++y) set_pixel(texture, x, y, {0.2, 0.2, 0.2});
+        for (uint32_t y = height - bar_height; y < height; ++y) set_pixel(texture, x, y, {51, 51, 51});
     }
     return texture;
 }
@@ -65,7 +74,7 @@ void write_failure(const std::string& what, const Image& image, const Image& ref
     write_both(folder, "image", image);
     write_both(folder, "reference", reference);
     write_both(folder, "difference", difference);
-    write_png(folder / "z_map.png", draw_z_map(map, 8));
+    write_png(folder / "z_map.png", draw_z_map(map));
     write_png(folder / "p_histogram.png", draw_histogram(map));
     std::printf("  see %s\n", folder.string().c_str());
 }

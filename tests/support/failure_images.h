@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "statistics/z_map.h"
+#include "statistics/live_verdict.h"
 
 namespace lab {
 

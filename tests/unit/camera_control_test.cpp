@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "rendering/settings.h"
 #include "viewer/frame_pacing.h"
 
 namespace lab {
@@ -90,7 +91,7 @@ TEST(CameraControl, TheTextsAreExact) {
                           .up = {0, 0, 1},
                           .vertical_fov = 37.7f};
     EXPECT_EQ(
-        camera_flags(pose),
+        camera_flags(pose, '='),
         "--camera-position=0.333333343,-2.00000002e-07,12345.6777 --camera-target=0.100000001,0.200000003,"
         "0.300000012 --camera-up=0,0,1 --vertical-fov=37.7000008");
     const auto json = nlohmann::json::parse("{" + camera_json(pose) + "}").at("camera");

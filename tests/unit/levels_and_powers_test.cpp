@@ -1,12 +1,13 @@
-// What the tests of statistics.h say of themselves, by simulation: they reject what is right as often as
-// their level says, and find the smallest error that they state as often as their power says.
+// What the tests of statistics.h and hypothesis_tests.h say of themselves, by simulation: they reject what is
+// right as often as their level says, and find the smallest error that they state as often as their power
+// says.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <random>
 
-#include "statistics/statistics.h"
+#include "support/hypothesis_tests.h"
 
 namespace lab {
 namespace {

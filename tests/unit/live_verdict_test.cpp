@@ -148,10 +148,10 @@ TEST(LiveVerdict, TakesImagesLargerThanTheReference) {
     watch(verdict, {1, unbiased, 4}, 128);
     EXPECT_FALSE(verdict.verdict()->is_biased) << verdict.text();
     EXPECT_EQ(verdict.verdict()->tile_size, 32u);
-    verdict.restart();
-    watch(verdict, {1, [](uint32_t, uint32_t) { return 0.5 * hit_probability; }, 4}, 16);
-    EXPECT_TRUE(verdict.verdict()->is_biased);
-    EXPECT_EQ(verdict.verdict()->samples, 16u);
+    LiveVerdict of_dark(flat_reference(), glm::uvec2(4 * extent));
+    watch(of_dark, {1, [](uint32_t, uint32_t) { return 0.5 * hit_probability; }, 4}, 16);
+    EXPECT_TRUE(of_dark.verdict()->is_biased);
+    EXPECT_EQ(of_dark.verdict()->samples, 16u);
     EXPECT_THROW(LiveVerdict(flat_reference(), {48, 48}), UserError);
     EXPECT_THROW(LiveVerdict(flat_reference(), {64, 32}), UserError);
 }

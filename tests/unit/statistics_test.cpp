@@ -1,8 +1,8 @@
-#include "statistics/statistics.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "support/hypothesis_tests.h"
 
 namespace lab {
 namespace {

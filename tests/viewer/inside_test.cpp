@@ -26,7 +26,7 @@ class InsideTest : public ViewerTest {
         run_frames(2);
     }
     void wait_for_verdict() {
-        wait_until("a verdict", [&] { return session().verdict() && session().verdict()->verdict(); });
+        wait_until("a verdict", [&] { return session().latest_verdict() != nullptr; });
     }
 };
 
@@ -42,14 +42,11 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     chapter_.split_every_hit = false;
     open(options_with_reference());
     wait_for_verdict();
-    EXPECT_FALSE(session().verdict()->verdict()->is_biased) << session().verdict_text();
+    EXPECT_FALSE(session().latest_verdict()->is_biased) << session().verdict_text();
 
     write(shader, std::string(good).erase(at, mistaken_line.size()));
-    wait_until("biased", [&] {
-        return session().verdict() && session().verdict()->verdict() &&
-               session().verdict()->verdict()->is_biased;
-    });
-    EXPECT_LT(session().verdict()->verdict()->differences[1].value, 0);
+    wait_until("biased", [&] { return session().latest_verdict() && session().latest_verdict()->is_biased; });
+    EXPECT_LT(session().latest_verdict()->differences[1].value, 0);
     // Where it is too dark the tiles are blue.
     press(GLFW_KEY_T);
     run_frames(1);
@@ -75,10 +72,8 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     EXPECT_GT(with_bias, blueness() + 1e5);
 
     write(shader, good);
-    wait_until("unbiased", [&] {
-        return session().verdict() && session().verdict()->verdict() &&
-               !session().verdict()->verdict()->is_biased;
-    });
+    wait_until("unbiased",
+               [&] { return session().latest_verdict() && !session().latest_verdict()->is_biased; });
 }
 
 TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {

@@ -16,7 +16,6 @@
 namespace lab {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 inline const fs::path scenes = project_folder() / "assets" / "scenes";
 
