@@ -4,24 +4,6 @@ from dataclasses import dataclass
 from project import table
 from scipy.stats import binomtest
 
-HEADER = """
-## What ./lab check finds
-
-We planted mistakes ([mistakes.json](../tests/mistakes/mistakes.json)) into correct shaders. The check had to find the mistakes and
-to name them. `tests/mistakes/learn.py confusion` makes this test, and [confusion.json](records/check/confusion.json) has each
-single answer. There are four kinds of trials:
-
-- The chapters' own shaders, with other random numbers than the check has learnt from.
-- The same shaders on scenes that the check does not use.
-- Shaders that are written in another way ([tests/variants](../tests/variants)), with a mistake in each.
-- Correct shaders, the chapters' own and those written in another way. Each was checked with several seeds. Some of them draw the
-  same random numbers as the chapter's own, so that not all of these checks are independent.
-
-A mistake counts as found where the check says anything but correct. It is *large* where it changes the mean of a picture by at
-least 2 % or the error per sample by at least 1.5 times. The check is *sure* where it asks about one mistake and not about two. In
-brackets: the 95 % confidence interval of the rate.
-"""
-
 CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "other scenes": "the same on other scenes",
               "variants": "shaders written in another way", "correct": "correct shaders"}
 LARGE_BIAS, LARGE_NOISE = 0.02, 1.5

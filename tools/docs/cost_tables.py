@@ -4,32 +4,6 @@ from statistics import linear_regression, median
 
 from project import table
 
-FEATURES = """
-## Features
-
-A feature that a scene does not have is neither compiled nor allocated. What does each feature cost where it is needed? To find
-out, we add one feature at a time to the same scene. The scene has 39,612 diffuse triangles and no light. Chapter 6 renders it,
-because it knows all features.
-
-The features must not change the paths. So the texture is white, and only one triangle is a dielectric. What remains is the cost of
-the code and of the memory accesses.
-
-Instructions are those of the SPIR-V after SPIRV-Tools' optimiser. The time per path is relative to the scene without features. It
-is the median of five runs that take turns, with the smallest and the largest one in brackets.
-"""
-
-GROWTH = """
-## Growth
-
-How does the cost grow with the size of the task? The time per path is relative to the first row. It is the median of five runs
-that take turns, with the smallest and the largest one in brackets. Memory is all that the scene, its acceleration structure and
-the film take on the device. The buffer for the samples of small images is left out, because its size is bounded
-([Threads and pixels](backends.md#threads-and-pixels)).
-
-The exponent is the slope in a plot with logarithmic axes, by least squares over all rows. An exponent of 1 means that
-twice the size costs twice as much. An exponent of 0 means that the size does not matter.
-"""
-
 UNITS = ["bytes", "KiB", "MiB", "GiB"]
 
 
