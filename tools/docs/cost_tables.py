@@ -3,6 +3,7 @@ import math
 from statistics import linear_regression, median
 
 from project import table
+from report.numbers import with_range
 
 UNITS = ["bytes", "KiB", "MiB", "GiB"]
 
@@ -19,16 +20,11 @@ def seconds_text(seconds):
     return f"{seconds * 1e9:.3g} ns"
 
 
-def time_ratios(row, base):
-    """Time of a path relative to another row's, in each run."""
-    return [b / a for a, b in zip(row["paths_per_second"], base["paths_per_second"])]
-
-
 def time_text(row, base):
+    """Time of a path relative to another row's."""
     if row is base:
         return f"1 = {seconds_text(1 / median(row['paths_per_second']))}"
-    ratios = time_ratios(row, base)
-    return f"{median(ratios):.2f} ({min(ratios):.2f} – {max(ratios):.2f})"
+    return with_range([b / a for a, b in zip(row["paths_per_second"], base["paths_per_second"])])
 
 
 def device_heading(record):

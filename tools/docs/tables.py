@@ -11,7 +11,6 @@ import math
 import os
 import re
 from pathlib import Path
-from statistics import median
 
 from docs.best_table import among_chapters, best_table
 from docs.bug_blocks import bug_block
@@ -22,7 +21,7 @@ from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from project import ROOT, Parser, UserError, load_records, scene_of, table
 from report.differences import DIFFERENCES
-from report.numbers import errors, last_rows, mean_of, paired_ratio, with_interval
+from report.numbers import errors, last_rows, mean_of, paired_ratio, with_interval, with_range
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
@@ -135,7 +134,7 @@ def over_bare(rates):
     if "runs" not in rates:
         return f"{rates['rays_per_second'] / rates['bare_rays_per_second']:.2f}"
     ratios = [a / b for a, b in zip(rates["runs"]["rays_per_second"], rates["runs"]["bare_rays_per_second"])]
-    return f"{median(ratios):.2f} ({min(ratios):.2f} – {max(ratios):.2f})"
+    return with_range(ratios)
 
 
 def backend_table(record):

@@ -171,7 +171,6 @@ def main():
         print("\n".join(point_sets.report(sets, COMPARED)))
     output = options.output or ROOT / f"output/sample_{options.name}.png"
     try:
-        output.parent.mkdir(parents=True, exist_ok=True)
         if playground.is_pixel:
             sample_plots.save_point_sets(output, sets, COMPARED)
         else:

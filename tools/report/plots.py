@@ -31,6 +31,13 @@ def style_axis(axis, **labels):
     axis.spines[["top", "right"]].set_visible(False)
 
 
+def save_figure(figure, path, dpi=100, **options):
+    """Into a file, whose folder is made. The figure cannot be used any more."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=dpi, **options)
+    pyplot.close(figure)
+
+
 def plot_errors(scene, styles):
     """SVG: error against samples and against wall seconds, with 95 % bands."""
     pyplot.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif", "font.size": 13})
