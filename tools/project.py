@@ -20,7 +20,7 @@ INSTALL = "./lab install" if os.name == "posix" else "python -m pip install nump
 
 
 def program_file(name):
-    """That of a program that the lab has built."""
+    """The file of a program that the lab has built."""
     return (BINARIES / name).with_suffix("" if os.name == "posix" else ".exe")
 
 
@@ -91,7 +91,7 @@ def last_line(process):
 
 
 def commit():
-    """Of the sources, or 'unknown' outside of a repository."""
+    """The commit of the sources, or 'unknown' outside of a repository."""
     try:
         git = run_program(["git", "describe", "--always", "--dirty= with changes", "--abbrev=7", "--exclude=*"])
     except OSError:
@@ -131,7 +131,7 @@ def write_json(file, content):
 
 
 def load_records(folder):
-    """Those of docs/records/FOLDER, a device each."""
+    """The records in docs/records/FOLDER, one for each device."""
     return [read_json(path) for path in sorted((RECORDS / folder).glob("*.json"))]
 
 

@@ -38,7 +38,7 @@ VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first of any scene
 
 
 def first_seed(seed):
-    """Of the runs of a check with this --seed: checks with different ones share no render. None has the seeds from MOST_RUNS + 1
+    """The seed of the first run of a check with this --seed. Checks with different ones share no render. None has the seeds from MOST_RUNS + 1
     to SEED_STEP: with those the signatures of mistakes were measured. The chapters' levels have the seeds of --seed 0, so that a
     shader which calls for random numbers in the same order as the chapter's own is compared render by render."""
     return seed * SEED_STEP + 1
@@ -78,7 +78,7 @@ def regions(image):
 
 
 def reference_regions(file):
-    """The same of a reference, as biases() wants it. Pixels and channels of the reference have errors of
+    """The regions of a reference, as biases() wants them. Pixels and channels of the reference have errors of
     their own; those of channels may go together, at worst completely."""
     reference = read_reference(file)
     height, width, _ = reference.mean.shape

@@ -88,9 +88,9 @@ class Drawing:
         self.rectangle((x - 26, y - 11), (22, 22), GREY)
         self.polygon([(x - 4, y - 4), (x + 6, y - 10), (x + 6, y + 10), (x - 4, y + 4)], GREY)
 
-    def arc(self, centre, radius, start, end, colour=GREY, width=1.2):
+    def arc(self, centre, radius, start, end, colour):
         """Part of a circle between two directions in degrees, counterclockwise."""
-        self.line(curve(lambda degrees: polar(centre, radius, degrees), start, end, 16), colour, width)
+        self.line(curve(lambda degrees: polar(centre, radius, degrees), start, end, 16), colour, 1.2)
 
     def label(self, at, text, colour=GREY, size=SIZE, anchor="middle"):
         """Text with its middle at this height; `anchor` says which end of it stands at this place: start, middle, end."""
@@ -104,9 +104,9 @@ class Drawing:
         x, y = number(at[0]), number(at[1] + 0.35 * size)
         self.elements.append(f'<text x="{x}" y="{y}" font-size="{number(size)}" fill="{colour}" text-anchor="{anchor}">{spans}</text>')
 
-    def lines_of_text(self, at, lines, colour=GREY, size=SIZE, anchor="start", distance=1.6):
+    def lines_of_text(self, at, lines, colour=GREY, size=SIZE, anchor="start"):
         for i, text in enumerate(lines):
-            self.label(np.add(at, (0, i * distance * size)), text, colour, size, anchor)
+            self.label(np.add(at, (0, 1.6 * i * size)), text, colour, size, anchor)
 
     def svg(self):
         size = f'viewBox="0 0 {WIDTH} {self.height}" width="{WIDTH}" height="{self.height}"'
@@ -132,7 +132,7 @@ class View:
         return [self(point) for point in curve(function, start, end, count)]
 
     def near_path(self, function, start, end, count=96):
-        """The same of a curve on the unit sphere, without what the sphere hides."""
+        """A curve on the unit sphere, without what the sphere hides."""
         return [self(point) for point in curve(function, start, end, count) if self.toward @ point >= 0]
 
 

@@ -6,6 +6,7 @@ import os
 import time
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from check.grading import OPTIONS, SCENES, program_with
@@ -40,7 +41,7 @@ class Render:
     shader: str = ""  # its text, instead of the chapter's own
 
     def file(self, folder):
-        """Of the image. Its name changes with whatever is rendered."""
+        """The file of the image. Its name changes with whatever is rendered."""
         return folder / f"{self.name}_{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}.exr"
 
     def run(self, folder):
@@ -110,7 +111,7 @@ def renders_of_idle_lanes():
 
 
 def renders_of_bugs():
-    """With and without each bug of the gallery: as ./lab bug renders them, with less noise."""
+    """Each bug of the gallery beside the right picture, as ./lab bug renders them but with less noise."""
     renders = []
     for name, (chapter, scene) in GALLERY.items():
         bug, _ = find_bug(name)
@@ -134,7 +135,7 @@ def renders_of_effects():
 
 
 def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
-    """As many samples as take the same time by the first record of docs/records/chapters, whatever else runs now."""
+    """Takes the samples that fit into SECONDS by the first record of docs/records/chapters, whatever else runs now."""
     renders = []
     for case in load_records("chapters")[0]["cases"]:
         if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):
@@ -143,10 +144,6 @@ def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
             options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
             renders.append(Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options))
     return renders
-
-
-def renders_of_noise():
-    return renders_at_equal_time(("cornell_box",), 256)
 
 
 def renders_of_hero():
@@ -200,7 +197,7 @@ FIGURES = {
     "bugs": (renders_of_bugs, figure_plots.bugs),
     "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
     "hero": (renders_of_hero, figure_plots.hero),
-    "noise": (renders_of_noise, figure_plots.noise),
+    "noise": (partial(renders_at_equal_time, ("cornell_box",), 256), figure_plots.noise),
     "equal_time": (renders_at_equal_time, figure_plots.equal_time),
     "convergence": (renders_of_convergence, figure_plots.convergence),
     "first_steps": (renders_of_first_steps, figure_plots.first_steps),

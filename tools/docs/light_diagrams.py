@@ -14,7 +14,7 @@ def circle_at(theta):
 
 
 def draw_hemisphere(drawing, view):
-    """Its outline and its base, whose far half is dashed."""
+    """Draws the outline of a hemisphere and its base, whose far half is dashed."""
     near, base = view.azimuth - math.pi / 2, circle_at(math.pi / 2)
     drawing.line(view.path(base, near, near + math.pi), width=1.8)
     drawing.line(view.path(base, near + math.pi, near + 2 * math.pi), width=1.2, dashed=True)

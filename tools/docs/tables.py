@@ -37,7 +37,7 @@ def kind_of(case):
 
 
 def kind_tables(record):
-    """Of one device, the rows of each kind and scene: {(kind, scene): rows}; a row has the case's name first."""
+    """The rows of each kind and scene on one device: {(kind, scene): rows}. A row begins with the name of its case."""
     tables, base = {}, None
     for case in record["cases"]:
         kind = kind_of(case)

@@ -23,7 +23,7 @@ def run(command, what, **options):
 
 
 def fetch_sources():
-    """Into SOURCES/NAME-VERSION, by lists of its own: needs no root, and apt's lists stay as they are."""
+    """Unpacks the sources into SOURCES/NAME-VERSION. As it has lists of its own, it needs no root, and apt's lists stay as they are."""
     versions = run(["dpkg-query", "-W", "-f", "${source:Package}=${source:Version} ", *PACKAGES], "Asking for versions").split()
     stamp = SOURCES / "versions.txt"
     if stamp.exists() and stamp.read_text(encoding="utf-8").split() == versions:
