@@ -23,6 +23,7 @@ from check.likely_mistake import likely_mistake
 from check.pictures import draw
 from check.words import explain, hint_lines, scene_words, tell_early
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number
+from report.measurement import relative
 
 POINTS = 10
 
@@ -79,7 +80,7 @@ def check(options, file, picture=None):
             del mistake["name"]
     if picture or not is_correct:
         path = draw(result, pictures, picture or ROOT / f"output/check_{options.chapter}.png")
-        result["picture"] = str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
+        result["picture"] = relative(path)
     return result
 
 

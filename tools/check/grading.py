@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from project import BINARIES, CHAPTERS, ROOT, UserError, description, program_file, read_json, show_progress
-from references.images import find_references, read_reference, read_rgb
+from references.images import averaged, find_references, read_reference, read_rgb
 from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
@@ -72,8 +72,7 @@ def program_with(chapter, text):
 
 def regions(image):
     """Means of red, green and blue over the whole image [3], and of all channels over its tiles [rows * columns]."""
-    height, width, _ = image.shape
-    tiles = image.mean(axis=2).reshape(height // TILE, TILE, width // TILE, TILE).mean(axis=(1, 3))
+    tiles = averaged(image.mean(axis=2, keepdims=True), TILE)
     return [*image.mean(axis=(0, 1)).tolist(), *tiles.ravel().tolist()]
 
 

@@ -184,29 +184,14 @@ def renders_of_first_steps():
 
 ON_REQUEST = {"hero"}  # takes two cores half an hour
 
-# Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
+# Name of the figure, and of what makes it in figure_plots: a function for the renders that it needs.
 FIGURES = {
-    "chapters": (renders_of_chapters, figure_plots.chapters),
-    "thumbnails": (renders_of_thumbnails, figure_plots.thumbnails),
-    "strategies": (renders_of_strategies, figure_plots.strategies),
-    "light_probes": (renders_of_light_probes, figure_plots.light_probes),
-    "low_discrepancy": (renders_of_low_discrepancy, figure_plots.low_discrepancy),
-    "idle_lanes": (renders_of_idle_lanes, figure_plots.idle_lanes),
-    "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
-    "effects": (renders_of_effects, figure_plots.effects),
-    "bugs": (renders_of_bugs, figure_plots.bugs),
-    "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
-    "hero": (renders_of_hero, figure_plots.hero),
-    "noise": (partial(renders_at_equal_time, ("cornell_box",), 256), figure_plots.noise),
-    "equal_time": (renders_at_equal_time, figure_plots.equal_time),
-    "convergence": (renders_of_convergence, figure_plots.convergence),
-    "first_steps": (renders_of_first_steps, figure_plots.first_steps),
-    "sampler_points": (list, figure_plots.sampler_points),
-    "point_sets": (list, figure_plots.point_sets),
-    "one_over_root_n": (list, figure_plots.one_over_root_n),
-    "grid_and_random": (list, figure_plots.grid_and_random),
-    "random_numbers": (list, figure_plots.random_numbers),
-    "window": (list, figure_plots.window),
+    "chapters": renders_of_chapters, "thumbnails": renders_of_thumbnails, "strategies": renders_of_strategies,
+    "light_probes": renders_of_light_probes, "low_discrepancy": renders_of_low_discrepancy, "idle_lanes": renders_of_idle_lanes,
+    "path_lengths": renders_of_path_lengths, "effects": renders_of_effects, "bugs": renders_of_bugs, "bvh_steps": renders_of_bvh_steps,
+    "hero": renders_of_hero, "noise": partial(renders_at_equal_time, ("cornell_box",), 256), "equal_time": renders_at_equal_time,
+    "convergence": renders_of_convergence, "first_steps": renders_of_first_steps, "sampler_points": list, "point_sets": list,
+    "one_over_root_n": list, "grid_and_random": list, "random_numbers": list, "window": list,
 }
 
 
@@ -225,16 +210,16 @@ def make(names, output):
     output = output.resolve()
     output.mkdir(parents=True, exist_ok=True)
     folder = CACHE / digest_of_sources([])
-    steps = [(name, render) for name in names for render in [*FIGURES[name][0](), None]]
+    renders = {name: FIGURES[name]() for name in names}
+    steps = [(name, render) for name in names for render in [*renders[name], None]]
     started = time.monotonic()
     for done, (name, render) in enumerate(steps, 1):
-        renders, compose = FIGURES[name][0](), FIGURES[name][1]
         if render:
             (folder / name).mkdir(parents=True, exist_ok=True)
             render.run(folder / name)
         else:
-            images = {render.name: read_rgb(render.file(folder / name)) for render in renders}
-            compose(output, images, {render.name: render.run(folder / name) for render in renders})
+            images = {render.name: read_rgb(render.file(folder / name)) for render in renders[name]}
+            getattr(figure_plots, name)(output, images, {render.name: render.run(folder / name) for render in renders[name]})
         show_progress(f"{name}{f', {render.name}' if render else ''}", done, len(steps), started)
 
 

@@ -81,20 +81,20 @@ def study_cases():
         reference = ROOT / f"assets/references/{scene}_{length}.exr" if length else None
         cases.append(new_case(ROOT / f"assets/scenes/{scene}.json", reference, name, program, options))
 
-    for scene, length in (("cornell_box", 6), ("torus", 5), ("heart_light", 4)):
-        for number, program in CHAPTERS.items():
-            if program not in (glass, probes):  # without glass or a light probe, each is the chapter before
-                add(scene, length, f"chapter {number}", program)
-    for scene, length in (("glossy", 5), ("plates", 3)):
-        for program in (roulette, weights):
+    def add_chapters(scene, length, programs):
+        for program in programs:
             add(scene, length, f"chapter {int(program[:2])}", program)
+
+    for scene, length in (("cornell_box", 6), ("torus", 5), ("heart_light", 4)):
+        # Without glass or a light probe, their chapters are the ones before.
+        add_chapters(scene, length, [program for program in CHAPTERS.values() if program not in (glass, probes)])
+    for scene, length in (("glossy", 5), ("plates", 3)):
+        add_chapters(scene, length, (roulette, weights))
         for strategy in ("light", "brdf", "both"):
             add(scene, length, f"strategy {strategy}", weights, "--strategy", strategy)
     for scene in ("sunny", "studio", "textured"):
-        for program in (weights, probes, points, regeneration):
-            add(scene, 4, f"chapter {int(program[:2])}", program)
-    for program in (weights, points, regeneration):
-        add("glass", 8, f"chapter {int(program[:2])}", program)
+        add_chapters(scene, 4, (weights, probes, points, regeneration))
+    add_chapters("glass", 8, (weights, points, regeneration))
     for scene, length in (("cornell_box", 6), ("heart_light", 4)):
         for factor in (1, 2, 4, 8, 16):
             add(scene, length, f"splitting factor {factor}", splitting, "--splitting-factor", str(factor))
