@@ -39,17 +39,13 @@ def parse():
 
 def system_text():
     """Operating system, processor and memory, without a name of the machine."""
-    def find(file, pattern):
-        try:
-            found = re.search(pattern, Path(file).read_text(encoding="utf-8"), re.MULTILINE)
-        except OSError:
-            return ""
-        return found[1] if found else ""
-
-    name = find("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)') or platform.system()
-    cpu = find("/proc/cpuinfo", r"^model name\s*: (.*)$") or platform.machine()
-    memory = int(find("/proc/meminfo", r"^MemTotal: *(\d+)") or 0) / 2**20
-    return f"{name}, {cpu}, {len(os.sched_getaffinity(0))} threads, {memory:.0f} GiB"
+    try:
+        name = platform.freedesktop_os_release()["PRETTY_NAME"]
+    except OSError:
+        name = platform.system()
+    cpu = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30
+    return f"{name}, {cpu[1] if cpu else platform.machine()}, {len(os.sched_getaffinity(0))} threads, {memory:.0f} GiB"
 
 
 def backends_of(device):

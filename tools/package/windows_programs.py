@@ -1,7 +1,6 @@
 """Builds the programs for Windows, on Debian or Ubuntu: first, once, the libraries that have no package for it."""
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
