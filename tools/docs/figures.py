@@ -1,5 +1,5 @@
-"""Renders and plots all pictures of the pages into docs/pictures, then writes the tables of docs/results.md,
-docs/numerics.md and the chapter pages from the records. Ctrl-C keeps what is there; the same command goes on.
+"""Renders and plots all pictures of the pages into docs/pictures, then fills the tables of the pages from the records. Ctrl-C
+keeps what is there; the same command goes on.
 """
 import hashlib
 import os
@@ -17,7 +17,7 @@ from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named,
                      run_program, show_progress)
 from references.images import read_rgb
 from report.measurement import digest_of_sources
-from report.numbers import last_rows, mean_of
+from report.numbers import per_sample
 
 GOES_ON = True
 PICTURES = ROOT / "docs/pictures"
@@ -139,9 +139,8 @@ def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
     renders = []
     for case in load_records("chapters")[0]["cases"]:
         if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):
-            seconds = mean_of(last_rows(case["runs"]), "device_seconds") / (case["samples"] * case["width"] * case["height"])
             scene = Path(case["scene_file"]).stem
-            options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
+            options = ("--samples", round(SECONDS / (per_sample(case, "device_seconds") * size**2)), "--max-path-length", case["max_path_length"])
             renders.append(Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options))
     return renders
 

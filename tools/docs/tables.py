@@ -21,7 +21,7 @@ from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from project import ROOT, Parser, UserError, load_records, scene_of, table
 from report.differences import DIFFERENCES
-from report.numbers import errors, last_rows, mean_of, paired_ratio, with_interval, with_range
+from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
@@ -43,15 +43,13 @@ def kind_tables(record):
         kind = kind_of(case)
         rows = tables.setdefault((kind, case["scene"]), [])
         options = f"--samples {case['samples']} {case['options']}".strip()
-        last = last_rows(case["runs"])
-        count = case["samples"] * case["width"] * case["height"]
         cost = [errors(case, key) for key in ("rays", "device_seconds")]
         rows.append([
             case["case"],
             f"`{options}`",
-            f"{mean_of(last, 'rays') / count:.3g}",
-            seconds_text(mean_of(last, "device_seconds") / count),
-            f"{case['samples'] * mean_of(last, 'rel_mse'):.3g}",
+            f"{per_sample(case, 'rays'):.3g}",
+            seconds_text(per_sample(case, "device_seconds")),
+            f"{case['samples'] * errors(case).mean:.3g}",
             *(with_interval(paired_ratio(*both)) if rows else "1" for both in zip(cost, base or cost)),
         ])
         if len(rows) == 1 or kind == "chapter":
@@ -92,17 +90,15 @@ def page_table(name, record):
     return table(["scene", "", *COLUMNS], rows, left=2)
 
 
-def expected_table(width=512, height=512, samples=64):
+def expected_table():
     """For each device, the seconds and the error of the Cornell box at the default resolution and number of samples."""
-    rows = []
+    rows, pixels, samples = [], 512 * 512, 64
     for record in load_records("chapters"):
         cases = [case for case in record["cases"] if kind_of(case) == "chapter" and case["scene"].startswith("cornell_box")]
         cells = []
         for case in cases:
-            last = last_rows(case["runs"])
-            seconds = mean_of(last, "device_seconds") / (case["samples"] * case["width"] * case["height"])
-            error = case["samples"] * mean_of(last, "rel_mse")
-            cells.append(f"{seconds * width * height * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
+            error = case["samples"] * errors(case).mean
+            cells.append(f"{per_sample(case, 'device_seconds') * pixels * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
         rows.append([record["environment"]["device"], *cells])
     text = table(["device", *(case["case"] for case in cases)], rows) + "\n"
     for record in load_records("backends"):
@@ -110,7 +106,7 @@ def expected_table(width=512, height=512, samples=64):
         best = max(rates, key=lambda name: rates[name]["paths_per_second"])
         paths = rates[best]["paths_per_second"]
         text += (f"{record['device']}, `{best}`: {paths / 1e6:.0f} million paths per second in a Cornell box by next event estimation with Russian roulette. "
-                 f"So many samples take {1e3 * width * height * samples / paths:.2g} ms.\n\n")
+                 f"So many samples take {1e3 * pixels * samples / paths:.2g} ms.\n\n")
     return text
 
 

@@ -121,6 +121,11 @@ def mean_of(rows, key):
     return None if None in values else sum(values) / len(values)
 
 
+def per_sample(case, key):
+    """The mean over the runs of the rays or seconds that a sample of a pixel takes."""
+    return mean_of(last_rows(case["runs"]), key) / (case["samples"] * case["width"] * case["height"])
+
+
 def deviation(case):
     """Standard deviation of what the noise of the reference adds to rel_mse."""
     return (case["reference"] or {}).get("rel_mse_deviation", 0.0)
