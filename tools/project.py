@@ -20,7 +20,7 @@ INSTALL = "./lab install" if os.name == "posix" else "python -m pip install nump
 
 
 def program_file(name):
-    """That of a program that the lab has built."""
+    """The file of a program that the lab has built."""
     return (BINARIES / name).with_suffix("" if os.name == "posix" else ".exe")
 
 
@@ -85,13 +85,21 @@ def run_program(command, **options):
                           **{"cwd": ROOT, "text": True, "start_new_session": True, **options})
 
 
+def run_to_end(command, what, expected=0, **options):
+    """The output of a program that has to end with this exit code. `what` says for messages what it does."""
+    process = run_program(command, **options)
+    if process.returncode != expected:
+        raise UserError(f"{what}: exit code {process.returncode} instead of {expected}:\n{process.stdout[-2000:]}{process.stderr[-2000:]}")
+    return process.stdout
+
+
 def last_line(process):
     """What a program that failed said last."""
     return process.stderr.strip().split("\n")[-1].removeprefix("error: ") or f"exit code {process.returncode}"
 
 
 def commit():
-    """Of the sources, or 'unknown' outside of a repository."""
+    """The commit of the sources, or 'unknown' outside of a repository."""
     try:
         git = run_program(["git", "describe", "--always", "--dirty= with changes", "--abbrev=7", "--exclude=*"])
     except OSError:
@@ -122,16 +130,20 @@ def read_json(file):
     return json.loads(file.read_text(encoding="utf-8"))
 
 
-def write_json(file, content):
-    """The file is complete at any time."""
+def write_bytes(file, content):
+    """Writes a file and makes its folder. The file is complete at any time."""
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_name(file.name + ".unfinished")
-    unfinished.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    unfinished.write_bytes(content)
     os.replace(unfinished, file)
 
 
+def write_json(file, content):
+    write_bytes(file, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
+
+
 def load_records(folder):
-    """Those of docs/records/FOLDER, a device each."""
+    """The records in docs/records/FOLDER, one for each device."""
     return [read_json(path) for path in sorted((RECORDS / folder).glob("*.json"))]
 
 

@@ -61,7 +61,9 @@ Chapter load_chapter(const std::string& name) {
     const JsonObject root(
         content, file.string(), "the chapter",
         {"title", "default_scene", "light_sampling", "light_probe_sampling", "strategies", "split_every_hit",
-         "unlimited_path_length", "dielectrics", "low_discrepancy", "options"});
+         "unlimited_path_length", "dielectrics", "low_discrepancy", "options", "check"});
+    // What ./lab check renders: tools/check/grading.py reads it.
+    if (root.has("check")) root.object("check", {"samples", "references"});
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),

@@ -19,7 +19,8 @@ struct ChapterOption {
     double low, high;  // what is accepted, both included
 };
 
-// What chapter.json says, under the same names. Only the title must be there.
+// What chapter.json says, under the same names. Only the title must be there. It may also have "check", for
+// ./lab check: the "samples" of a run, and the "references" whose scenes show what the shader does.
 struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help

@@ -68,6 +68,8 @@ class AddedChapterTest(ProgramTest):
                                  "import sys; sys.path.append('tools'); from docs import tables; print(tables.PAGES)")
         self.assertIn(COPY, names)
         self.run_in_tree(sys.executable, "-B", "tools", "tables", "--check")
+        self.assert_refused(["-B", self.tree / "tools", "check", 20], "chapter 20 is not measured", r"learn\.py learn", code=2,
+                            program=sys.executable)
 
 
 if __name__ == "__main__":

@@ -99,6 +99,7 @@ class DocumentationTest(unittest.TestCase):
 
     def test_code_that_is_named_exists(self):
         text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab") + text_of(ROOT / "tests/fresh_machine")
+        text += "\n".join(path.stem for path in (ROOT / "assets").rglob("*"))  # scenes and references
         for page in PAGES:
             for code in re.findall(r"`([^`\n]+)`", text_of(page)):
                 # Names with an underscore or a scope, and calls, are taken for identifiers of ours or of Vulkan's.

@@ -17,7 +17,8 @@ from docs import figures
 figures.CACHE = Path("renders").resolve()
 renders = [figures.Render(name, "01_uniform_sampling", "cornell_box", 16, ("--samples", 4, "--max-path-length", length))
            for name, length in (("only_0", 0), ("only_1", 1))]
-figures.FIGURES["small"] = (lambda: renders, figures.figure_plots.path_lengths)
+figures.FIGURES["small"] = lambda: renders
+figures.figure_plots.small = figures.figure_plots.path_lengths
 project.run_tool(figures)"""
 MOST_BYTES = 20 * 2**20
 

@@ -8,7 +8,8 @@ import time
 import unittest
 
 from program import BINARIES, PROJECT, TOOLS, ProgramTest  # first: it finds the tools
-from report import measurement
+from project import CHAPTERS
+from report import measurement, plots
 
 REFERENCE = PROJECT / "assets/references/cornell_box_1.exr"
 # The command, with a folder of the test's own where references are looked for.
@@ -219,6 +220,12 @@ class ReportCommandTest(ProgramTest):
         self.write("bin/python3", f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n').chmod(0o755)
         environment = {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
         self.assert_report_refused(["cornell_box", "--peer=mitsuba"], "Mitsuba 3", "pip install mitsuba", environment=environment)
+
+
+class StyleTest(unittest.TestCase):
+    def test_no_two_chapters_look_alike(self):
+        styles = [plots.style({"is_peer": False}, index, 0) for index in range(2 * len(CHAPTERS))]
+        self.assertEqual(len({(style["color"], style["marker"]) for style in styles}), len(styles))
 
 
 if __name__ == "__main__":

@@ -54,6 +54,7 @@ TEST(Chapter, MistakesAreNamed) {
         {"{\"title\": 3}", "\"title\" in the chapter must be a text"},
         {"{\"title\": \"A\", \"tilte\": \"B\"}", "unknown key \"tilte\""},
         {"{\"title\": \"A\", \"dielectrics\": 1}", "must be true or false"},
+        {"{\"title\": \"A\", \"check\": {\"scenes\": []}}", "unknown key \"scenes\" in \"check\""},
         {"{\"title\": \"A\", \"options\": \"--survival-cap\"}", "must be a list"},
         {"{\"title\": \"A\", \"options\": [7]}", "has 7: use"},
         {"{\"title\": \"A\", \"options\": [\"--cap\"]}", "has \"--cap\": use --splitting-factor, "}};

@@ -5,7 +5,7 @@ from a fixed seed, images uncompressed.
 """
 from assets import scenes
 from assets.files import files
-from project import ROOT, Parser, UserError
+from project import ROOT, Parser, UserError, write_bytes
 
 ASSETS = ROOT / "assets"
 SCENES = [scenes.cornell_box, scenes.torus_scene, scenes.heart_light, scenes.textured, scenes.instances, scenes.furnace,
@@ -42,6 +42,4 @@ def main():
     if is_check and (difference := first_difference()):
         raise UserError(difference)
     for name, content in files.items() if not is_check else ():
-        path = ASSETS / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+        write_bytes(ASSETS / name, content)

@@ -18,11 +18,12 @@ from pathlib import Path
 
 from check.formats import as_gradescope, as_github
 from check.folder import UNGRADED, grade_all
-from check.grading import MOST_RUNS, RUNS, SCENES, first_seed, judge
+from check.grading import MOST_RUNS, RUNS, SAYS, SCENES, first_seed, judge
 from check.likely_mistake import likely_mistake
 from check.pictures import draw
 from check.words import explain, hint_lines, scene_words, tell_early
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, description, number
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number
+from report.measurement import relative
 
 POINTS = 10
 
@@ -56,9 +57,9 @@ def parse():
 
 def refuse(options):
     """UserError where a check cannot begin."""
-    if options.chapter not in SCENES or options.chapter not in CHAPTERS:
+    if options.chapter not in SCENES:
         raise UserError(f"there is no chapter {options.chapter} to be checked: ./lab check N FILE grades a file as chapter N's")
-    if options.samples and description(CHAPTERS[options.chapter]).get("low_discrepancy"):
+    if options.samples and SAYS[options.chapter].get("low_discrepancy"):
         raise UserError(f"--samples: in chapter {options.chapter} the error per sample depends on how many there are: leave it out")
     if options.folder and (options.file or options.form):
         raise UserError("--all grades a folder into results.csv: leave out the file and the form of the output")
@@ -79,7 +80,7 @@ def check(options, file, picture=None):
             del mistake["name"]
     if picture or not is_correct:
         path = draw(result, pictures, picture or ROOT / f"output/check_{options.chapter}.png")
-        result["picture"] = str(path.relative_to(ROOT) if path.is_relative_to(ROOT) else path)
+        result["picture"] = relative(path)
     return result
 
 

@@ -6,6 +6,8 @@ import json
 import os
 import sys
 import time
+from pathlib import Path
+from string import Template
 from urllib.parse import quote
 
 from check.grading import KNOWLEDGE
@@ -15,13 +17,7 @@ from report.measurement import digest_of_sources
 
 UNGRADED = 2  # exit code
 COLUMNS = ["submission", "verdict", "unfinished_line", "mistakes", "questions", "error", "seconds"]
-PAGE = """<!DOCTYPE html>
-<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
-<style>body {{ font: 16px sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em }} img {{ max-width: 100% }}
-pre {{ white-space: pre-wrap; background: #8882; padding: 0.6em }}</style>
-<h1>{title}</h1>
-{body}</html>
-"""
+PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
 def printable(name):
@@ -43,7 +39,7 @@ def submissions(folder):
 
 
 def digest(options, sources, file):
-    """Of a shader and of what it is graded with: a result with the same one stays. `sources` are digests of what is the same for
+    """A digest of a shader and of what it is graded with: a result with the same one stays. `sources` are digests of what is the same for
     all."""
     settings = [sources, options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
     return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes()).hexdigest()
@@ -71,7 +67,7 @@ def write_page(options, rows, path):
     for row in rows:
         picture = f'<img src="{quote(row["picture"])}" alt="pictures and differences">' if row.get("picture") else ""
         parts.append(f"<h2>{html.escape(row['submission'])}: {row['verdict']}</h2>\n{picture}<pre>{html.escape(row['text'])}</pre>\n")
-    path.write_text(PAGE.format(title=f"Chapter {options.chapter}: {len(rows)} submissions", body="".join(parts)), encoding="utf-8")
+    path.write_text(PAGE.substitute(title=f"Chapter {options.chapter}: {len(rows)} submissions", body="".join(parts)), encoding="utf-8")
 
 
 def grade_all(options, check):

@@ -18,12 +18,12 @@ def as_gradescope(scenes, hints, points):
 
 
 def escaped(text):
-    """For a workflow command of GitHub's actions, in which these characters have a meaning."""
+    """Text for a workflow command of GitHub's actions, in which these characters have a meaning."""
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
 def escaped_property(text):
-    """The same for a part of a command that is not its message."""
+    """Text for a part of such a command that is not its message."""
     return escaped(text).replace(":", "%3A").replace(",", "%2C")
 
 

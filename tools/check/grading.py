@@ -14,31 +14,19 @@ from pathlib import Path
 
 import numpy as np
 from project import BINARIES, CHAPTERS, ROOT, UserError, description, program_file, read_json, show_progress
-from references.images import find_references, read_reference, read_rgb
+from references.images import averaged, find_references, read_reference, read_rgb
 from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
 KNOWLEDGE = Path(__file__).with_name("knowledge.json")
-# For each chapter: samples of a run, and references that show what its shader does.
-ROOM = ["check_room_2", "check_room_6"]
-SCENES = {
-    1: (32, [*ROOM, "textured_4"]),
-    2: (32, [*ROOM, "textured_4"]),
-    3: (16, [*ROOM, "textured_4"]),
-    4: (8, [*ROOM, "textured_4"]),
-    5: (10, [*ROOM, "textured_4"]),
-    6: (10, [*ROOM, "check_glass_8"]),
-    7: (12, ["check_room_6", "plates_3", "check_glass_8"]),
-    8: (12, ["check_room_6", "textured_4", "sunny_4"]),
-    9: (16, ["check_room_6", "cornell_box_1", "textured_4"]),
-    10: (16, ["check_room_6", "textured_4", "sunny_4"]),
-}
+SAYS = {number: description(folder) for number, folder in CHAPTERS.items()}
+# Of each chapter: samples of a run, and references that show what its shader does.
+SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in SAYS.items() if "check" in says}
 # Roulette from the first bounce on and with a cap that matters: otherwise both hardly show. With a lower cap few samples
 # would decide a picture, since survivors of eight bounces count 1/cap^8, and no interval would hold.
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
-OPTIONS = {number: ROULETTE if "--roulette-start" in description(CHAPTERS[number]).get("options", []) else []
-           for number in SCENES if number in CHAPTERS}
+OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) else [] for number, says in SAYS.items()}
 TILE = 16  # pixels
 FALSE_ALARMS = 0.001  # of all checks of correct shaders
 TOO_MUCH = 1.5  # times the error of a sample or its rays
@@ -50,7 +38,7 @@ VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first of any scene
 
 
 def first_seed(seed):
-    """Of the runs of a check with this --seed: checks with different ones share no render. None has the seeds from MOST_RUNS + 1
+    """The seed of the first run of a check with this --seed. Checks with different ones share no render. None has the seeds from MOST_RUNS + 1
     to SEED_STEP: with those the signatures of mistakes were measured. The chapters' levels have the seeds of --seed 0, so that a
     shader which calls for random numbers in the same order as the chapter's own is compared render by render."""
     return seed * SEED_STEP + 1
@@ -84,13 +72,12 @@ def program_with(chapter, text):
 
 def regions(image):
     """Means of red, green and blue over the whole image [3], and of all channels over its tiles [rows * columns]."""
-    height, width, _ = image.shape
-    tiles = image.mean(axis=2).reshape(height // TILE, TILE, width // TILE, TILE).mean(axis=(1, 3))
+    tiles = averaged(image.mean(axis=2, keepdims=True), TILE)
     return [*image.mean(axis=(0, 1)).tolist(), *tiles.ravel().tolist()]
 
 
 def reference_regions(file):
-    """The same of a reference, as biases() wants it. Pixels and channels of the reference have errors of
+    """The regions of a reference, as biases() wants them. Pixels and channels of the reference have errors of
     their own; those of channels may go together, at worst completely."""
     reference = read_reference(file)
     height, width, _ = reference.mean.shape
@@ -179,9 +166,12 @@ def grade(case, recorded, comparisons):
             "tiles": tiles, "noise": noise, "rays": rays}
 
 
-def read_levels():
-    """Chapter -> scene -> level of the chapter's own shader."""
-    return {chapter: entry["levels"] for chapter, entry in read_json(KNOWLEDGE).items()}
+def read_levels(chapter):
+    """Scene -> level of the chapter's own shader."""
+    known = read_json(KNOWLEDGE)
+    if str(chapter) not in known:
+        raise UserError(f"the shader of chapter {chapter} is not measured yet: tests/mistakes/learn.py learn does it")
+    return known[str(chapter)]["levels"]
 
 
 def early_bias(cases):
@@ -199,8 +189,8 @@ def early_bias(cases):
 
 def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None):
     """The verdict on a shader and on each scene, and the mean picture of each scene; UserError where there is none."""
+    levels = levels or read_levels(chapter)
     cases = render(chapter, file, settings, scenes, watch)
-    levels = levels or read_levels()[str(chapter)]
     results = [grade(case, levels[case["scene"]], len(cases)) for case in cases]
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
     return {"chapter": chapter, "file": str(file), "verdict": verdict, "runs": settings["runs"],

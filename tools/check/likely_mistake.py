@@ -31,19 +31,19 @@ class Signature:
 
 
 def noise_and_rays(scene):
-    """Of a scene of a result, as multiples of the chapter's own. Neither is 0: their logarithms are compared."""
+    """Noise and rays of a scene of a result, as multiples of the chapter's own. Neither is 0, since their logarithms are compared."""
     return scene["noise"][0] or 1.0, max(scene["rays"], LEAST_RAYS)
 
 
 def signature(result):
-    """Of a result of grading.judge()."""
+    """The signature in a result of grading.judge()."""
     tests = [test for scene in result["scenes"] for test in (*scene["image"], *scene["tiles"])]
     return Signature([test["value"] for test in tests], [test["half_width"] / 2 for test in tests],
                      *map(list, zip(*map(noise_and_rays, result["scenes"]))))
 
 
 def surprise(seen, known):
-    """Of seeing one signature where another is known: minus the logarithm of a probability, up to a constant. Its tails are
+    """The surprise of seeing one signature where another is known: minus the logarithm of a probability, up to a constant. Its tails are
     wide (Student's distribution with 3 degrees of freedom), so that no single region decides."""
     def term(difference, error):
         return 2 * math.log1p((difference / error) ** 2 / 3)
@@ -56,7 +56,7 @@ def surprise(seen, known):
 
 
 def surprises(seen, known):
-    """Of each known signature (name -> Signature) the surprise, the likeliest first; empty if none explains what is seen."""
+    """The surprise of each known signature (name -> Signature), the likeliest first; empty if none explains what is seen."""
     count = len(seen.differences)
     faultless = Signature([0.0] * count, [0.0] * count, [1.0] * len(seen.noise), [1.0] * len(seen.rays))
     found = {name: surprise(seen, other) for name, other in known.items()}
@@ -78,7 +78,7 @@ def percentages(text):
 
 
 def read_signature(scenes):
-    """Of a mistake in KNOWLEDGE: scene -> what it does there."""
+    """The signature of a mistake in KNOWLEDGE, given as scene -> what it does there."""
     regions = [percentages(" ".join([scene["image"], *scene["tiles"]])) for scene in scenes.values()]
     return Signature(sum(regions, []), [], *([scene[key] for scene in scenes.values()] for key in ("noise", "rays")))
 

@@ -4,7 +4,7 @@ import matplotlib
 matplotlib.use("agg")
 import numpy as np
 from matplotlib import pyplot
-from report.plots import encode_srgb
+from report.plots import encode_srgb, save_figure
 
 
 def draw(result, pictures, path):
@@ -24,7 +24,5 @@ def draw(result, pictures, path):
         top.set_axis_off()
         axis.set_axis_off()
     figure.colorbar(image, ax=axes[1], label="difference of a tile from the reference, %", shrink=0.8, extend="both")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=80)
-    pyplot.close(figure)
+    save_figure(figure, path, dpi=80)
     return path

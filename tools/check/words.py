@@ -1,6 +1,6 @@
 """What a check tells about a shader, in words."""
 from check.grading import early_bias
-from project import CHAPTERS
+from project import CHAPTERS, scene_of
 
 
 def percent(value):
@@ -50,7 +50,7 @@ def hint_lines(result):
         lines += [(first, name + mistake["hint"]), ("read again", f"{mistake['slide']} (docs/slides.md), {page}")]
     if len(found["mistakes"]) > 1:
         tell = found["tell_apart"]
-        lines.append(("tell apart", f"render {tell['scene'].rstrip('_0123456789')} and look {tell['place']}: there the first changes "
+        lines.append(("tell apart", f"render {scene_of(tell['scene'])} and look {tell['place']}: there the first changes "
                       f"the brightness by {' and the second by '.join(map(percent, tell['effects']))}; --runs 48 looks closer"))
     return lines
 

@@ -67,7 +67,7 @@ def render(case, samples, options):
 
 
 def telling_scene(chapter, programs, options):
-    """Of the scenes of ./lab check the one whose picture the bug changes most: of each tile, with a single sample per pixel."""
+    """The scene of ./lab check whose picture the bug changes most, by the means of tiles with a single sample per pixel."""
     def change(scene):
         right, wrong = (averaged(render(new_render(chapter, scene, program), 1, options), SCALE * TILE) for program in programs)
         return np.abs(wrong - right).mean() / right.mean()

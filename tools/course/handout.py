@@ -13,7 +13,7 @@ from pathlib import Path
 
 from course.pages import clean_pages
 from package.make import pack
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_program, show_progress
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress
 
 HERE = Path(__file__).parent
 EXERCISES = read_json(HERE / "exercises.json")
@@ -86,12 +86,6 @@ def write_handout(chapter, folder):
     clean_pages(folder, "\n".join(solutions))
 
 
-def run(command, expected, what, **options):
-    result = run_program(command, **options)
-    if result.returncode != expected:
-        raise UserError(f"{what}: exit code {result.returncode} instead of {expected}:\n{result.stdout}{result.stderr}")
-
-
 def verify(chapter, folder):
     """Proves what the help says of one chapter. The programs are those of this tree: only shaders differ."""
     tree = folder / f"handout_{chapter}"
@@ -99,12 +93,12 @@ def verify(chapter, folder):
     missing = [name for name in CHAPTERS.values() if name > CHAPTERS[chapter] and (tree / "chapters" / name).exists()]
     if missing or (tree / "tests").exists():
         raise UserError(f"chapter {chapter}: the handout has {missing or 'tests'}")
-    run(["cmake", "-S", tree, "-B", tree / "build", "-G", "Ninja"], 0, f"chapter {chapter}: CMake")
+    run_to_end(["cmake", "-S", tree, "-B", tree / "build", "-G", "Ninja"], f"chapter {chapter}: CMake")
     environment = os.environ | {"LAB_BINARIES": str(BINARIES.resolve())}
     check = [sys.executable, "-B", tree / "tools", "check", chapter, *few(chapter)]
-    run(check, EXPECTED["biased"], f"chapter {chapter}: check of the TODO", env=environment)
+    run_to_end(check, f"chapter {chapter}: check of the TODO", EXPECTED["biased"], env=environment)
     solution = ROOT / "chapters" / CHAPTERS[chapter] / "path_trace.glsl"
-    run([*check, solution], EXPECTED["correct"], f"chapter {chapter}: check of the solution", env=environment)
+    run_to_end([*check, solution], f"chapter {chapter}: check of the solution", EXPECTED["correct"], env=environment)
 
 
 def main():

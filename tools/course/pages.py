@@ -37,7 +37,7 @@ def end_before_secrets(text, secret):
 
 
 def leave_out_commands(text, missing):
-    """Without the sentences in which the regular expression `missing` finds a command."""
+    """A page without the sentences in which the regular expression `missing` finds a command."""
     paragraphs = text.split("\n\n")
     for i, paragraph in enumerate(paragraphs):
         if re.search(missing, paragraph):

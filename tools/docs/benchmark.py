@@ -17,7 +17,7 @@ from statistics import median
 from project import ROOT, Parser, add_device_options, chapter_named, number, table
 from references.images import find_references
 from report.measurement import Measurement, devices_text, driver_of, find_device, new_case
-from report.numbers import seconds_to_target
+from report.numbers import seconds_to_target, with_range
 
 GOES_ON = True
 SCENES = ["cornell_box", "heart_light", "glass"]
@@ -39,17 +39,13 @@ def parse():
 
 def system_text():
     """Operating system, processor and memory, without a name of the machine."""
-    def find(file, pattern):
-        try:
-            found = re.search(pattern, Path(file).read_text(encoding="utf-8"), re.MULTILINE)
-        except OSError:
-            return ""
-        return found[1] if found else ""
-
-    name = find("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)') or platform.system()
-    cpu = find("/proc/cpuinfo", r"^model name\s*: (.*)$") or platform.machine()
-    memory = int(find("/proc/meminfo", r"^MemTotal: *(\d+)") or 0) / 2**20
-    return f"{name}, {cpu}, {len(os.sched_getaffinity(0))} threads, {memory:.0f} GiB"
+    try:
+        name = platform.freedesktop_os_release()["PRETTY_NAME"]
+    except OSError:
+        name = platform.system()
+    cpu = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30
+    return f"{name}, {cpu[1] if cpu else platform.machine()}, {len(os.sched_getaffinity(0))} threads, {memory:.0f} GiB"
 
 
 def backends_of(device):
@@ -96,9 +92,8 @@ def markdown(record):
             "seconds to 1 % error", "of them start-up"]
     rows = []
     for row in record["summary"]:
-        ratios = row["speed_ratios"]
         rows.append([row["scene"], f"`{row['backend']}`", row["pixels"], f"{median(row['paths_per_second']) / 1e6:.3g}",
-                     f"{median(row['rays_per_second']) / 1e6:.3g}", f"{median(ratios):.2f} ({min(ratios):.2f} – {max(ratios):.2f})",
+                     f"{median(row['rays_per_second']) / 1e6:.3g}", with_range(row["speed_ratios"]),
                      f"{row['seconds_to_1_percent']:.3g}", f"{row['start_up_seconds']:.2g}"])
     return (f"**{environment['device']}** ({environment['driver']}), {environment['system']}; the path tracing lab, commit "
             f"{environment['commit']}, {environment['date']}\n\n" + table(head, rows, left=2).rstrip())

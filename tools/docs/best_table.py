@@ -3,16 +3,6 @@ from docs.peer_table import gains_of
 from project import load_records, scene_of, table
 from report.numbers import errors, paired_ratio, with_interval
 
-HEADER = """
-## The best chapter of each scene
-
-Which chapter reaches the same error in the least time? The table names it for each scene. It also says how many times faster
-this chapter is than the first chapter that we measured there, in device time. The last columns compare the best chapter with
-Mitsuba, which uses its best variant and sampler there. That comparison takes the time of the clock. The sections
-[Chapters](#chapters) and [Against Mitsuba](#against-mitsuba) say how we measured.
-
-"""
-
 
 def among_chapters(record):
     """[best chapter, its gain over the first one] of each scene and size of a device, from a record of chapters."""

@@ -2,24 +2,11 @@
 import textwrap
 
 from course.bug import caught_by, changes
-from course.mistakes import bugs_of
-from project import UserError
+from course.mistakes import CATALOGUE, bugs_of
+from project import UserError, read_json
 
 # Name of the mistake: chapter and reference.
-GALLERY = {
-    "missing-cosine": (1, "check_room_6"),
-    "same-number-twice": (2, "check_room_6"),
-    "cosine-twice": (2, "check_room_6"),
-    "distance-not-squared": (3, "cornell_box_6"),
-    "emission-counted-twice": (3, "cornell_box_6"),
-    "no-shadow-ray": (3, "cornell_box_6"),
-    "identical-branches": (4, "cornell_box_6"),
-    "roulette-without-weight": (5, "cornell_box_6"),
-    "radiance-not-scaled": (6, "check_glass_8"),
-    "light-samples-counted-fully": (7, "plates_3"),
-    "sky-through-everything": (8, "sunny_4"),
-    "radiance-replaced": (10, "cornell_box_6"),
-}
+GALLERY = {mistake["name"]: tuple(mistake["gallery"]) for mistake in read_json(CATALOGUE) if "gallery" in mistake}
 
 
 def find_bug(name):

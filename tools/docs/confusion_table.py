@@ -1,64 +1,30 @@
 """What docs/results.md shows of ./lab check: how often it finds mistakes and names them right."""
-from dataclasses import dataclass
-
 from project import table
 from scipy.stats import binomtest
-
-HEADER = """
-## What ./lab check finds
-
-We planted mistakes ([mistakes.json](../tests/mistakes/mistakes.json)) into correct shaders. The check had to find the mistakes and
-to name them. `tests/mistakes/learn.py confusion` makes this test, and [confusion.json](records/check/confusion.json) has each
-single answer. There are four kinds of trials:
-
-- The chapters' own shaders, with other random numbers than the check has learnt from.
-- The same shaders on scenes that the check does not use.
-- Shaders that are written in another way ([tests/variants](../tests/variants)), with a mistake in each.
-- Correct shaders, the chapters' own and those written in another way. Each was checked with several seeds. Some of them draw the
-  same random numbers as the chapter's own, so that not all of these checks are independent.
-
-A mistake counts as found where the check says anything but correct. It is *large* where it changes the mean of a picture by at
-least 2 % or the error per sample by at least 1.5 times. The check is *sure* where it asks about one mistake and not about two. In
-brackets: the 95 % confidence interval of the rate.
-"""
 
 CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "other scenes": "the same on other scenes",
               "variants": "shaders written in another way", "correct": "correct shaders"}
 LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
 
-@dataclass
 class Rate:
     """Counts of trials. `right` and `near` are of those found: named first, or among the first two."""
-    tried: int = 0
-    found: int = 0
-    large: int = 0
-    found_of_large: int = 0
-    right: int = 0
-    near: int = 0
-    sure: int = 0
-    right_of_sure: int = 0
 
-    def add(self, trial):
-        is_found, is_large = trial["verdict"] != "correct", trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE
-        is_right, is_sure = trial["named"][:1] == [trial["mistake"]], trial["is_sure"]
-        self.tried += 1
-        self.found += is_found
-        self.large += is_large
-        self.found_of_large += is_found and is_large
-        self.right += is_right
-        self.near += trial["mistake"] in trial["named"][:2]
-        self.sure += is_sure
-        self.right_of_sure += is_sure and is_right
+    def __init__(self, trials):
+        large = [trial for trial in trials if trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE]
+        right = [trial for trial in trials if trial["named"][:1] == [trial["mistake"]]]
+        self.tried, self.large, self.right = len(trials), len(large), len(right)
+        self.found, self.found_of_large = (sum(trial["verdict"] != "correct" for trial in some) for some in (trials, large))
+        self.near = sum(trial["mistake"] in trial["named"][:2] for trial in trials)
+        self.sure, self.right_of_sure = (sum(trial["is_sure"] for trial in some) for some in (trials, right))
 
 
 def rates(record, key_of=lambda key: key.split("/")[0]):
     """A Rate for each condition, or for each value of another function of a trial's name; None leaves the trial out."""
-    found = {}
+    groups = {}
     for key, trial in record["trials"].items():
-        if key_of(key) is not None:
-            found.setdefault(key_of(key), Rate()).add(trial)
-    return found
+        groups.setdefault(key_of(key), []).append(trial)
+    return {key: Rate(trials) for key, trials in groups.items() if key is not None}
 
 
 def part(count, of):

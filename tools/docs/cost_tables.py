@@ -3,32 +3,7 @@ import math
 from statistics import linear_regression, median
 
 from project import table
-
-FEATURES = """
-## Features
-
-A feature that a scene does not have is neither compiled nor allocated. What does each feature cost where it is needed? To find
-out, we add one feature at a time to the same scene. The scene has 39,612 diffuse triangles and no light. Chapter 6 renders it,
-because it knows all features.
-
-The features must not change the paths. So the texture is white, and only one triangle is a dielectric. What remains is the cost of
-the code and of the memory accesses.
-
-Instructions are those of the SPIR-V after SPIRV-Tools' optimiser. The time per path is relative to the scene without features. It
-is the median of five runs that take turns, with the smallest and the largest one in brackets.
-"""
-
-GROWTH = """
-## Growth
-
-How does the cost grow with the size of the task? The time per path is relative to the first row. It is the median of five runs
-that take turns, with the smallest and the largest one in brackets. Memory is all that the scene, its acceleration structure and
-the film take on the device. The buffer for the samples of small images is left out, because its size is bounded
-([Threads and pixels](backends.md#threads-and-pixels)).
-
-The exponent is the slope in a plot with logarithmic axes, by least squares over all rows. An exponent of 1 means that
-twice the size costs twice as much. An exponent of 0 means that the size does not matter.
-"""
+from report.numbers import with_range
 
 UNITS = ["bytes", "KiB", "MiB", "GiB"]
 
@@ -45,16 +20,11 @@ def seconds_text(seconds):
     return f"{seconds * 1e9:.3g} ns"
 
 
-def time_ratios(row, base):
-    """Time of a path relative to another row's, in each run."""
-    return [b / a for a, b in zip(row["paths_per_second"], base["paths_per_second"])]
-
-
 def time_text(row, base):
+    """Time of a path relative to another row's."""
     if row is base:
         return f"1 = {seconds_text(1 / median(row['paths_per_second']))}"
-    ratios = time_ratios(row, base)
-    return f"{median(ratios):.2f} ({min(ratios):.2f} – {max(ratios):.2f})"
+    return with_range([b / a for a, b in zip(row["paths_per_second"], base["paths_per_second"])])
 
 
 def device_heading(record):

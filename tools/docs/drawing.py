@@ -3,18 +3,20 @@ import math
 import re
 from xml.sax.saxutils import escape
 
+import numpy as np
+
 WIDTH = 640
 GREY, BLUE, RED, GREEN, ORANGE, PURPLE = "#787d83", "#2f7de1", "#d64545", "#2c8f4e", "#b86e00", "#9b62d6"
 SIZE = 16  # of text, in pixels
 
 
 def number(value):
-    return f"{round(value, 1) + 0.0:g}"  # + 0.0: there is one zero
+    return f"{round(float(value), 1) + 0.0:g}"  # + 0.0: there is one zero
 
 
 def mix(a, b, t):
     """The point between a (t = 0) and b (t = 1)."""
-    return tuple(p + t * (q - p) for p, q in zip(a, b))
+    return a + t * np.subtract(b, a)
 
 
 def beside(a, b, t, distance):
@@ -30,7 +32,8 @@ def along_edges(corners, count):
 
 def polar(centre, radius, degrees):
     """The point in this direction from the centre; 90 degrees is up."""
-    return centre[0] + radius * math.cos(math.radians(degrees)), centre[1] - radius * math.sin(math.radians(degrees))
+    angle = math.radians(degrees)
+    return np.array(centre) + radius * np.array([math.cos(angle), -math.sin(angle)])
 
 
 def curve(function, start, end, count=48):
@@ -85,9 +88,9 @@ class Drawing:
         self.rectangle((x - 26, y - 11), (22, 22), GREY)
         self.polygon([(x - 4, y - 4), (x + 6, y - 10), (x + 6, y + 10), (x - 4, y + 4)], GREY)
 
-    def arc(self, centre, radius, start, end, colour=GREY, width=1.2):
+    def arc(self, centre, radius, start, end, colour):
         """Part of a circle between two directions in degrees, counterclockwise."""
-        self.line(curve(lambda degrees: polar(centre, radius, degrees), start, end, 16), colour, width)
+        self.line(curve(lambda degrees: polar(centre, radius, degrees), start, end, 16), colour, 1.2)
 
     def label(self, at, text, colour=GREY, size=SIZE, anchor="middle"):
         """Text with its middle at this height; `anchor` says which end of it stands at this place: start, middle, end."""
@@ -101,9 +104,9 @@ class Drawing:
         x, y = number(at[0]), number(at[1] + 0.35 * size)
         self.elements.append(f'<text x="{x}" y="{y}" font-size="{number(size)}" fill="{colour}" text-anchor="{anchor}">{spans}</text>')
 
-    def lines_of_text(self, at, lines, colour=GREY, size=SIZE, anchor="start", distance=1.6):
+    def lines_of_text(self, at, lines, colour=GREY, size=SIZE, anchor="start"):
         for i, text in enumerate(lines):
-            self.label((at[0], at[1] + i * distance * size), text, colour, size, anchor)
+            self.label(np.add(at, (0, 1.6 * i * size)), text, colour, size, anchor)
 
     def svg(self):
         size = f'viewBox="0 0 {WIDTH} {self.height}" width="{WIDTH}" height="{self.height}"'
@@ -116,40 +119,27 @@ class View:
     """Looks at three dimensions, z up, from a direction given by azimuth and elevation in degrees; a unit has `scale` pixels."""
 
     def __init__(self, centre, scale, azimuth, elevation):
-        self.centre, self.scale, self.azimuth = centre, scale, math.radians(azimuth)
-        elevation = math.radians(elevation)
-        c, s = math.cos(self.azimuth), math.sin(self.azimuth)
-        self.right, self.up = (-s, c, 0), (-math.sin(elevation) * c, -math.sin(elevation) * s, math.cos(elevation))
-        self.toward = math.cos(elevation) * c, math.cos(elevation) * s, math.sin(elevation)
+        self.centre, self.scale, self.azimuth = np.array(centre), scale, math.radians(azimuth)
+        inclination = math.pi / 2 - math.radians(elevation)
+        right, down = direction(math.pi / 2, self.azimuth + math.pi / 2), direction(inclination + math.pi / 2, self.azimuth)
+        self.axes, self.toward = np.array([right, down]), direction(inclination, self.azimuth)
 
     def __call__(self, point):
-        return self.centre[0] + self.scale * dot(self.right, point), self.centre[1] - self.scale * dot(self.up, point)
+        return self.centre + self.scale * self.axes @ point
 
     def path(self, function, start, end, count=48):
         """A curve in space on the drawing."""
         return [self(point) for point in curve(function, start, end, count)]
 
     def near_path(self, function, start, end, count=96):
-        """The same of a curve on the unit sphere, without what the sphere hides."""
-        return [self(point) for point in curve(function, start, end, count) if dot(self.toward, point) >= 0]
+        """A curve on the unit sphere, without what the sphere hides."""
+        return [self(point) for point in curve(function, start, end, count) if self.toward @ point >= 0]
 
 
 def direction(theta, phi):
     """The unit vector with inclination θ and azimuth φ, both in radians."""
-    return math.cos(phi) * math.sin(theta), math.sin(phi) * math.sin(theta), math.cos(theta)
-
-
-def cross(a, b):
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-def dot(a, b):
-    return sum(p * q for p, q in zip(a, b))
-
-
-def scaled(vector, factor):
-    return tuple(factor * p for p in vector)
+    return np.array([math.cos(phi) * math.sin(theta), math.sin(phi) * math.sin(theta), math.cos(theta)])
 
 
 def normalized(vector):
-    return scaled(vector, 1 / math.sqrt(dot(vector, vector)))
+    return vector / np.linalg.norm(vector)

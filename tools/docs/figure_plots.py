@@ -10,17 +10,12 @@ from lesson.sample_plots import save_point_sets, scatter
 from matplotlib import font_manager, image, pyplot
 from PIL import Image, ImageDraw, ImageFont
 from project import BINARIES, CHAPTERS, ROOT, UserError, run_program
-from report.plots import COLOURS, DIFFERENCE_FACTOR, MARKERS, difference_colours, encode_srgb, relative_difference, style_axis
+from report.plots import (COLOURS, DIFFERENCE_FACTOR, MARKERS, difference_colours, encode_srgb, relative_difference, save_figure,
+                          style_axis)
 
 DPI = 100
 GAP, LABEL = 4, 22  # pixels between tiles, height of a label
 QUALITY = {"quality": 88, "optimize": True}  # of JPEG files
-
-
-def save(figure, path):
-    options = {"pil_kwargs": QUALITY} if path.suffix == ".jpg" else {}
-    figure.savefig(path, dpi=DPI, **options)
-    pyplot.close(figure)
 
 
 def sheet(path, rows):
@@ -36,7 +31,7 @@ def sheet(path, rows):
             axis.imshow(pixels, interpolation="nearest")
             axis.axis("off")
             figure.text(*(corner + [0, height + 6]) / size, label, fontsize=9)
-    save(figure, path)
+    save_figure(figure, path, DPI, **({"pil_kwargs": QUALITY} if path.suffix == ".jpg" else {}))
 
 
 def right_and_wrong(path, right, wrong):
@@ -54,7 +49,7 @@ def plot(path, size, draw, **labels):
     draw(axis)
     style_axis(axis, xscale="log", yscale="log", **labels)
     axis.legend(frameon=False, fontsize=9)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 # ---------------------------------------------------------------------------------------------- of renders
@@ -130,20 +125,16 @@ def noise(folder, images, reports):
     frames[0].save(folder / "noise.webp", save_all=True, append_images=frames[1:], duration=1500, loop=0, quality=80)
 
 
-def by_scene(path, images, reports):
-    sheet(path, rows_by_scene(images, lambda name, radiance: (f"{reports[name]['rows'][-1]['samples']:,} samples", encode_srgb(radiance))))
+def samples_by_scene(name):
+    """A figure of chapters, which says how many samples each took."""
+    def compose(folder, images, reports):
+        sheet(folder / f"{name}.jpg", rows_by_scene(images, lambda name, radiance: (
+            f"{reports[name]['rows'][-1]['samples']:,} samples", encode_srgb(radiance))))
+
+    return compose
 
 
-def equal_time(folder, images, reports):
-    by_scene(folder / "equal_time.jpg", images, reports)
-
-
-def light_probes(folder, images, reports):
-    by_scene(folder / "light_probes.jpg", images, reports)
-
-
-def low_discrepancy(folder, images, reports):
-    by_scene(folder / "low_discrepancy.jpg", images, reports)
+equal_time, light_probes, low_discrepancy = map(samples_by_scene, ("equal_time", "light_probes", "low_discrepancy"))
 
 
 def idle_lanes(folder, images, reports):
@@ -180,7 +171,7 @@ def convergence(folder, images, reports):
         style_axis(axis, xscale="log", yscale="log", xlabel=label)
     axes[0].set_ylabel("relative error (root of rel_mse)")
     axes[0].legend(frameon=False, fontsize=9)
-    save(figure, folder / "convergence.png")
+    save_figure(figure, folder / "convergence.png")
 
 
 # ---------------------------------------------------------------------------------------------- of points
@@ -191,7 +182,7 @@ def sampler_points(folder, images, reports):
         playground = sample.PLAYGROUNDS[name]
         scatter(axis, playground.kind, sample.draw(playground.sampler, 2000, 0, playground.dimensions))
         axis.set_title(playground.title.replace(", density", "\ndensity"), fontsize=9)
-    save(figure, folder / "sampler_points.png")
+    save_figure(figure, folder / "sampler_points.png")
 
 
 def mean_errors(terms, exact, sizes):
@@ -230,7 +221,7 @@ def grid_and_random(folder, images, reports):
         style_axis(axis, xscale="log", yscale="log", xlabel="N", title=f"k = {k}", ylim=(1e-7, 2))
         axis.legend(frameon=False, fontsize=8, loc="lower left")
     axes[0].set_ylabel("error")
-    save(figure, folder / "grid_and_random.png")
+    save_figure(figure, folder / "grid_and_random.png")
 
 
 def random_numbers(folder, images, reports):
@@ -243,7 +234,7 @@ def random_numbers(folder, images, reports):
         axis.plot(corner[:, 0], corner[:, 1], ".", color=COLOURS[0], markersize=3, markeredgewidth=0)
         axis.set(title=f"{title}\n{len(corner):,} of {len(points):,} points", xlabel="u_x", ylabel="u_y")
         axis.set_aspect("equal")
-    save(figure, folder / "random_numbers.png")
+    save_figure(figure, folder / "random_numbers.png")
 
 
 def window(output, images, reports):

@@ -1,11 +1,12 @@
-"""Renders and plots all pictures of the pages into docs/pictures, then writes the tables of docs/results.md,
-docs/numerics.md and the chapter pages from the records. Ctrl-C keeps what is there; the same command goes on.
+"""Renders and plots all pictures of the pages into docs/pictures, then fills the tables of the pages from the records. Ctrl-C
+keeps what is there; the same command goes on.
 """
 import hashlib
 import os
 import time
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from check.grading import OPTIONS, SCENES, program_with
@@ -16,7 +17,7 @@ from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named,
                      run_program, show_progress)
 from references.images import read_rgb
 from report.measurement import digest_of_sources
-from report.numbers import last_rows, mean_of
+from report.numbers import per_sample
 
 GOES_ON = True
 PICTURES = ROOT / "docs/pictures"
@@ -40,7 +41,7 @@ class Render:
     shader: str = ""  # its text, instead of the chapter's own
 
     def file(self, folder):
-        """Of the image. Its name changes with whatever is rendered."""
+        """The file of the image. Its name changes with whatever is rendered."""
         return folder / f"{self.name}_{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}.exr"
 
     def run(self, folder):
@@ -110,7 +111,7 @@ def renders_of_idle_lanes():
 
 
 def renders_of_bugs():
-    """With and without each bug of the gallery: as ./lab bug renders them, with less noise."""
+    """Each bug of the gallery beside the right picture, as ./lab bug renders them but with less noise."""
     renders = []
     for name, (chapter, scene) in GALLERY.items():
         bug, _ = find_bug(name)
@@ -134,19 +135,14 @@ def renders_of_effects():
 
 
 def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
-    """As many samples as take the same time by the first record of docs/records/chapters, whatever else runs now."""
+    """Takes the samples that fit into SECONDS by the first record of docs/records/chapters, whatever else runs now."""
     renders = []
     for case in load_records("chapters")[0]["cases"]:
         if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):
-            seconds = mean_of(last_rows(case["runs"]), "device_seconds") / (case["samples"] * case["width"] * case["height"])
             scene = Path(case["scene_file"]).stem
-            options = ("--samples", round(SECONDS / (seconds * size**2)), "--max-path-length", case["max_path_length"])
+            options = ("--samples", round(SECONDS / (per_sample(case, "device_seconds") * size**2)), "--max-path-length", case["max_path_length"])
             renders.append(Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options))
     return renders
-
-
-def renders_of_noise():
-    return renders_at_equal_time(("cornell_box",), 256)
 
 
 def renders_of_hero():
@@ -187,29 +183,14 @@ def renders_of_first_steps():
 
 ON_REQUEST = {"hero"}  # takes two cores half an hour
 
-# Name of the figure: a function for the renders that it needs, and that of figure_plots that makes it of images and reports.
+# Name of the figure, and of what makes it in figure_plots: a function for the renders that it needs.
 FIGURES = {
-    "chapters": (renders_of_chapters, figure_plots.chapters),
-    "thumbnails": (renders_of_thumbnails, figure_plots.thumbnails),
-    "strategies": (renders_of_strategies, figure_plots.strategies),
-    "light_probes": (renders_of_light_probes, figure_plots.light_probes),
-    "low_discrepancy": (renders_of_low_discrepancy, figure_plots.low_discrepancy),
-    "idle_lanes": (renders_of_idle_lanes, figure_plots.idle_lanes),
-    "path_lengths": (renders_of_path_lengths, figure_plots.path_lengths),
-    "effects": (renders_of_effects, figure_plots.effects),
-    "bugs": (renders_of_bugs, figure_plots.bugs),
-    "bvh_steps": (renders_of_bvh_steps, figure_plots.bvh_steps),
-    "hero": (renders_of_hero, figure_plots.hero),
-    "noise": (renders_of_noise, figure_plots.noise),
-    "equal_time": (renders_at_equal_time, figure_plots.equal_time),
-    "convergence": (renders_of_convergence, figure_plots.convergence),
-    "first_steps": (renders_of_first_steps, figure_plots.first_steps),
-    "sampler_points": (list, figure_plots.sampler_points),
-    "point_sets": (list, figure_plots.point_sets),
-    "one_over_root_n": (list, figure_plots.one_over_root_n),
-    "grid_and_random": (list, figure_plots.grid_and_random),
-    "random_numbers": (list, figure_plots.random_numbers),
-    "window": (list, figure_plots.window),
+    "chapters": renders_of_chapters, "thumbnails": renders_of_thumbnails, "strategies": renders_of_strategies,
+    "light_probes": renders_of_light_probes, "low_discrepancy": renders_of_low_discrepancy, "idle_lanes": renders_of_idle_lanes,
+    "path_lengths": renders_of_path_lengths, "effects": renders_of_effects, "bugs": renders_of_bugs, "bvh_steps": renders_of_bvh_steps,
+    "hero": renders_of_hero, "noise": partial(renders_at_equal_time, ("cornell_box",), 256), "equal_time": renders_at_equal_time,
+    "convergence": renders_of_convergence, "first_steps": renders_of_first_steps, "sampler_points": list, "point_sets": list,
+    "one_over_root_n": list, "grid_and_random": list, "random_numbers": list, "window": list,
 }
 
 
@@ -228,16 +209,16 @@ def make(names, output):
     output = output.resolve()
     output.mkdir(parents=True, exist_ok=True)
     folder = CACHE / digest_of_sources([])
-    steps = [(name, render) for name in names for render in [*FIGURES[name][0](), None]]
+    renders = {name: FIGURES[name]() for name in names}
+    steps = [(name, render) for name in names for render in [*renders[name], None]]
     started = time.monotonic()
     for done, (name, render) in enumerate(steps, 1):
-        renders, compose = FIGURES[name][0](), FIGURES[name][1]
         if render:
             (folder / name).mkdir(parents=True, exist_ok=True)
             render.run(folder / name)
         else:
-            images = {render.name: read_rgb(render.file(folder / name)) for render in renders}
-            compose(output, images, {render.name: render.run(folder / name) for render in renders})
+            images = {render.name: read_rgb(render.file(folder / name)) for render in renders[name]}
+            getattr(figure_plots, name)(output, images, {render.name: render.run(folder / name) for render in renders[name]})
         show_progress(f"{name}{f', {render.name}' if render else ''}", done, len(steps), started)
 
 

@@ -1,8 +1,9 @@
 """Diagrams of light: directions, densities, paths, glass. A function each; what can be computed is not placed by eye."""
 import math
 
-from docs.drawing import (BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Drawing, View, along_edges, beside, cross, curve, direction, dot, mix,
-                          normalized, polar, scaled)
+import numpy as np
+from docs.drawing import (BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Drawing, View, along_edges, beside, curve, direction, mix, normalized,
+                          polar)
 
 GLASS = 1.5  # refractive index
 
@@ -13,7 +14,7 @@ def circle_at(theta):
 
 
 def draw_hemisphere(drawing, view):
-    """Its outline and its base, whose far half is dashed."""
+    """Draws the outline of a hemisphere and its base, whose far half is dashed."""
     near, base = view.azimuth - math.pi / 2, circle_at(math.pi / 2)
     drawing.line(view.path(base, near, near + math.pi), width=1.8)
     drawing.line(view.path(base, near + math.pi, near + 2 * math.pi), width=1.2, dashed=True)
@@ -30,9 +31,8 @@ def hemisphere():
     omega, origin = direction(theta, phi), view((0, 0, 0))
     axis = (0, 0, omega[2])
     for end, name, offset in (((1.25, 0, 0), "x-axis", (-30, 0)), ((0, 1.25, 0), "y-axis", (32, 0)), ((0, 0, 1.25), "$n$", (-16, 6))):
-        tip = view(end)
-        drawing.arrow([origin, tip])
-        drawing.label((tip[0] + offset[0], tip[1] + offset[1]), name)
+        drawing.arrow([origin, view(end)])
+        drawing.label(view(end) + offset, name)
     draw_hemisphere(drawing, view)
     drawing.line(view.path(circle_at(theta), 0, 2 * math.pi, 96), width=1, dashed=True)
     for azimuth in (phi, phi + d_phi):
@@ -42,14 +42,12 @@ def hemisphere():
     corners = [(theta, phi), (theta, phi + d_phi), (theta + d_theta, phi + d_phi), (theta + d_theta, phi)]
     drawing.polygon([view(direction(*angles)) for angles in along_edges(corners, 12)], ORANGE, 0.55, 2)
     drawing.arrow([origin, view(omega)], BLUE, 2.6)
-    drawing.line(view.path(lambda t: scaled(direction(t, phi), 0.42), 0, theta), BLUE)
-    drawing.line(view.path(lambda azimuth: scaled(direction(math.pi / 2, azimuth), 0.45), 0, phi), PURPLE)
-    drawing.label(view(scaled(direction(theta / 2, phi), 0.53)), "$θ$", BLUE, 18)
-    drawing.label(view(scaled(direction(math.pi / 2, phi * 0.55), 0.6)), "$φ$", PURPLE, 18)
-    x, y = view(scaled(omega, 0.7))
-    drawing.label((x + 15, y + 10), "$ω$", BLUE, 20)
-    x, y = view(mix(axis, omega, 0.5))
-    drawing.label((x - 4, y + 15), "sin $θ$", GREEN, 14)
+    drawing.line(view.path(lambda t: 0.42 * direction(t, phi), 0, theta), BLUE)
+    drawing.line(view.path(lambda azimuth: 0.45 * direction(math.pi / 2, azimuth), 0, phi), PURPLE)
+    drawing.label(view(0.53 * direction(theta / 2, phi)), "$θ$", BLUE, 18)
+    drawing.label(view(0.6 * direction(math.pi / 2, phi * 0.55)), "$φ$", PURPLE, 18)
+    drawing.label(view(0.7 * omega) + (15, 10), "$ω$", BLUE, 20)
+    drawing.label(view(mix(axis, omega, 0.5)) + (-4, 15), "sin $θ$", GREEN, 14)
     for edge, text, place in ((mix(*corners[:2], 0.6), "sin $θ$ d$φ$", (480, 95)), (mix(*corners[1:3], 0.5), "d$θ$", (480, 150))):
         at = view(direction(*edge))
         drawing.line([mix(at, place, 0.03), (place[0] - 6, place[1])], ORANGE, 1)
@@ -110,7 +108,7 @@ def path():
     for k, (colour, normal) in enumerate(((BLUE, None), (GREEN, (0, -1)), (PURPLE, (-1, 0)))):
         start, end = points[k:k + 2]
         if normal:
-            drawing.arrow([start, (start[0] + 62 * normal[0], start[1] + 62 * normal[1])], GREY, 1.2, dashed=True)
+            drawing.arrow([start, start + 62 * np.array(normal)], GREY, 1.2, dashed=True)
             to_normal = math.degrees(math.atan2(-normal[1], normal[0]))
             to_end = math.degrees(math.atan2(start[1] - end[1], end[0] - start[0]))
             drawing.arc(start, 32, to_normal, to_end, colour)
@@ -119,7 +117,7 @@ def path():
         drawing.label(beside(start, end, 0.55, -18 if k else 18), f"$ω_{k}$", colour, 18)
     for k, offset in enumerate(((0, 26), (0, 20), (22, 4), (-4, 20))):
         drawing.dot(points[k], ORANGE if k == 3 else GREY)
-        drawing.label((points[k][0] + offset[0], points[k][1] + offset[1]), f"$x_{k}$", ORANGE if k == 3 else GREY, 18)
+        drawing.label(np.add(points[k], offset), f"$x_{k}$", ORANGE if k == 3 else GREY, 18)
     drawing.label((400, 195), "$β_1$ = 1", BLUE, anchor="start")
     drawing.label((400, 225), "$β_2$ = $β_1$ · $ρ$ cos $θ_1$ / $p$($ω_1$)", GREEN, anchor="start")
     drawing.label((400, 255), "$β_3$ = $β_2$ · $ρ$ cos $θ_2$ / $p$($ω_2$)", PURPLE, anchor="start")
@@ -132,18 +130,14 @@ def light_patch():
         "The solid angle of a piece of a light", 310,
         "From x, the area dA around y at distance r, turned away by θ′, covers the solid angle dω = cos θ′ / r² dA.")
     view = View((185, 230), 112, 30, 20)
-    x, y, up = (0, 0, 0), (0.35, 2.9, 1.85), (0, 0, 1)
-    omega, distance, facing = normalized(y), math.sqrt(dot(y, y)), normalized((0.1, -0.3, -1))  # the last is n′
-    side = normalized(cross(facing, (0, 1, 0)))
-    sides = [scaled(side, 0.42), scaled(cross(facing, side), 0.42)]
-    corners = [tuple(p + i * a + j * b for p, a, b in zip(y, *sides)) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    x, y, up = np.array([(0, 0, 0), (0.35, 2.9, 1.85), (0, 0, 1)])
+    omega, facing = normalized(y), normalized((0.1, -0.3, -1))  # the last is n′
+    side = normalized(np.cross(facing, (0, 1, 0)))
+    corners = [y + 0.42 * (i * side + j * np.cross(facing, side)) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
 
     def turn(a, b, t):
         """Unit vectors from a (t = 0) to b (t = 1)."""
         return normalized(mix(a, b, t))
-
-    def at(start, along, length):
-        return tuple(p + length * q for p, q in zip(start, along))
 
     drawing.polygon([view(point) for point in ((-1.15, -1.15, 0), (1.15, -1.15, 0), (1.15, 1.8, 0), (-1.15, 1.8, 0))], GREY, 0.08, 1)
     draw_hemisphere(drawing, view)
@@ -153,19 +147,17 @@ def light_patch():
     drawing.polygon([view(normalized(point)) for point in along_edges(corners, 12)], BLUE, 0.6)
     drawing.line([view(x), view(y)])
     drawing.arrow([view(x), view((0, 0, 1.35))])
-    drawing.arrow([view(x), view(scaled(omega, 0.62))], BLUE, 2.4)
-    drawing.arrow([view(y), view(at(y, facing, 1.3))])
-    back = scaled(omega, -1)
-    drawing.line(view.path(lambda t: at(x, turn(up, omega, t), 0.42), 0, 1), BLUE)
-    drawing.line(view.path(lambda t: at(y, turn(facing, back, t), 0.75), 0, 1), ORANGE)
+    drawing.arrow([view(x), view(0.62 * omega)], BLUE, 2.4)
+    drawing.arrow([view(y), view(y + 1.3 * facing)])
+    drawing.line(view.path(lambda t: 0.42 * turn(up, omega, t), 0, 1), BLUE)
+    drawing.line(view.path(lambda t: y + 0.75 * turn(facing, -omega, t), 0, 1), ORANGE)
     for place, text, colour, offset in (
-            (at(x, turn(up, omega, 0.45), 0.55), "$θ$", BLUE, (0, 0)), (at(y, turn(facing, back, 0.35), 0.95), "$θ$′", ORANGE, (0, 0)),
-            ((0, 0, 1.35), "$n$", GREY, (-14, 4)), (at(y, facing, 1.3), "$n$′", GREY, (-20, 2)),
+            (0.55 * turn(up, omega, 0.45), "$θ$", BLUE, (0, 0)), (y + 0.95 * turn(facing, -omega, 0.35), "$θ$′", ORANGE, (0, 0)),
+            ((0, 0, 1.35), "$n$", GREY, (-14, 4)), (y + 1.3 * facing, "$n$′", GREY, (-20, 2)),
             (x, "$x$", GREY, (-13, 8)), (y, "$y$", GREY, (14, -4)),
-            (scaled(omega, 0.62), "$ω$", BLUE, (6, 17)), (scaled(omega, 0.75 * distance), "$r$", GREY, (-4, -14)),
+            (0.62 * omega, "$ω$", BLUE, (6, 17)), (0.75 * y, "$r$", GREY, (-4, -14)),
             (corners[0], "d$A$", ORANGE, (22, -2)), (omega, "d$ω$", BLUE, (-4, -30))):
-        across, down = view(place)
-        drawing.label((across + offset[0], down + offset[1]), text, colour, 18)
+        drawing.label(view(place) + offset, text, colour, 18)
     for point in (x, y):
         drawing.dot(view(point))
     drawing.label((510, 265), "d$ω$ = cos $θ$′ / $r$² · d$A$", size=18)

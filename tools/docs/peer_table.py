@@ -2,32 +2,7 @@
 import math
 
 from project import scene_of, table
-from report.differences import DIFFERENCES
 from report.numbers import TARGET_ERROR, short, with_interval
-
-HEADER = f"""
-## Against Mitsuba
-
-[Mitsuba 3](https://mitsuba-renderer.org) and the chapters take turns on the same machine and render the same scenes. This is the
-command, and the record is the `report.json` that it writes:
-
-    ./lab report --peer mitsuba --peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass 5 7 9 10
-
-**Times faster** is the quotient of the times to the same error. It counts the time of rendering alone, by the clock.
-**Seconds to {100 * TARGET_ERROR:.0f} % error** is the time from the command to a picture whose relative root mean squared error is
-{100 * TARGET_ERROR:.0f} %. It counts the start-up as well. The brackets hold with a probability of 95 %. They come from the spread
-of the runs and from the noise of the reference.
-
-Three facts explain most of the table:
-
-- The light of `heart_light` is close to what it lights. There light samples alone are noisy.
-- On the CPU, Mitsuba's LLVM variant traces eight rays at a time with Embree.
-- On a GPU, threads wait for the longest path of their group, in all chapters but 10
-  ([backends.md](backends.md#when-each-is-faster-and-what-limits-it)).
-
-The programs differ in this:
-
-""" + "".join(f"- {text}\n" for text in DIFFERENCES)
 
 
 def gains_of(scene):

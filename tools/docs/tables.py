@@ -1,6 +1,5 @@
-"""Writes docs/results.md and the tables of other pages from the records in docs/records. In a page, what stands between the lines
-<!-- table: NAME --> and <!-- end of table --> is replaced by that table, and blocks of code are filled from their sources
-(docs/code_blocks.py).
+"""Fills the tables of the pages from the records in docs/records. In a page, what stands between the lines <!-- table: NAME -->
+and <!-- end of table --> is replaced by that table, and blocks of code are filled from their sources (docs/code_blocks.py).
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
@@ -12,89 +11,21 @@ import math
 import os
 import re
 from pathlib import Path
-from statistics import median
 
-from docs.best_table import HEADER as BEST
 from docs.best_table import among_chapters, best_table
 from docs.bug_blocks import bug_block
 from docs.code_blocks import fill
-from docs.confusion_table import HEADER as CHECK
 from docs.confusion_table import confusion_table
-from docs.cost_tables import FEATURES, GROWTH, feature_table, growth_tables, seconds_text
+from docs.cost_tables import feature_table, growth_tables, seconds_text
 from docs.numerics import case_table, device_tables
-from docs.peer_table import HEADER as PEERS
 from docs.peer_table import peer_table
 from project import ROOT, Parser, UserError, load_records, scene_of, table
-from report.numbers import errors, last_rows, mean_of, paired_ratio, with_interval
+from report.differences import DIFFERENCES
+from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 TABLE = re.compile(r"(<!-- table: ([\w -]+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
-
-HEADER = """# Results
-
-This page shows all that we measured. `python3 tools tables` writes it from the records in `docs/records`. Nothing here is typed
-by hand.
-
-## What the numbers mean
-
-**Sample.** One camera ray through a pixel, with all that follows from it. In chapters 4 to 6 a sample splits into several
-paths. That is why a sample costs more there.
-
-**Rays per sample.** How many rays the chapter traces for one sample, in the mean. Rays to the light sources count as well.
-
-**Time per sample.** The time that the device computes, divided by the number of samples of all pixels. A GPU computes many
-samples at once, so one sample seems to take a few nanoseconds only.
-
-**Error.** We compare each picture $x$ with a reference $r$, pixel by pixel. The error is the relative mean squared error, in short
-`rel_mse`:
-
-$$
-\\mathrm{error} = \\operatorname{mean} \\frac{(x - r)^2}{r^2 + 0.01 \\bar{r}^2}
-$$
-
-Here $\\bar{r}$ is the mean of the reference. The term with it keeps dark pixels from ruling the sum. The root of the
-error is what one sees as noise. An error of 0.01 means that pixels are wrong by about 10 %.
-
-**Error of one sample.** The `rel_mse` of a picture with one sample per pixel. We do not render such a picture. We render one with
-$N$ samples and multiply its error by $N$. This is right because the variance of a mean of $N$ independent samples falls with
-$1/N$. A picture with 100 samples per pixel has a hundredth of this number as its error.
-
-**Error × rays** and **error × time.** A technique may give each sample less noise and still lose, because each sample costs more.
-The product of both tells which one wins, whatever the number of samples. It is shown relative to another row, whose product
-counts as 1. A number below 1 means that the technique pays. For example, 0.5 means half the time for the same error.
-
-**Brackets.** The true value lies between the two numbers in brackets with a probability of 95 %. If 1 lies between them, we did
-not find out which of the two is better.
-"""
-
-CHAPTERS = """
-## Chapters
-
-References are the images in `assets/references`. For splitting at every hit there is none, and the error comes from the
-difference between the two halves of each render. A chapter is compared with the row before it. A setting is compared with the
-first row of its table. The brackets come from the differences between runs with the same seed and from the noise of the
-reference.
-
-The samples of chapters 9 and 10 know of each other, and their error falls faster than with $1/N$. So their error of one
-sample holds only for the number of samples that was rendered. All chapters got the same time. In it a GPU renders thousands of
-samples per pixel, and a CPU renders dozens.
-"""
-
-BACKENDS = """
-## Backends
-
-A backend is a way to find what a ray hits. [backends.md](backends.md) explains them and says what limits each.
-
-On a Cornell box with a bumpy sphere, all of them render the same shader: next event estimation with Russian roulette
-(`tests/benchmark/path_trace.glsl`), with at most eight bounces. The last rows show the last chapter on two of its scenes. We show
-the median of five runs in device time.
-
-The bare rate belongs to a second shader. It only traces the very same rays once more, which it reads from memory, and none of its
-threads waits for a longer path. The runs of both shaders take turns. What both rates differ by is the price of shading, of what a
-thread must remember for it, and of waiting. The brackets are the smallest and the largest quotient of the runs.
-"""
-
 
 KINDS = ("chapter", "splitting factor", "roulette start", "survival weight", "points, survival weight", "light sampling", "strategy",
          "splitting at every hit")
@@ -106,21 +37,19 @@ def kind_of(case):
 
 
 def kind_tables(record):
-    """Of one device, the rows of each kind and scene: {(kind, scene): rows}; a row has the case's name first."""
+    """The rows of each kind and scene on one device: {(kind, scene): rows}. A row begins with the name of its case."""
     tables, base = {}, None
     for case in record["cases"]:
         kind = kind_of(case)
         rows = tables.setdefault((kind, case["scene"]), [])
         options = f"--samples {case['samples']} {case['options']}".strip()
-        last = last_rows(case["runs"])
-        count = case["samples"] * case["width"] * case["height"]
         cost = [errors(case, key) for key in ("rays", "device_seconds")]
         rows.append([
             case["case"],
             f"`{options}`",
-            f"{mean_of(last, 'rays') / count:.3g}",
-            seconds_text(mean_of(last, "device_seconds") / count),
-            f"{case['samples'] * mean_of(last, 'rel_mse'):.3g}",
+            f"{per_sample(case, 'rays'):.3g}",
+            seconds_text(per_sample(case, "device_seconds")),
+            f"{case['samples'] * errors(case).mean:.3g}",
             *(with_interval(paired_ratio(*both)) if rows else "1" for both in zip(cost, base or cost)),
         ])
         if len(rows) == 1 or kind == "chapter":
@@ -161,17 +90,15 @@ def page_table(name, record):
     return table(["scene", "", *COLUMNS], rows, left=2)
 
 
-def expected_table(width=512, height=512, samples=64):
+def expected_table():
     """For each device, the seconds and the error of the Cornell box at the default resolution and number of samples."""
-    rows = []
+    rows, pixels, samples = [], 512 * 512, 64
     for record in load_records("chapters"):
         cases = [case for case in record["cases"] if kind_of(case) == "chapter" and case["scene"].startswith("cornell_box")]
         cells = []
         for case in cases:
-            last = last_rows(case["runs"])
-            seconds = mean_of(last, "device_seconds") / (case["samples"] * case["width"] * case["height"])
-            error = case["samples"] * mean_of(last, "rel_mse")
-            cells.append(f"{seconds * width * height * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
+            error = case["samples"] * errors(case).mean
+            cells.append(f"{per_sample(case, 'device_seconds') * pixels * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
         rows.append([record["environment"]["device"], *cells])
     text = table(["device", *(case["case"] for case in cases)], rows) + "\n"
     for record in load_records("backends"):
@@ -179,7 +106,7 @@ def expected_table(width=512, height=512, samples=64):
         best = max(rates, key=lambda name: rates[name]["paths_per_second"])
         paths = rates[best]["paths_per_second"]
         text += (f"{record['device']}, `{best}`: {paths / 1e6:.0f} million paths per second in a Cornell box by next event estimation with Russian roulette. "
-                 f"So many samples take {1e3 * width * height * samples / paths:.2g} ms.\n\n")
+                 f"So many samples take {1e3 * pixels * samples / paths:.2g} ms.\n\n")
     return text
 
 
@@ -198,7 +125,38 @@ def headline_table():
     return table(["error × time", *devices], rows) + "\n" + text
 
 
-OWN_TABLES = {"expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables}
+def over_bare(rates):
+    """Rays per second over the bare rate: the median of runs in turns and its range, or what older records tell."""
+    if "runs" not in rates:
+        return f"{rates['rays_per_second'] / rates['bare_rays_per_second']:.2f}"
+    ratios = [a / b for a, b in zip(rates["runs"]["rays_per_second"], rates["runs"]["bare_rays_per_second"])]
+    return with_range(ratios)
+
+
+def backend_table(record):
+    """The Markdown table of one device."""
+    head = ["scene", "triangles", "backend", "million paths/s", "million rays/s", "bare million rays/s", "rays/s over bare", "structure"]
+    rows = [[scene["scene"], f"{scene['triangles']:,}", f"`{name}`", f"{rates['paths_per_second'] / 1e6:.4g}", f"{rates['rays_per_second'] / 1e6:.4g}",
+             f"{rates['bare_rays_per_second'] / 1e6:.4g}", over_bare(rates),
+             f"{rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s"]
+            for scene in record["scenes"] for name, rates in scene["backends"].items()]
+    return (f"\n### {record['device']}\n\nDriver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x "
+            f"{record['size']} pixels.\n\n" + table(head, rows, left=3))
+
+
+def of_records(folder, text_of):
+    """A function for the text of each record of a folder."""
+    return lambda: "".join(map(text_of, load_records(folder)))
+
+
+OWN_TABLES = {
+    "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
+    # Those of docs/results.md show all devices.
+    "best chapters": best_table, "chapters": of_records("chapters", chapter_tables), "backends": of_records("backends", backend_table),
+    "differences": lambda: "".join(f"- {text}\n" for text in DIFFERENCES), "peers": of_records("peers", peer_table),
+    "features": of_records("cost", feature_table), "growth": of_records("cost", growth_tables),
+    "check": of_records("check", confusion_table),
+}
 
 
 def page_tables(name, page):
@@ -214,45 +172,15 @@ def page_tables(name, page):
             f"which also show {names}. Below 1 means that it pays.\n\n{page_table(name, first)}\n")
 
 
-def over_bare(rates):
-    """Rays per second over the bare rate: the median of runs in turns and its range, or what older records tell."""
-    if "runs" not in rates:
-        return f"{rates['rays_per_second'] / rates['bare_rays_per_second']:.2f}"
-    ratios = [a / b for a, b in zip(rates["runs"]["rays_per_second"], rates["runs"]["bare_rays_per_second"])]
-    return f"{median(ratios):.2f} ({min(ratios):.2f} – {max(ratios):.2f})"
-
-
-def backend_table(record):
-    """The Markdown table of one device."""
-    head = ["scene", "triangles", "backend", "million paths/s", "million rays/s", "bare million rays/s", "rays/s over bare", "structure"]
-    rows = [[scene["scene"], f"{scene['triangles']:,}", f"`{name}`", f"{rates['paths_per_second'] / 1e6:.4g}", f"{rates['rays_per_second'] / 1e6:.4g}",
-             f"{rates['bare_rays_per_second'] / 1e6:.4g}", over_bare(rates),
-             f"{rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s"]
-            for scene in record["scenes"] for name, rates in scene["backends"].items()]
-    return (f"\n### {record['device']}\n\nDriver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x "
-            f"{record['size']} pixels.\n\n" + table(head, rows, left=3))
-
-
-def section(header, folder, text_of):
-    """A header and the text of each record of a folder."""
-    records = load_records(folder)
-    return header + "".join(map(text_of, records)) if records else ""
-
-
 def write_pages(is_check=False):
     """Writes all pages, or only looks whether they are up to date."""
-    texts = {DOCS / "results.md": HEADER + BEST + best_table() + section(CHAPTERS, "chapters", chapter_tables) +
-             section(BACKENDS, "backends", backend_table) + section(PEERS, "peers", peer_table) +
-             section(FEATURES, "cost", feature_table) + section(GROWTH, "cost", growth_tables) +
-             section(CHECK, "check", confusion_table)}
     for page in PAGES:
-        if page not in texts:
-            text = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3], page.read_text(encoding="utf-8"))
-            texts[page] = fill(text, page.relative_to(ROOT))
-    for page, text in texts.items():
+        before = page.read_text(encoding="utf-8")
+        text = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3], before)
+        text = fill(text, page.relative_to(ROOT))
         if not is_check:
             page.write_text(text, encoding="utf-8")
-        elif not page.exists() or page.read_text(encoding="utf-8") != text:
+        elif text != before:
             raise UserError(f"{page.relative_to(ROOT)} is not what the records and the sources say: run `python3 tools tables`")
 
 

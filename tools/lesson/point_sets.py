@@ -51,7 +51,7 @@ def errors(sets, integral):
 
 
 def slope(values):
-    """Of the line through the logarithms of the errors of SIZES points."""
+    """The slope of the line through the logarithms of the errors of SIZES points."""
     return np.polyfit(np.log(SIZES), np.log(values), 1)[0]
 
 

@@ -29,8 +29,8 @@ class Playground:
     sampler: str  # of the program sample_points
     integrals: list
     coordinate: str  # what the histogram is of
-    coordinates: Callable  # of points
-    cumulative: Callable  # the distribution function of that coordinate
+    coordinates: Callable = lambda points: points[:, 0]
+    cumulative: Callable = lambda x: x  # the distribution function of that coordinate
     dimensions: int = 2
     kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
     is_pixel: bool = False  # whether the points are samples of one pixel, and not the first ones of as many
@@ -39,10 +39,6 @@ class Playground:
 def drop_lost(points):
     """Directions that the estimator has not dropped."""
     return points[np.any(points[:, :3] != 0, axis=1)]
-
-
-def identity(x):
-    return x
 
 
 DARTS = Integral("area of the quarter disk, ∫ [u_x² + u_y² < 1] du", lambda k: math.pi / 4,
@@ -56,22 +52,19 @@ COMPARED = {"the quarter disk's area": DARTS, "a smooth integral": MEAN_SQUARE} 
 PLAYGROUNDS = {
     "1d": Playground("1D Monte Carlo integration", "numbers", [
         Integral("∫ sin(π u) du from 0 to 1", lambda k: 2 / math.pi, lambda u: np.sin(np.pi * u[:, 0]))],
-        "u", lambda u: u[:, 0], identity, dimensions=1),
-    "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1",
-                     lambda u: u[:, 0], identity, dimensions=4),
-    "numbers": Playground("pairs of random numbers by PCG2D, shaders/random.glsl", "numbers", [DARTS], "u_x",
-                          lambda u: u[:, 0], identity),
+        "u", dimensions=1),
+    "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", dimensions=4),
+    "numbers": Playground("pairs of random numbers by PCG2D, shaders/random.glsl", "numbers", [DARTS], "u_x"),
     "points": Playground("points of chapter 9: the samples of a pixel, beside other sets of points", "scrambled", [DARTS, MEAN_SQUARE],
-                         "u_x", lambda u: u[:, 0], identity, is_pixel=True),
-    "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS],
-                            "u_x", lambda u: u[:, 0], identity),
+                         "u_x", is_pixel=True),
+    "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"),
     "uniform-angles": Playground("directions of chapter 1, density 1 / (π² sin θ)", "uniform-angles", COSINES, "cos θ",
                                  lambda p: drop_lost(p)[:, 2], lambda c: 1 - 2 / np.pi * np.arccos(c), kind="disk"),
     "cosine": Playground("directions of chapter 2, density cos θ / π", "cosine", COSINES, "cos θ",
                          lambda p: drop_lost(p)[:, 2], lambda c: c ** 2, kind="disk"),
     "light-point": Playground("points of chapter 3 on a light's triangle of area 1, density 1", "light-point", [
         Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])],
-        "w_1", lambda w: w[:, 0], lambda w: 1 - (1 - w) ** 2, kind="triangle"),
+        "w_1", cumulative=lambda w: 1 - (1 - w) ** 2, kind="triangle"),
 }
 
 
@@ -85,7 +78,7 @@ def draw(sampler, count, seed, dimensions, device=None, samples=1):
 
 
 def draw_sets(seed, device=None):
-    """Those that point_sets compares."""
+    """The sets that point_sets compares."""
     return point_sets.draw_sets(lambda sampler, count, samples: draw(sampler, count, seed, 2, device, samples))
 
 
@@ -171,7 +164,6 @@ def main():
         print("\n".join(point_sets.report(sets, COMPARED)))
     output = options.output or ROOT / f"output/sample_{options.name}.png"
     try:
-        output.parent.mkdir(parents=True, exist_ok=True)
         if playground.is_pixel:
             sample_plots.save_point_sets(output, sets, COMPARED)
         else:

@@ -5,10 +5,9 @@ matplotlib.use("agg")
 import numpy as np
 from lesson import point_sets
 from matplotlib import pyplot
-from report.plots import COLOURS, MARKERS, style_axis
+from report.plots import COLOURS, MARKERS, save_figure, style_axis
 
 SHOWN = 2000  # points in a scatter plot
-DPI = 100
 
 
 def scatter(axis, kind, points):
@@ -49,7 +48,6 @@ def convergence(axis, rows, exact, label, colour):
 
 def save_overview(path, playground, points, dimensions, histogram, estimates):
     """Points, density and estimates side by side."""
-    pyplot.rcParams.update({"font.family": "sans-serif", "font.size": 10})
     figure, axes = pyplot.subplots(1, 3, figsize=(12, 3.8), layout="constrained")
     scatter(axes[0], playground.kind, points)
     density(axes[1], playground, points, histogram)
@@ -58,13 +56,11 @@ def save_overview(path, playground, points, dimensions, histogram, estimates):
     style_axis(axes[2], xscale="log", xlabel="N")
     axes[2].legend(frameon=False, fontsize=8)
     figure.suptitle(playground.title, fontsize=11)
-    figure.savefig(path, dpi=DPI)
-    pyplot.close(figure)
+    save_figure(figure, path)
 
 
 def save_point_sets(path, sets, integrals):
     """Sets of points, their spectra, and the errors of two integrals with them."""
-    pyplot.rcParams.update({"font.family": "sans-serif", "font.size": 10})
     names = ["grid", *sets]
     figure = pyplot.figure(figsize=(14, 6), layout="constrained")
     axes = figure.add_gridspec(2, len(names) + 1, width_ratios=[1] * len(names) + [1.5])
@@ -81,5 +77,4 @@ def save_point_sets(path, sets, integrals):
             axis.plot(point_sets.SIZES, errors, marker + "-", color=colour, markersize=4, label=name)
         style_axis(axis, xscale="log", yscale="log", title=f"error of {title}", xlabel="N" if row else None)
         axis.legend(frameon=False, fontsize=8)
-    figure.savefig(path, dpi=DPI)
-    pyplot.close(figure)
+    save_figure(figure, path)

@@ -12,14 +12,13 @@ import zipfile
 from pathlib import Path
 
 from package import windows_programs
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, last_line, run_program
+from project import BINARIES, CHAPTERS, ROOT, Parser, run_to_end
 
 HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
 FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
 FILES = ["LICENSE", "README.md"]
 LEFT_OUT = ["docs/solutions", "tools/book", "tools/course", "tools/docs", "tools/package"]  # they are for teachers, or need the sources
-PROGRAMS = ["merge_images", "sample_points"]  # besides the chapters
 DATE = 1980, 1, 1, 0, 0, 0  # the date of all files, so that archives can be compared
 BOOK = ROOT / "output/book"
 
@@ -37,19 +36,19 @@ def tree_files(tree):
 
 
 def windows_files(chapters):
-    windows_programs.build([*chapters, *PROGRAMS])
+    windows_programs.build([*chapters, *windows_programs.OTHERS])
     # Windows' command interpreter needs its own ends of lines.
     files = {"lab.cmd": (HERE / "lab.cmd").read_bytes().replace(b"\n", b"\r\n")}
     return files | {f"build/bin/{name}.exe": (windows_programs.PROGRAMS / f"{name}.exe").read_bytes()
-                    for name in [*chapters, *PROGRAMS]}
+                    for name in [*chapters, *windows_programs.OTHERS]}
 
 
 def linux_files(chapters):
     """The programs, and the libraries that a system without a compiler may lack."""
     files, libraries = {"lab": (ROOT / "lab").read_bytes()}, {}
-    for name in [*chapters, *PROGRAMS]:
+    for name in [*chapters, *windows_programs.OTHERS]:
         files[f"build/bin/{name}"] = stripped(BINARIES / name)
-        for line in run_program(["ldd", BINARIES / name]).stdout.splitlines():
+        for line in run_to_end(["ldd", BINARIES / name], f"Packing {name}").splitlines():
             library, _, place = line.strip().partition(" => ")
             if place and library.split(".so")[0] not in ("libc", "libm", "libdl", "libpthread", "libgcc_s", "libstdc++"):
                 libraries[f"build/lib/{library}"] = Path(place.split()[0])
@@ -59,9 +58,7 @@ def linux_files(chapters):
 def stripped(program):
     """A program without what only a debugger reads."""
     with tempfile.NamedTemporaryFile() as copy:
-        result = run_program(["strip", "-o", copy.name, program])
-        if result.returncode:
-            raise UserError(f"{program} cannot be packed: {last_line(result)}")
+        run_to_end(["strip", "-o", copy.name, program], f"Packing {program}")
         return Path(copy.name).read_bytes()
 
 

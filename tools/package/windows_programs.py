@@ -1,30 +1,23 @@
 """Builds the programs for Windows, on Debian or Ubuntu: first, once, the libraries that have no package for it."""
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, UserError, run_program
+from project import CHAPTERS, ROOT, UserError, run_to_end
 
 HERE = Path(__file__).parent / "windows"
 BUILD = ROOT / "build/windows"  # all of it may be deleted: it is made again
 SOURCES, LIBRARIES = BUILD / "sources", BUILD / "libraries"
 PROGRAMS = BUILD / "programs/bin"
+OTHERS = ["merge_images", "sample_points"]  # of a package, besides the chapters
 # Whose sources are built: in the version that the Linux programs use, so that both do the same.
 PACKAGES = ["glslang-dev", "libglfw3-dev", "libimgui-dev", "libtinyexr-dev", "libtinyobjloader-dev"]
 
 
-def run(command, what, **options):
-    result = run_program(command, **options)
-    if result.returncode:
-        raise UserError(f"{what} failed: {result.stdout[-2000:]}{result.stderr[-2000:]}")
-    return result.stdout
-
-
 def fetch_sources():
-    """Into SOURCES/NAME-VERSION, by lists of its own: needs no root, and apt's lists stay as they are."""
-    versions = run(["dpkg-query", "-W", "-f", "${source:Package}=${source:Version} ", *PACKAGES], "Asking for versions").split()
+    """Unpacks the sources into SOURCES/NAME-VERSION. As it has lists of its own, it needs no root, and apt's lists stay as they are."""
+    versions = run_to_end(["dpkg-query", "-W", "-f", "${source:Package}=${source:Version} ", *PACKAGES], "Asking for versions").split()
     stamp = SOURCES / "versions.txt"
     if stamp.exists() and stamp.read_text(encoding="utf-8").split() == versions:
         return
@@ -39,23 +32,23 @@ def fetch_sources():
     apt = SOURCES / "apt"
     command = ["apt-get", "-o", "Dir::Etc::SourceList=/dev/null", "-o", f"Dir::Etc::SourceParts={apt}/parts",
                "-o", f"Dir::State::Lists={apt}/lists", "-o", f"Dir::Cache={apt}/cache", "-o", "APT::Sandbox::User="]
-    run([*command, "update"], "Fetching the lists of sources")
-    run([*command, "source", "--download-only", *versions], "Fetching sources", cwd=SOURCES)
+    run_to_end([*command, "update"], "Fetching the lists of sources")
+    run_to_end([*command, "source", "--download-only", *versions], "Fetching sources", cwd=SOURCES)
     for description in SOURCES.glob("*.dsc"):
         if description.name.startswith("glslang"):  # Debian's patches link an optimiser that the lab does not use
-            run(["tar", "-xf", next(SOURCES.glob("glslang_*.orig.tar.*"))], "Unpacking glslang", cwd=SOURCES)
+            run_to_end(["tar", "-xf", next(SOURCES.glob("glslang_*.orig.tar.*"))], "Unpacking glslang", cwd=SOURCES)
         else:
-            run(["dpkg-source", "-x", description], f"Unpacking {description.name}", cwd=SOURCES)
+            run_to_end(["dpkg-source", "-x", description], f"Unpacking {description.name}", cwd=SOURCES)
     stamp.write_text(" ".join(versions), encoding="utf-8")
 
 
 def cmake(source, build, what, targets, **variables):
     """Configures and builds; a folder that is complete takes a second."""
     variables |= {"CMAKE_BUILD_TYPE": "Release", "CMAKE_CXX_FLAGS_RELEASE": "-O2", "LAB_WINDOWS_LIBRARIES": LIBRARIES}
-    run(["cmake", "-G", "Ninja", "-S", source, "-B", build, "--toolchain", HERE / "toolchain.cmake",
-         *(f"-D{name}={value}" for name, value in variables.items())], f"Configuring {what}")
+    run_to_end(["cmake", "-G", "Ninja", "-S", source, "-B", build, "--toolchain", HERE / "toolchain.cmake",
+                *(f"-D{name}={value}" for name, value in variables.items())], f"Configuring {what}")
     print(f"Building {what} ...", file=sys.stderr, flush=True)
-    run(["cmake", "--build", build, "--target", *targets], f"Building {what}")
+    run_to_end(["cmake", "--build", build, "--target", *targets], f"Building {what}")
 
 
 def build(targets):
@@ -70,5 +63,5 @@ def build(targets):
 
 def main():
     """For the tests: python3 tools windows [TARGET ...]"""
-    build(sys.argv[1:] or [*CHAPTERS.values(), "merge_images", "sample_points"])
+    build(sys.argv[1:] or [*CHAPTERS.values(), *OTHERS])
     print(PROGRAMS)

@@ -2,12 +2,12 @@
 
 Of our own, since Debian 12 and Ubuntu 24.04 have no Python package for OpenEXR.
 """
-import os
 import re
 import struct
 import zlib
 
 import numpy as np
+from project import write_bytes
 
 MAGIC = b"\x76\x2f\x31\x01\x02\x00\x00\x00"  # and version 2: scan lines
 ROWS_PER_BLOCK = {0: 1, 2: 1, 3: 16}  # by kind of compression: none, ZIP a row, ZIP
@@ -74,10 +74,7 @@ def write_exr(path, channels, attributes):
         blocks.append(struct.pack("<ii", first, len(packed)) + packed)
         position += len(blocks[-1])
 
-    path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(path.name + ".unfinished")
-    unfinished.write_bytes(header + struct.pack(f"<{len(offsets)}Q", *offsets) + b"".join(blocks))
-    os.replace(unfinished, path)
+    write_bytes(path, header + struct.pack(f"<{len(offsets)}Q", *offsets) + b"".join(blocks))
 
 
 # ---------------------------------------------------------------------------------------------- reading

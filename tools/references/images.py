@@ -23,7 +23,7 @@ class Reference:
 
     @property
     def weights(self):
-        """Of squared differences in rel_mse, the chapters' formula: 1 / (r^2 + 0.01 mean(r)^2)."""
+        """What rel_mse multiplies squared differences by, the chapters' formula: 1 / (r^2 + 0.01 mean(r)^2)."""
         mean = self.mean.mean()
         return 1 / (self.mean**2 + 0.01 * mean**2) if mean > 0 else np.ones_like(self.mean)
 

@@ -105,6 +105,8 @@ def make(options):
     if not options.all:
         output = options.output or FOLDERS[1] / f"{options.scene.stem}.exr"
         make_reference(options.scene, output, options.width, options.height, options.max_path_length, options.samples, options.seed)
-    for name, length in ((name, length) for name, lengths in SHIPPED.items() for length in lengths if options.all):
-        make_reference(ROOT / f"assets/scenes/{name}.json", FOLDERS[0] / f"{name}_{length}.exr",
-                       *SHIPPED_SIZES.get(name, (128, 128)), length, SHIPPED_SAMPLES.get(name, 65536), options.seed, keep=True)
+        return
+    for name, lengths in SHIPPED.items():
+        for length in lengths:
+            make_reference(ROOT / f"assets/scenes/{name}.json", FOLDERS[0] / f"{name}_{length}.exr",
+                           *SHIPPED_SIZES.get(name, (128, 128)), length, SHIPPED_SAMPLES.get(name, 65536), options.seed, keep=True)

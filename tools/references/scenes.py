@@ -3,6 +3,7 @@
 It follows the section "Scene files" of the documentation as common/scene does, from which it shares no code:
 where the two read a file differently, a comparison with a reference shows it. Arrays are in double precision.
 """
+import itertools
 import json
 import math
 from dataclasses import dataclass
@@ -134,7 +135,7 @@ def framing_camera(meshes, placements):
     for index, matrix in placements:
         corners = meshes[index].positions.reshape(-1, 3)
         low, high = corners.min(axis=0), corners.max(axis=0)
-        box = np.array([[(low, high)[i >> k & 1][k] for k in range(3)] for i in range(8)])
+        box = np.array(list(itertools.product(*zip(low, high))))
         points.append(box @ matrix[:3, :3].T + matrix[:3, 3])
     low, high = np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
     centre, radius, fov = (low + high) / 2, np.linalg.norm(high - low) / 2, 45

@@ -56,7 +56,7 @@ def make_record(options, settings):
     for run in (run for case in measurement.record["cases"] for run in case["runs"]):
         del run["rows"][:-1]  # the others are not shown there
     measurement.save()
-    print(f"{options.record}: complete; python3 tools tables writes docs/results.md from records in docs/records/chapters")
+    print(f"{options.record}: complete; python3 tools tables fills docs/results.md from records in docs/records/chapters")
 
 
 def make_report(options, settings):

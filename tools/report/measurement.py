@@ -29,7 +29,7 @@ class Refused(UserError):
 
 # ---------------------------------------------------------------------------------------------- cases
 def relative(path):
-    """Of files of the project without where that lies."""
+    """A path as text, for files of the project from its root on."""
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
 
 
@@ -81,20 +81,20 @@ def study_cases():
         reference = ROOT / f"assets/references/{scene}_{length}.exr" if length else None
         cases.append(new_case(ROOT / f"assets/scenes/{scene}.json", reference, name, program, options))
 
-    for scene, length in (("cornell_box", 6), ("torus", 5), ("heart_light", 4)):
-        for number, program in CHAPTERS.items():
-            if program not in (glass, probes):  # without glass or a light probe, each is the chapter before
-                add(scene, length, f"chapter {number}", program)
-    for scene, length in (("glossy", 5), ("plates", 3)):
-        for program in (roulette, weights):
+    def add_chapters(scene, length, programs):
+        for program in programs:
             add(scene, length, f"chapter {int(program[:2])}", program)
+
+    for scene, length in (("cornell_box", 6), ("torus", 5), ("heart_light", 4)):
+        # Without glass or a light probe, their chapters are the ones before.
+        add_chapters(scene, length, [program for program in CHAPTERS.values() if program not in (glass, probes)])
+    for scene, length in (("glossy", 5), ("plates", 3)):
+        add_chapters(scene, length, (roulette, weights))
         for strategy in ("light", "brdf", "both"):
             add(scene, length, f"strategy {strategy}", weights, "--strategy", strategy)
     for scene in ("sunny", "studio", "textured"):
-        for program in (weights, probes, points, regeneration):
-            add(scene, 4, f"chapter {int(program[:2])}", program)
-    for program in (weights, points, regeneration):
-        add("glass", 8, f"chapter {int(program[:2])}", program)
+        add_chapters(scene, 4, (weights, probes, points, regeneration))
+    add_chapters("glass", 8, (weights, points, regeneration))
     for scene, length in (("cornell_box", 6), ("heart_light", 4)):
         for factor in (1, 2, 4, 8, 16):
             add(scene, length, f"splitting factor {factor}", splitting, "--splitting-factor", str(factor))
@@ -121,7 +121,7 @@ def peer_command(variant):
 
 
 def working_variants():
-    """Those of Mitsuba's variants that run here. Each is tried in a process of its own: some crash."""
+    """The variants of Mitsuba that run here. Each is tried in a process of its own, since some crash."""
     size = ["--width", "8", "--height", "8", "--max-path-length", "1", "--samples", "1", "--seed", "1"]
     tried = {variant: run_program([*peer_command(variant), ROOT / "assets/scenes/cornell_box.json", *size]) for variant in VARIANTS}
     works = [variant for variant in VARIANTS if tried[variant].returncode == 0]
@@ -193,7 +193,7 @@ def find_device(program, settings):
 
 
 def digest_of_sources(cases):
-    """Of all that decides what a run computes: with other sources a measurement starts anew."""
+    """A digest of all that decides what a run computes: with other sources a measurement starts anew."""
     files = [path for folder in ("chapters", "common", "shaders", "assets") for path in (ROOT / folder).rglob("*")]
     files += [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
     digest = hashlib.sha256()
@@ -303,7 +303,7 @@ class Measurement:
         return {"seed": seed, "command_seconds": report["command_seconds"], "rows": report["rows"]}
 
     def render_equal_error(self, case, seed):
-        """With as many samples as have the error of the scene's noisiest case, or one where that is less already."""
+        """Takes as many samples as give the error of the scene's noisiest case, at least one."""
         others = [other for other in self.record["cases"] if other["scene"] == case["scene"] and other["runs"]]
         errors = {id(other): sum(run["rows"][-1]["rel_mse"] for run in other["runs"]) / len(other["runs"]) for other in others}
         samples = max(1, round(case["samples"] * errors[id(case)] / (max(errors.values()) or 1)))

@@ -5,6 +5,7 @@ A record holds cases, what was rendered, each with runs of other seeds, each wit
 which moves the errors of all runs of a scene together.
 """
 import math
+from statistics import median
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,11 @@ def with_interval(values):
     """[value, low, high]; low is None where a single run tells no interval."""
     value, low, high = values
     return short(value, 2) + ("" if low is None else f" ({short(low, 2)} – {short(high, 2)})")
+
+
+def with_range(values):
+    """The median of runs, with the smallest and the largest value in brackets."""
+    return f"{median(values):.2f} ({min(values):.2f} – {max(values):.2f})"
 
 
 # ---------------------------------------------------------------------------------------------- intervals
@@ -113,6 +119,11 @@ def mean_of(rows, key):
     """None where a row lacks it."""
     values = [row.get(key) for row in rows]
     return None if None in values else sum(values) / len(values)
+
+
+def per_sample(case, key):
+    """The mean over the runs of the rays or seconds that a sample of a pixel takes."""
+    return mean_of(last_rows(case["runs"]), key) / (case["samples"] * case["width"] * case["height"])
 
 
 def deviation(case):

@@ -2,6 +2,8 @@
 import csv
 import math
 from html import escape
+from pathlib import Path
+from string import Template
 
 from project import ROOT, write_json
 from references.images import averaged, read_reference, read_rgb
@@ -9,30 +11,7 @@ from report.differences import DIFFERENCES
 from report.numbers import CONFIDENCE, FALSE_ALARMS, POWER, TARGET_ERROR, short, summarize
 from report.plots import DIFFERENCE_FACTOR, difference_picture, picture, plot_errors, style
 
-STYLE = """
-body { font: 18px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 1500px; box-sizing: border-box; margin: 2em auto; padding: 0 1.5em; }
-h1 { font-size: 2em; margin-bottom: 0.2em; } h2 { font-size: 1.6em; margin-top: 2.2em; border-top: 2px solid #ccc; padding-top: 0.6em; }
-h3 { font-size: 1.15em; margin: 1.4em 0 0.4em; } p, ul { max-width: 65em; } svg { width: 100%; height: auto; }
-.wide { overflow-x: auto; } table { border-collapse: collapse; margin: 0.8em 0; font-variant-numeric: tabular-nums; font-size: 0.9em; }
-th, td { padding: 0.25em 0.8em; text-align: right; border-bottom: 1px solid #ddd; vertical-align: baseline; }
-th { font-weight: 600; border-bottom: 2px solid #999; } th:first-child, td:first-child, td.text { text-align: left; }
-td:first-child { white-space: nowrap; }
-small, .range { color: #666; font-size: 0.85em; white-space: nowrap; } .bad { color: #b2182b; font-weight: 600; }
-.pictures { display: grid; grid-template-columns: repeat(auto-fit, minmax(170px, 1fr)); gap: 0.8em; }
-figure { margin: 0; font-size: 0.8em; line-height: 1.3; } img { width: 100%; image-rendering: pixelated; display: block; margin-bottom: 0.25em; }
-.note { background: #fff4d6; padding: 0.5em 1em; }
-"""
-
-HOW_TO_READ = f"""
-<p>Error is <i>rel_mse</i>, the mean over pixels and channels of (x − r)² / (r² + 0.01 r̄²) against the reference r, less
-what the reference's own noise adds. Without bias it falls as 1 / samples: a slope of −1. <b>Efficiency</b> is 1 / (error ×
-time) relative to the scene's first chapter: 10 means the same error in a tenth of the time. Device time is
-measured by timestamps on the device, wall time by the clock from the first sample on. Small grey ranges and bands
-hold {100 * CONFIDENCE:.0f} % of the time. They come from the spread of the runs, for efficiencies from the spread of the differences
-between runs with the same seed, and from the noise of the reference. The <b>bias test</b> compares the mean of each channel over the image
-with the reference; a report without bias gives a false alarm in {100 * FALSE_ALARMS:.0f} % of the cases, and what it says would have been
-found would have been so with {100 * POWER:.0f} % probability.</p>
-"""
+TEMPLATE = Template(Path(__file__).with_suffix(".html").read_text(encoding="utf-8"))
 
 
 def percent_of_root(error):
@@ -170,8 +149,9 @@ def page(record, scenes, folder):
                     f"chapter and scene, seeds 1 to {settings['repetitions']}"}
     lines = table(["", ""], [[f"<b>{key}</b>", f"{escape(str(value))}"] for key, value in facts.items() if value]).replace("<td>", '<td class="text">')
     body = "".join(scene_section(record, scene, folder) for scene in scenes)
-    return (f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>Speed against error</title><style>{STYLE}</style></head>'
-            f"<body><h1>Speed against error</h1>{progress_note(record)}{lines}{HOW_TO_READ}{overview(scenes)}{body}</body></html>\n")
+    percents = {"confidence": CONFIDENCE, "false_alarms": FALSE_ALARMS, "power": POWER}
+    return TEMPLATE.substitute(facts=progress_note(record) + lines, scenes=overview(scenes) + body,
+                               **{name: f"{100 * value:.0f}" for name, value in percents.items()})
 
 
 def write_csv(file, record):

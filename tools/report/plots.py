@@ -9,10 +9,11 @@ matplotlib.use("svg")
 import numpy as np
 from matplotlib import image, pyplot, ticker
 
-# Okabe and Ito's colours, which can be told apart by everybody; peers are grey.
-COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#332288", "#999933"]  # as many as chapters
+# Okabe and Ito's colours, then Tol's, which can be told apart by everybody; peers are grey. A chapter has the next colour and the
+# next marker. As their numbers have no common factor, no two of 90 chapters look alike.
+COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#332288", "#999933", "#882255", "#44aa99"]
 PEER_COLOURS = ["#000000", "#666666", "#a0a0a0"]
-MARKERS = "osD^vPX*"
+MARKERS = "osD^vPX*<"
 DIFFERENCE_FACTOR = 4  # of difference images: full red or blue is a difference of a quarter of the reference's mean
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
@@ -29,6 +30,13 @@ def style_axis(axis, **labels):
     axis.grid(color="#dddddd", linewidth=0.8)
     axis.set_axisbelow(True)
     axis.spines[["top", "right"]].set_visible(False)
+
+
+def save_figure(figure, path, dpi=100, **options):
+    """Writes a figure into a file, whose folder is made, and closes it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=dpi, **options)
+    pyplot.close(figure)
 
 
 def plot_errors(scene, styles):
@@ -71,7 +79,7 @@ def png_uri(pixels):
 
 
 def encode_srgb(radiance):
-    """As the chapters' PNG files: sRGB, what is brighter than white cut off. Numbers in [0, 1]."""
+    """sRGB as in the chapters' PNG files: numbers in [0, 1], and what is brighter than white is 1."""
     linear = np.clip(radiance, 0, 1)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
@@ -81,7 +89,7 @@ def picture(radiance):
 
 
 def relative_difference(radiance, reference):
-    """Of each pixel's luminance, as part of the reference's mean."""
+    """The difference of each pixel's luminance, as part of the reference's mean."""
     return (radiance - reference) @ LUMINANCE / ((reference @ LUMINANCE).mean() or 1)
 
 
