@@ -26,8 +26,16 @@ SEEDS, SURE = 8, 6  # renders for each estimate; standard deviations that make a
 
 
 class FirstStepsTest(RenderTest):
+    pictures = {}  # what has been rendered, for all tests
+
     def show(self, step, *arguments, scene="cornell_box"):
         """What a step, or chapter 1 for None, renders: [height, width, 3]."""
+        key = (step, *arguments, scene)
+        if key not in self.pictures:
+            self.pictures[key] = self.rendered(step, *arguments, scene=scene)
+        return self.pictures[key]
+
+    def rendered(self, step, *arguments, scene):
         file = self.folder / "picture.exr"
         command = self.command("--quiet", "--output", file, *arguments, scene=scene, size=(SIZE, SIZE))
         with program_with(CHAPTER.name, SHADERS[step]) if step else nullcontext(CHAPTER) as program:
