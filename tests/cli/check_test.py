@@ -60,14 +60,14 @@ class CheckTest(ProgramTest):
         for options, is_named in (((), False), (("--teacher",), True)):
             code, out, err = self.check(3, "--runs", 5, "--samples", 4, *options, file)
             self.assertEqual(code, 1, err)
-            self.assertRegex(out, r"\ASo far +[^\n]*is too ")
+            self.assertRegex(out, r"\Aso far +[^\n]*is too ")
             self.assertRegex(out, r"ask yourself .*twice as far away\?")
             self.assertRegex(out, r"read again .*Next Event Estimation")
             self.assertEqual("distance-not-squared" in out, is_named, out)
 
     def test_tells_early_what_is_sure(self):
         """That of a shader with a mistake is told where a teacher gets its name."""
-        self.assertRegex(self.check(3, "--runs", 5, "--samples", 4)[1], r"\ASo far +[^\n]*no picture is wrong by")
+        self.assertRegex(self.check(3, "--runs", 5, "--samples", 4)[1], r"\Aso far +[^\n]*no picture is wrong by")
 
     def test_the_chapters_own_noise_is_compared_render_by_render(self):
         result = json.loads(self.check(3, "--runs", 3, "--json")[1])
