@@ -43,8 +43,8 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
 }
 
 LightSampling light_sampling_of(const RenderSettings& settings) {
-    const auto& [file, observed] = std::tie(settings.estimator.file, settings.estimator.observed);
-    const auto folder = (observed.empty() ? file : observed).parent_path();
+    const Estimator& estimator = settings.estimator;
+    const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
     const bool samples_probe = std::filesystem::exists(folder / "chapter.json") &&
                                load_chapter(folder.filename().string()).light_probe_sampling;
     return samples_probe && settings.light_sampling == LightSampling::on ? LightSampling::with_probe

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from check.formats import as_gradescope, as_github
 from check.folder import UNGRADED, grade_all
-from check.grading import MOST_RUNS, RUNS, SAYS, SCENES, first_seed, judge
+from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
 from check.likely_mistake import likely_mistake
 from check.pictures import draw
 from check.words import explain, hint_lines, scene_words, tell_early
@@ -59,7 +59,7 @@ def refuse(options):
     """UserError where a check cannot begin."""
     if options.chapter not in SCENES:
         raise UserError(f"there is no chapter {options.chapter} to be checked: ./lab check N FILE grades a file as chapter N's")
-    if options.samples and SAYS[options.chapter].get("low_discrepancy"):
+    if options.samples and DESCRIPTIONS[options.chapter].get("low_discrepancy"):
         raise UserError(f"--samples: in chapter {options.chapter} the error per sample depends on how many there are: leave it out")
     if options.folder and (options.file or options.form):
         raise UserError("--all grades a folder into results.csv: leave out the file and the form of the output")

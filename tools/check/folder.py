@@ -39,8 +39,8 @@ def submissions(folder):
 
 
 def digest(options, sources, file):
-    """A digest of a shader and of what it is graded with: a result with the same one stays. `sources` are digests of what is the same for
-    all."""
+    """A digest of a shader and of what it is graded with: a result with the same one stays. `sources` are digests of what
+    is the same for all."""
     settings = [sources, options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
     return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes()).hexdigest()
 

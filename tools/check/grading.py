@@ -20,13 +20,13 @@ from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
 KNOWLEDGE = Path(__file__).with_name("knowledge.json")
-SAYS = {number: description(folder) for number, folder in CHAPTERS.items()}
+DESCRIPTIONS = {number: description(folder) for number, folder in CHAPTERS.items()}
 # Of each chapter: samples of a run, and references that show what its shader does.
-SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in SAYS.items() if "check" in says}
+SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in DESCRIPTIONS.items() if "check" in says}
 # Roulette from the first bounce on and with a cap that matters: otherwise both hardly show. With a lower cap few samples
 # would decide a picture, since survivors of eight bounces count 1/cap^8, and no interval would hold.
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
-OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) else [] for number, says in SAYS.items()}
+OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) else [] for number, says in DESCRIPTIONS.items()}
 TILE = 16  # pixels
 FALSE_ALARMS = 0.001  # of all checks of correct shaders
 TOO_MUCH = 1.5  # times the error of a sample or its rays
@@ -38,9 +38,10 @@ VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first of any scene
 
 
 def first_seed(seed):
-    """The seed of the first run of a check with this --seed. Checks with different ones share no render. None has the seeds from MOST_RUNS + 1
-    to SEED_STEP: with those the signatures of mistakes were measured. The chapters' levels have the seeds of --seed 0, so that a
-    shader which calls for random numbers in the same order as the chapter's own is compared render by render."""
+    """The seed of the first run of a check with this --seed. Checks with different ones share no render. None has the seeds
+    from MOST_RUNS + 1 to SEED_STEP: with those the signatures of mistakes were measured. The chapters' levels have the seeds
+    of --seed 0, so that a shader which calls for random numbers in the same order as the chapter's own is compared render by
+    render."""
     return seed * SEED_STEP + 1
 
 
