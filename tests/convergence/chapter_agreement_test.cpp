@@ -16,6 +16,7 @@ struct Subject {
     Estimator estimator;
     uint32_t splitting_factor;
     uint32_t roulette_start = 1;
+    uint32_t paths_of_a_sample = 1;  // fewer samples have the same error
 };
 
 // Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
@@ -30,7 +31,7 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
     };
     const auto at_every_hit = [](const std::string& name, uint32_t s, uint32_t roulette_start) {
         return Subject{name + " at every hit, s = " + std::to_string(s), every_hit_estimator(), s,
-                       roulette_start};
+                       roulette_start, 2};
     };
     const uint32_t s = length == 1 ? 1 : length == 2 ? 5 : 3;
     std::vector<Pair> pairs;
@@ -76,7 +77,7 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
                        uint32_t seed) {
     RenderSettings settings{.width = size,
                             .height = size,
-                            .samples = samples,
+                            .samples = std::max(1u, samples / subject.paths_of_a_sample),
                             .max_path_length = length,
                             .seed = seed,
                             .splitting_factor = subject.splitting_factor,

@@ -54,6 +54,9 @@ TEST_P(Furnace, BoxShowsTheGeometricSeries) {
 }
 
 TEST_P(Furnace, SphereShowsTheGeometricSeries) {
+    // Without roulette chapter 5 is chapter 4; with it the box takes long enough.
+    if (GetParam() == "05_russian_roulette" && !runs_all_tests())
+        GTEST_SKIP() << "runs with ./lab test --all";
     const auto make_furnace = [](const Material& material) { return make_sphere(material, Facing::inwards); };
     expect_furnace(GetParam(), make_furnace, {0.45f, 0.3f, 0.1f}, {0.25f, 1.5f, 4}, {270, 1800, 850});
 }

@@ -141,9 +141,15 @@ void OnEachChapter::SetUp() {
     if (repeats_chapter_five(GetParam())) GTEST_SKIP() << "runs with ./lab test --all";
 }
 
+bool repeats_another(const std::string& chapter) {
+    // 4 without splitting is 3, 6 without glass is 5, 10 is 9, which is 8 but for the random numbers, and 8
+    // without light probes is 7.
+    constexpr std::array<uint32_t, 5> repeated{4, 6, 7, 8, 10};
+    return std::ranges::count(repeated, chapter_number(chapter)) > 0;
+}
+
 void OnEachOwnEstimator::SetUp() {
-    if (std::ranges::count(repeated_chapters, chapter_number(GetParam())) > 0 && !runs_all_tests())
-        GTEST_SKIP() << "runs with ./lab test --all";
+    if (repeats_another(GetParam()) && !runs_all_tests()) GTEST_SKIP() << "runs with ./lab test --all";
 }
 
 uint32_t chapter_number(const std::string& chapter) {

@@ -120,9 +120,8 @@ class OnEachChapter : public testing::TestWithParam<std::string> {
     void SetUp() override;
 };
 
-// Numbers of the chapters that are another one path by path, as RepeatedChapter shows: 4 without splitting is
-// 3, 6 without glass is 5, 10 is 9, which is 8 but for the random numbers, and 8 without light probes is 7.
-inline constexpr std::array<uint32_t, 5> repeated_chapters{4, 6, 7, 8, 10};
+// Whether a chapter is another one path by path, but for what it adds, as RepeatedChapter shows.
+bool repeats_another(const std::string& chapter);
 
 // Fixture of tests of expectations without splitting and glass: with those only with ./lab test --all.
 class OnEachOwnEstimator : public testing::TestWithParam<std::string> {
