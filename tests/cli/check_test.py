@@ -1,12 +1,17 @@
 """./lab check: verdicts on shaders that are right, wrong, broken or endless."""
 
+import contextlib
+import copy
 import csv
+import io
 import json
 import re
 import unittest
+from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
 import mistake
+from check import command
 from check.formats import as_github
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
@@ -26,6 +31,8 @@ exec '{program}' "$@"
 
 
 class CheckTest(ProgramTest):
+    judgements = {}  # of shaders that several forms of the output tell of
+
     def check(self, *arguments, **options):
         """Exit code, standard output and standard error."""
         return self.run_tool("check", *arguments, **options)
@@ -34,6 +41,25 @@ class CheckTest(ProgramTest):
         code, out, err = self.check(3, "--runs", 5, "--samples", 4, "--json", *arguments)
         self.assertIn(code, (0, 1), err)
         return code, json.loads(out)
+
+    def check_here(self, *arguments):
+        """Exit code and standard output of the same in this process, which judges a shader but once for all forms."""
+
+        def judge(chapter, file, options, watch):
+            text = file.read_text(encoding="utf-8")
+            if text not in self.judgements:
+                told = []
+                self.judgements[text] = judge_anew(chapter, file, options, watch=lambda cases: told.append(copy.deepcopy(cases))), told
+            judgement, told = self.judgements[text]
+            for cases in told:
+                watch(cases)
+            return copy.deepcopy(judgement)
+
+        judge_anew, words = command.judge, ["check", "3", "--runs", "5", "--samples", "4", *map(str, arguments)]
+        with mock.patch.object(command, "judge", judge), mock.patch("sys.argv", words), self.assertRaises(SystemExit) as end:
+            with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
+                command.main()
+        return end.exception.code, out.getvalue()
 
     def test_the_chapters_own_shader_is_correct(self):
         code, result = self.check_few()
@@ -58,8 +84,8 @@ class CheckTest(ProgramTest):
         text = SHADER.read_text(encoding="utf-8")
         file = self.write("mine.glsl", text.replace("/ (distance * distance)", "/ distance"))
         for options, is_named in (((), False), (("--teacher",), True)):
-            code, out, err = self.check(3, "--runs", 5, "--samples", 4, *options, file)
-            self.assertEqual(code, 1, err)
+            code, out = self.check_here(*options, file)
+            self.assertEqual(code, 1)
             self.assertRegex(out, r"\Aso far +[^\n]*is too ")
             self.assertRegex(out, r"ask yourself .*twice as far away\?")
             self.assertRegex(out, r"read again .*Next Event Estimation")
@@ -77,19 +103,18 @@ class CheckTest(ProgramTest):
 
     def test_for_gradescope_and_github(self):
         file = self.write("mine.glsl", SHADER.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
-        few = ("--runs", 5, "--samples", 4)
-        code, out, _ = self.check(3, *few, "--gradescope", "--points", 12, file)
+        code, out = self.check_here("--gradescope", "--points", 12, file)
         result = json.loads(out)
         self.assertEqual((code, [test["max_score"] for test in result["tests"]]), (1, [4, 4, 4]))
         self.assertEqual([test["score"] for test in result["tests"]], [0, 0, 4])  # the last scene has no lamps
         self.assertTrue({test["status"] for test in result["tests"]} <= {"passed", "failed"})
         self.assertIn("twice as far away", result["output"])
-        code, out, _ = self.check(3, *few, "--github", file)
+        code, out = self.check_here("--github", file)
         self.assertRegex(out, rf"(?m)^::error file={file},line=1,title=\S+ \S+::biased%0A")
         broken = self.write("broken.glsl", "// one\nvec3 path_trace(Ray ray, inout uvec2 seed) { return nothing; }\n")
         self.assertIn("file=%25%3A%2C.glsl,line=1,", as_github("biased", "%:,.glsl", None, []))
-        self.assertRegex(self.check(3, *few, "--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
-        result = json.loads(self.check(3, *few, "--gradescope", broken)[1])
+        self.assertRegex(self.check_here("--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
+        result = json.loads(self.check_here("--gradescope", broken)[1])
         self.assertEqual([(test["score"], test["max_score"]) for test in result["tests"]], [(0, 10)])
 
     def graded(self):
@@ -114,6 +139,7 @@ class CheckTest(ProgramTest):
         self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png"])
         self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
         first = {row["submission"]: row["seconds"] for row in table}
+        (self.folder / "all/carl.glsl").unlink()  # has been seen to be ended
         self.check(*command)
         again = {row["submission"]: row["seconds"] for row in self.graded()}
         self.assertEqual([first[name] for name in ("anna", "dora")], [again[name] for name in ("anna", "dora")], "not graded anew")

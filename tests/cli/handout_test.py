@@ -43,9 +43,8 @@ class HandoutTest(ProgramTest):
 
     def test_every_chapter_fails_before_and_passes_with_the_solution(self):
         # Each takes two checks. Those of the other chapters run with ./lab test --all.
-        for chapters in [()] if "LAB_TEST_ALL" in os.environ else [(3,), (len(CHAPTERS),)]:
-            result = self.handout("--verify", *chapters)
-            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        result = self.handout("--verify", *(() if "LAB_TEST_ALL" in os.environ else (3,)))
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def test_the_tree_has_nothing_of_later_chapters_and_no_solution(self):
         self.assertEqual(sorted({exercise["chapter"] for exercise in EXERCISES}), [int(name[:2]) for name in CHAPTERS])
