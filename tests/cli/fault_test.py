@@ -80,7 +80,7 @@ class FailingDevice(RenderTest):
         self.assertRegex(err, rf"\Aerror: [^\n]*{words}[^\n]*\n\Z")
 
     def test_a_lost_device_leaves_what_was_read_from_it(self):
-        self.refuse({"FAULT_LOSE_DEVICE_AFTER": "60"}, "--save-every=0.01", "--output=a.exr", words="Lost.*samples a pixel")
+        self.refuse({"FAULT_LOSE_DEVICE_AFTER": "30"}, "--save-every=0.01", "--output=a.exr", words="Lost.*samples a pixel")
         left = Exr(self.folder / "a.exr")
         samples = int(left.text("samples"))
         self.assertGreater(samples, 0)
@@ -101,7 +101,7 @@ class FailingDevice(RenderTest):
         """The exit code says what happened first."""
         file = self.folder / "folder" / "a.exr"
         command = self.command("--samples=4000000000", "--save-every=0.01", "--output", file, size=(64, 64))
-        with self.start(*command, environment={**FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "100"}) as process:
+        with self.start(*command, environment={**FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "50"}) as process:
             self.wait_for(file, process)
             remove(file.parent)
             _, err = process.communicate(timeout=60)

@@ -17,7 +17,7 @@ RenderParameters parameters_for(const Scene& scene, uint32_t max_path_length, ui
     return make_parameters(scene, settings);
 }
 
-class LiveVerdictOf : public OnEachChapter {};
+class LiveVerdictOf : public OnEachOwnEstimator {};
 INSTANTIATE_TEST_SUITE_P(, LiveVerdictOf, testing::ValuesIn(all_chapters), chapter_name);
 
 TEST_P(LiveVerdictOf, AgreesWithTheReference) {
