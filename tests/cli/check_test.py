@@ -1,17 +1,18 @@
 """./lab check: verdicts on shaders that are right, wrong, broken or endless."""
 
-import contextlib
-import copy
 import csv
-import io
 import json
 import re
 import unittest
+from contextlib import redirect_stderr, redirect_stdout
+from copy import deepcopy
+from io import StringIO
 from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
 import mistake
-from check import command
+import project
+from check import command, grading
 from check.formats import as_github
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
@@ -21,8 +22,7 @@ ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
     return vec3(sum);
 }
 """
-
-
+FEW = (3, "--runs", 5, "--samples", 4)
 # A chapter that notes its arguments.
 NOTING = """#!/bin/sh
 echo "$@" >>'{notes}'
@@ -31,35 +31,55 @@ exec '{program}' "$@"
 
 
 class CheckTest(ProgramTest):
-    judgements = {}  # of shaders that several forms of the output tell of
+    judged = {}  # what judge() has found, for all tests
 
-    def check(self, *arguments, **options):
-        """Exit code, standard output and standard error."""
-        return self.run_tool("check", *arguments, **options)
+    def setUp(self):
+        super().setUp()
+        self.judge = mock.Mock(side_effect=self.judge_once)
+        # One render at a time: the others then need not compile its shader as well.
+        for where, what, stand_in in ((command, "judge", self.judge), (grading, "JOBS", 1)):
+            patch = mock.patch.object(where, what, stand_in)
+            patch.start()
+            self.addCleanup(patch.stop)
+
+    def judge_once(self, chapter, file, settings, watch):
+        """judge(), which renders a shader once for all forms in which the command tells the same verdict."""
+        key = (file.read_bytes(), *grading.SCENES[chapter][1], *(settings[name] for name in ("runs", "samples", "first_seed")))
+        if key not in self.judged:
+            early = []
+            self.judged[key] = (*grading.judge(chapter, file, settings, watch=lambda cases: early.append(deepcopy(cases))), early)
+        result, pictures, early = deepcopy(self.judged[key])
+        for cases in early:
+            watch(cases)
+        return result | {"file": str(file)}, pictures
+
+    def check(self, *arguments):
+        """Exit code, standard output and standard error of the command, which runs in this process."""
+        out, err = StringIO(), StringIO()
+        with mock.patch("sys.argv", ["check", "--backend", "compute", *map(str, arguments)]), redirect_stdout(out), redirect_stderr(err):
+            with self.assertRaises(SystemExit) as end:
+                command.main()
+        return end.exception.code, out.getvalue(), err.getvalue()
 
     def check_few(self, *arguments):
-        code, out, err = self.check(3, "--runs", 5, "--samples", 4, "--json", *arguments)
+        code, out, err = self.check(*FEW, "--json", *arguments)
         self.assertIn(code, (0, 1), err)
         return code, json.loads(out)
 
-    def check_here(self, *arguments):
-        """Exit code and standard output of the same in this process, which judges a shader but once for all forms."""
+    def in_one_scene(self):
+        """Where what a test looks at shows as well in the first scene alone."""
+        return mock.patch.dict(grading.SCENES, {3: (4, ["check_room_2"])})
 
-        def judge(chapter, file, options, watch):
-            text = file.read_text(encoding="utf-8")
-            if text not in self.judgements:
-                told = []
-                self.judgements[text] = judge_anew(chapter, file, options, watch=lambda cases: told.append(copy.deepcopy(cases))), told
-            judgement, told = self.judgements[text]
-            for cases in told:
-                watch(cases)
-            return copy.deepcopy(judgement)
+    def wrong(self):
+        """A file with a mistake."""
+        return self.write("mine.glsl", SHADER.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
 
-        judge_anew, words = command.judge, ["check", "3", "--runs", "5", "--samples", "4", *map(str, arguments)]
-        with mock.patch.object(command, "judge", judge), mock.patch("sys.argv", words), self.assertRaises(SystemExit) as end:
-            with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()):
-                command.main()
-        return end.exception.code, out.getvalue()
+    def test_the_process_ends_with_the_verdict(self):
+        for arguments, expected, words in (((), 0, "no picture is wrong.* correct: "),
+                                           ((self.wrong(), "--teacher"), 1, "is too bright.* distance-not-squared: ")):
+            code, out, err = self.run_tool("check", 3, "--runs", 5, "--samples", 1, "--backend", "compute", *arguments)
+            self.assertEqual(code, expected, err)
+            self.assertRegex(out, rf"(?s)\Aso far +[^\n]*{words}")
 
     def test_the_chapters_own_shader_is_correct(self):
         code, result = self.check_few()
@@ -81,11 +101,9 @@ class CheckTest(ProgramTest):
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
 
     def test_a_teacher_gets_the_name_and_a_student_a_question(self):
-        text = SHADER.read_text(encoding="utf-8")
-        file = self.write("mine.glsl", text.replace("/ (distance * distance)", "/ distance"))
         for options, is_named in (((), False), (("--teacher",), True)):
-            code, out = self.check_here(*options, file)
-            self.assertEqual(code, 1)
+            code, out, err = self.check(*FEW, *options, self.wrong())
+            self.assertEqual(code, 1, err)
             self.assertRegex(out, r"\Aso far +[^\n]*is too ")
             self.assertRegex(out, r"ask yourself .*twice as far away\?")
             self.assertRegex(out, r"read again .*Next Event Estimation")
@@ -93,28 +111,28 @@ class CheckTest(ProgramTest):
 
     def test_tells_early_what_is_sure(self):
         """That of a shader with a mistake is told where a teacher gets its name."""
-        self.assertRegex(self.check(3, "--runs", 5, "--samples", 4)[1], r"\Aso far +[^\n]*no picture is wrong by")
+        self.assertRegex(self.check(*FEW)[1], r"\Aso far +[^\n]*no picture is wrong by")
 
     def test_the_chapters_own_noise_is_compared_render_by_render(self):
-        result = json.loads(self.check(3, "--runs", 3, "--json")[1])
+        result = json.loads(self.check(3, "--runs", 2, "--json")[1])
         for scene in result["scenes"]:
             self.assertAlmostEqual(scene["noise"][1], 1, delta=0.05, msg="the same random numbers")
             self.assertAlmostEqual(scene["noise"][2], 1, delta=0.05)
 
     def test_for_gradescope_and_github(self):
-        file = self.write("mine.glsl", SHADER.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
-        code, out = self.check_here("--gradescope", "--points", 12, file)
+        file = self.wrong()
+        code, out, _ = self.check(*FEW, "--gradescope", "--points", 12, file)
         result = json.loads(out)
         self.assertEqual((code, [test["max_score"] for test in result["tests"]]), (1, [4, 4, 4]))
         self.assertEqual([test["score"] for test in result["tests"]], [0, 0, 4])  # the last scene has no lamps
         self.assertTrue({test["status"] for test in result["tests"]} <= {"passed", "failed"})
         self.assertIn("twice as far away", result["output"])
-        code, out = self.check_here("--github", file)
+        code, out, _ = self.check(*FEW, "--github", file)
         self.assertRegex(out, rf"(?m)^::error file={file},line=1,title=\S+ \S+::biased%0A")
         broken = self.write("broken.glsl", "// one\nvec3 path_trace(Ray ray, inout uvec2 seed) { return nothing; }\n")
         self.assertIn("file=%25%3A%2C.glsl,line=1,", as_github("biased", "%:,.glsl", None, []))
-        self.assertRegex(self.check_here("--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
-        result = json.loads(self.check_here("--gradescope", broken)[1])
+        self.assertRegex(self.check(*FEW, "--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
+        result = json.loads(self.check(*FEW, "--gradescope", broken)[1])
         self.assertEqual([(test["score"], test["max_score"]) for test in result["tests"]], [(0, 10)])
 
     def graded(self):
@@ -127,30 +145,35 @@ class CheckTest(ProgramTest):
         self.write("all/bob.glsl", "nothing")
         self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # no rays
         (self.folder / "all/gone.glsl").symlink_to("nowhere")
-        self.write("all/carl.glsl", ENDLESS)
-        self.write("all/dora/path_trace.glsl", text.replace("/ (distance * distance)", "/ distance"))
-        command = (3, "--all", self.folder / "all", "--runs", 4, "--samples", 4, "--time-limit", 5, "--output", self.folder / "graded")
-        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "carl": "not graded", "dora": "biased"}
-        code, out, err = self.check(*command)
+        self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
+        grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
+        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "dora": "biased"}
+        code, out, err = self.check(*grade_all)
         self.assertEqual(code, 2, err)
         table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
         self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png"])
         self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
-        first = {row["submission"]: row["seconds"] for row in table}
-        (self.folder / "all/carl.glsl").unlink()  # has been seen to be ended
-        self.check(*command)
-        again = {row["submission"]: row["seconds"] for row in self.graded()}
-        self.assertEqual([first[name] for name in ("anna", "dora")], [again[name] for name in ("anna", "dora")], "not graded anew")
+
+        self.write("all/abe.glsl", ENDLESS)
+        self.judge.reset_mock()
+        self.assertEqual(self.check(*grade_all, "--time-limit", 1)[0], 2)
+        self.assertEqual([call.args[1].stem for call in self.judge.mock_calls], ["abe", "bob"], "the others are not graded anew")
+        rows = {row["submission"]: row for row in self.graded()}
+        self.assertEqual({name: row["verdict"] for name, row in rows.items()}, expected | {"abe": "not graded"})
+        self.assertRegex(rows["abe"]["error"], "ended after 1 s|device")
+        self.assertEqual([rows[row["submission"]] for row in table if row["verdict"] != "not graded"],
+                         [row for row in table if row["verdict"] != "not graded"])
 
     def test_a_shader_may_have_a_path_of_its_own(self):
         text = SHADER.read_text(encoding="utf-8")
         own = "struct Path { Ray ray; };\nPath start_path(Ray ray) { return Path(ray); }\nvec3 path_trace("
-        self.assertEqual(self.check_few(self.write("mine.glsl", text.replace("vec3 path_trace(", own)))[0], 0)
+        with self.in_one_scene():
+            self.assertEqual(self.check_few(self.write("mine.glsl", text.replace("vec3 path_trace(", own)))[0], 0)
 
     def test_memory_is_limited(self):
-        code, _, err = self.check(3, "--memory-limit", 0.1, "--runs", 2, "--samples", 1)
+        code, _, err = self.run_tool("check", 3, "--memory-limit", 0.1, "--runs", 2, "--samples", 1)
         self.assertEqual(code, 2)
         self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")
 
@@ -161,8 +184,8 @@ class CheckTest(ProgramTest):
         program.chmod(0o755)
         seeds = []
         for seed in (0, 1):
-            self.check(3, "--runs", 2 + seed, "--samples", 1, "--backend", "compute", "--seed", seed, "--time-limit", 100,
-                       environment={"LAB_BINARIES": str(program.parent)})
+            with mock.patch.object(project, "BINARIES", program.parent), self.in_one_scene():
+                self.check(3, "--runs", 2 + seed, "--samples", 1, "--seed", seed, "--time-limit", 100)
             notes = (self.folder / "notes").read_text()
             (self.folder / "notes").unlink()
             seeds.append(set(re.findall(r"--seed (\d+)", notes)))
@@ -177,7 +200,8 @@ class CheckTest(ProgramTest):
         geometry = "float geometry = "
         line = text[:text.index(geometry)].count("\n") + 1
         file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))
-        code, result = self.check_few(file)
+        with self.in_one_scene():
+            code, result = self.check_few(file)
         self.assertEqual((code, result["unfinished_line"], result["likely_mistake"]), (1, line, None))
 
     def test_more_noise_and_rays_than_needed_are_reported(self):
@@ -186,7 +210,8 @@ class CheckTest(ProgramTest):
             "vec3 path_trace(Ray ray, inout uvec2 seed) {\n"
             "    trace_path(ray, seed);\n"
             "    return get_random_numbers(seed).x < 0.5 ? 2.0 * trace_path(ray, seed) : vec3(0.0);\n}\n")
-        code, result = self.check_few(self.write("mine.glsl", text))
+        with self.in_one_scene():
+            code, result = self.check_few(self.write("mine.glsl", text))
         box = result["scenes"][0]
         self.assertEqual((code, box["verdict"]), (1, "noisy"), box["noise"])
         self.assertGreater(box["noise"][2], 2)  # it is 2 + (mean / deviation)² in each pixel
@@ -197,14 +222,14 @@ class CheckTest(ProgramTest):
         line = next(i for i, line in enumerate(lines) if "throughput = " in line)
         lines[line] = lines[line].replace(";", "")
         file = self.write("mine.glsl", "\n".join(lines) + "\n")
-        code, _, err = self.check(3, file)
+        code, _, err = self.run_tool("check", 3, file)
         self.assertEqual(code, 2)
         self.assertRegex(err, rf"\Aerror: [^\n]*{re.escape(str(file))}:{line + 2}: [^\n]+\n\Z")
 
     def test_an_endless_loop_is_ended(self):
-        code, _, err = self.check(3, self.write("endless.glsl", ENDLESS), "--time-limit", 3)
+        code, _, err = self.run_tool("check", 3, self.write("endless.glsl", ENDLESS), "--time-limit", 1)
         self.assertEqual(code, 2)
-        self.assertRegex(err, r"\Aerror: [^\n]*(ended after 3 s|device)[^\n]*\n\Z")
+        self.assertRegex(err, r"\Aerror: [^\n]*(ended after 1 s|device)[^\n]*\n\Z")
 
     def test_what_cannot_be_graded(self):
         for arguments in ((99,), (3, "nothing.glsl"), ("three",), (3, "--all", "nowhere"), (3, "--all", ".", SHADER)):

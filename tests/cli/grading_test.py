@@ -18,7 +18,7 @@ TEST_KEYS = {"name": str, "score": (int, float), "max_score": (int, float), "sta
 # The check of a chapter that is built already.
 LAB = """#!/bin/sh
 shift
-exec '{python}' '{tools}' check "$@" --runs 5 --samples 4
+exec '{python}' '{tools}' check "$@" --runs 5 --samples 1 --backend compute
 """
 
 

@@ -20,7 +20,6 @@ from check.formats import as_gradescope, as_github
 from check.folder import UNGRADED, grade_all
 from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
 from check.likely_mistake import likely_mistake
-from check.pictures import draw
 from check.words import explain, hint_lines, scene_words, tell_early
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number
 from report.measurement import relative
@@ -79,6 +78,7 @@ def check(options, file, picture=None):
         for mistake in (result["likely_mistake"] or {"mistakes": []})["mistakes"]:
             del mistake["name"]
     if picture or not is_correct:
+        from check.pictures import draw  # only here: Matplotlib takes longer to begin than all other modules together
         path = draw(result, pictures, picture or ROOT / f"output/check_{options.chapter}.png")
         result["picture"] = relative(path)
     return result

@@ -100,7 +100,8 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None):
                  for pair in find_references(scenes or own_scenes)]
         for case in cases:
             case |= {"invalid_samples": 0, "picture": 0}
-        work = [(run, i) for run in range(settings["runs"]) for i in range(len(cases))]
+        # The last scene first: the first two often are one, and renders that start together would compile its shader twice.
+        work = [(run, i) for run in range(settings["runs"]) for i in reversed(range(len(cases)))]
 
         limit, has_failed = PATIENCE * settings["time_limit"] * max(settings["runs"] / RUNS, 1), threading.Event()
 

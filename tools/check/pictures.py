@@ -11,7 +11,7 @@ def draw(result, pictures, path):
     """For each scene its mean picture, and below it each tile's difference from the reference; those that are sure have a
     frame. Returns the path of the file."""
     scenes = result["scenes"]
-    figure, axes = pyplot.subplots(2, len(scenes), figsize=(3.6 * len(scenes), 7), layout="constrained")
+    figure, axes = pyplot.subplots(2, len(scenes), figsize=(3.6 * len(scenes), 7), layout="constrained", squeeze=False)
     limit = min(1, max(abs(tile["value"]) for scene in scenes for tile in scene["tiles"]))
     for top, axis, scene, picture in zip(*axes, scenes, pictures):
         top.imshow(encode_srgb(np.nan_to_num(picture)))
