@@ -4,9 +4,12 @@ import contextlib
 import io
 import re
 import unittest
+from contextlib import redirect_stdout
+from io import StringIO
 from unittest import mock
 
-from program import PROJECT, ProgramTest  # first: it finds the tools
+from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
+import project
 from PIL import Image
 from course import bug, mistakes
 from project import CHAPTERS, UserError
@@ -23,11 +26,12 @@ def index_of(chapter, name):
 
 
 class BugTest(ProgramTest):
-    def bug(self, *arguments, **options):
-        """Standard output of ./lab bug."""
-        code, out, err = self.run_tool("bug", *arguments, **options)
-        self.assertEqual(code, 0, err)
-        return out
+    def bug(self, *arguments):
+        """Standard output of ./lab bug, which runs in this process."""
+        out = StringIO()
+        with mock.patch("sys.argv", ["bug", *map(str, arguments)]), redirect_stdout(out):
+            bug.main()
+        return out.getvalue()
 
     def test_lists_questions_and_no_name(self):
         for chapter in CHAPTERS:
@@ -65,7 +69,8 @@ class BugTest(ProgramTest):
                     self.assertIn(found.mistake["name"], checked)
 
     def test_the_answer_shows_the_lines(self):
-        out = self.bug(3, index_of(3, "distance-not-squared"), "--answer")
+        code, out, err = self.run_tool("bug", 3, index_of(3, "distance-not-squared"), "--answer")
+        self.assertEqual(code, 0, err)
         self.assertIn("1/r", out)
         self.assertIn("\ncaught by convergence.", out)
         self.assertRegex(out, r"\n- .*\(distance \* distance\);\n\+ .*distance;\n")
@@ -85,7 +90,8 @@ class BugTest(ProgramTest):
         self.assertGreater(red, 1.2 * blue)  # too bright
 
     def test_noise_is_no_bias(self):
-        out = self.bug(4, index_of(4, "identical-branches"), "--samples", 4, "--scene", "check_room_2", "--backend", "compute")
+        with mock.patch.dict("os.environ", UNOPTIMISED):
+            out = self.bug(4, index_of(4, "identical-branches"), "--samples", 4, "--scene", "textured_4", "--backend", "compute")
         self.assertRegex(out, r"verdict +noisy: \d[\d.]* times")
 
     def test_a_scene_without_reference_is_compared_with_the_right_picture(self):
@@ -105,7 +111,8 @@ class BugTest(ProgramTest):
         chapter = CHAPTERS[3]
         program = self.write(f"binaries/{chapter}", NOTING.format(folder=self.folder, chapter=chapter))
         program.chmod(0o755)
-        self.bug(3, 1, "--window", "--scene", "check_room_2", environment={"LAB_BINARIES": str(program.parent)})
+        with mock.patch.object(project, "BINARIES", program.parent):
+            self.bug(3, 1, "--window", "--scene", "check_room_2")
         arguments = (self.folder / "arguments").read_text()
         self.assertRegex(arguments, r"check_room\.json --window --max-path-length 2 ")
         self.assertEqual((self.folder / "shader").read_text(encoding="utf-8"), mistakes.bugs_of(3)[0].text)

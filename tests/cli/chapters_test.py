@@ -4,7 +4,7 @@ import json
 import unittest
 
 from image_files import Exr
-from program import BINARIES, PROJECT, ProgramTest, RenderTest
+from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest, RenderTest
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").iterdir() if path.is_dir())
 TINY = ["--width=16", "--height=16", "--samples=2", "--backend=compute"]
@@ -32,7 +32,7 @@ class EveryChapter(ProgramTest):
     def test_renders_its_default_scene(self):
         for chapter in CHAPTERS:
             with self.subTest(chapter=chapter):
-                out = self.render(*TINY, "--validation", program=BINARIES / chapter)
+                out = self.render(*TINY, "--validation", program=BINARIES / chapter, environment=UNOPTIMISED)
                 self.assertIn("validation     no complaints", out)
                 self.assertIn(f"output/{chapter}.png", out)
 
@@ -40,7 +40,7 @@ class EveryChapter(ProgramTest):
         for chapter in CHAPTERS:
             for view in ("normals", "idle-lanes"):
                 with self.subTest(chapter=chapter, view=view):
-                    self.render(*TINY, "--view", view, program=BINARIES / chapter)
+                    self.render(*TINY, "--view", view, program=BINARIES / chapter, environment=UNOPTIMISED)
 
     def test_refuses_glass_if_it_knows_no_dielectrics(self):
         for chapter in (chapter for chapter in CHAPTERS if not description(chapter).get("dielectrics")):

@@ -10,7 +10,7 @@ import time
 import unittest
 
 from image_files import Exr
-from program import CHAPTER, FAULT_LAYER, RenderTest
+from program import CHAPTER, FAULT_LAYER, UNOPTIMISED, RenderTest
 
 
 def remove(folder):
@@ -125,7 +125,7 @@ class SharedCache(RenderTest):
     def setUp(self):
         super().setUp()
         self.cache = self.folder / "cache"
-        self.environment = {"XDG_CACHE_HOME": str(self.cache)}
+        self.environment = {"XDG_CACHE_HOME": str(self.cache), **UNOPTIMISED}
 
     def render_at_once(self, names, backend):
         """Renders the same picture in several processes at once."""

@@ -18,6 +18,8 @@ BINARIES = Path(os.environ.get("LAB_BINARIES", PROJECT / "build" / "bin"))
 CHAPTER = BINARIES / "01_uniform_sampling"
 MERGE = BINARIES / "merge_images"
 FAULT_LAYER = {"VK_LAYER_PATH": str(BINARIES.parent / "layers"), "VK_INSTANCE_LAYERS": "VK_LAYER_LAB_fault"}
+# Mesa's driver for CPUs optimises a shader for longer than a tiny picture takes to render.
+UNOPTIMISED = {"GALLIVM_PERF": "nopt"}
 
 # A quad that faces +Z under a sky, small enough to be rendered in no time.
 QUAD_OBJ = """mtllib quad.mtl

@@ -3,29 +3,43 @@
 import re
 import shutil
 import unittest
+from contextlib import redirect_stdout
+from io import StringIO
+from unittest import mock
 
-from program import BINARIES, TOOLS, ProgramTest  # first: it finds the tools
+from program import BINARIES, TOOLS, UNOPTIMISED, ProgramTest  # first: it finds the tools
 import mistake
+from lesson import sample, sample_plots
 
 NAMES = ["1d", "kd", "numbers", "points", "blog-hash", "uniform-angles", "cosine", "light-point"]
 
 
 class SampleTest(ProgramTest):
+    def text(self, *arguments, **options):
+        """What is printed; nothing is drawn."""
+        with mock.patch.multiple(sample_plots, save_overview=mock.DEFAULT, save_point_sets=mock.DEFAULT):
+            return self.sample(*arguments, **options)
+
     def sample(self, *arguments, binaries=BINARIES):
-        code, out, err = self.run_tool("sample", *arguments, environment={"LAB_BINARIES": str(binaries)})
-        self.assertEqual(code, 0, err)
-        return out
+        """Standard output of the command, which runs in this process. Its picture is picture.png."""
+        out, words = StringIO(), ["sample", *arguments, f"--output={self.folder / 'picture.png'}"]
+        with (mock.patch("sys.argv", words), mock.patch.object(sample, "PROGRAM", binaries / "sample_points"),
+              mock.patch.dict("os.environ", UNOPTIMISED), redirect_stdout(out)):
+            sample.main()
+        return out.getvalue()
 
     def refuse(self, arguments, *words):
         self.assert_tool_refused(["sample", *arguments], *words)
 
     def test_names_are_listed(self):
-        self.assertEqual(re.findall(r"^  ([\w-]+)  ", self.sample(), re.MULTILINE), NAMES)
+        code, out, err = self.run_tool("sample")
+        self.assertEqual(code, 0, err)
+        self.assertEqual(re.findall(r"^  ([\w-]+)  ", out, re.MULTILINE), NAMES)
 
     def test_every_sampler_follows_its_density_and_finds_its_integral(self):
         for name in NAMES:
             with self.subTest(name=name):
-                out = self.sample(name, "--output=picture.png", "--seed=2")
+                out = self.sample(name, "--seed=2")
                 self.assertNotIn("too large", out)
                 # The last row of each integral: N, estimate, half of the 95 % interval, error.
                 rows = re.findall(r"^ +4096 +([\d.]+) +± ([\d.]+) +([+-][\d.]+)$", out, re.MULTILINE)
@@ -35,19 +49,19 @@ class SampleTest(ProgramTest):
                 self.assertEqual((self.folder / "picture.png").read_bytes()[:4], b"\x89PNG")
 
     def test_cosine_sampling_is_exact_for_the_cosine(self):
-        out = self.sample("cosine", "--output=picture.png")
+        out = self.text("cosine")
         self.assertRegex(out, r"(?m)^ +4096 +3\.141593 +± 0\.000000 +[+-]0\.000000$")
 
     def test_a_grid_is_worse_in_more_dimensions(self):
         """Corners of a grid err by about 1/(2n) with n points along each axis, so that 2^12 of them err by 2^(-12/k) / 2."""
         for dimensions in (2, 4):
-            out = self.sample("kd", f"--dimensions={dimensions}", "--output=picture.png")
+            out = self.text("kd", f"--dimensions={dimensions}")
             error = float(re.findall(r"^ +4096 +([\d.]+) +[\d.]+$", out, re.MULTILINE)[0])
             self.assertAlmostEqual(error * 2 ** (1 + 12 / dimensions), 1, delta=0.1)
 
     def slopes(self, **options):
         """Of the two integrals: slopes with points of a grid, random ones, Sobol's and scrambled ones."""
-        out = self.sample("points", "--output=picture.png", **options)
+        out = self.text("points", **options)
         return [list(map(float, line.split()[1:])) for line in out.splitlines() if line.split()[:1] == ["slope"]]
 
     def test_errors_with_scrambled_points_fall_fast(self):
@@ -74,7 +88,7 @@ class SampleTest(ProgramTest):
 
     def test_a_mistake_in_the_chapter_shows(self):
         binaries = self.tree_with("flat-hemisphere")
-        self.assertIn("too large for chance", self.sample("cosine", "--output=picture.png", binaries=binaries))
+        self.assertIn("too large for chance", self.text("cosine", binaries=binaries))
 
     def test_other_words_are_refused(self):
         self.refuse(["nothing"], "'nothing'", "cosine")

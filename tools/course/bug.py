@@ -17,7 +17,6 @@ import numpy as np
 from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, program_with
 from check.words import percent
 from course.mistakes import CATALOGUE, bugs_of, own_shader
-from docs.figure_plots import right_and_wrong
 from lesson import diff
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, show_progress
 from references.images import averaged, find_references, read_rgb, scene_file
@@ -108,6 +107,7 @@ def show(bug, index, scene, programs, options):
         show_progress(f"{('right', 'wrong')[len(images) - 1]} picture of {case['scene']}", len(images), len(cases), started)
     path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
     path.parent.mkdir(exist_ok=True)
+    from docs.figure_plots import right_and_wrong  # only here: Matplotlib takes longer to begin than all other modules together
     right_and_wrong(path, *images)
     for name, text in (("scene", f"{cases[0]['scene']}, {samples} samples per pixel"), ("verdict", verdict(*cases)),
                        ("question", bug.question), ("picture", path.relative_to(ROOT))):

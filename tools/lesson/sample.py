@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Callable
 
 import numpy as np
-from lesson import point_sets, sample_plots
+from lesson import point_sets
 from project import ROOT, Parser, UserError, number, program_file, run_program
 from report.numbers import CONFIDENCE, two_sided
 
@@ -163,6 +163,7 @@ def main():
         sets = draw_sets(options.seed, options.device)
         print("\n".join(point_sets.report(sets, COMPARED)))
     output = options.output or ROOT / f"output/sample_{options.name}.png"
+    from lesson import sample_plots  # only here: Matplotlib takes longer to begin than all other modules together
     try:
         if playground.is_pixel:
             sample_plots.save_point_sets(output, sets, COMPARED)
