@@ -1,7 +1,5 @@
 """./lab bug: the gallery gives no name away, each bug can be planted, and what is wrong shows."""
 
-import contextlib
-import io
 import re
 import unittest
 from contextlib import redirect_stdout
@@ -35,9 +33,7 @@ class BugTest(ProgramTest):
 
     def test_lists_questions_and_no_name(self):
         for chapter in CHAPTERS:
-            with mock.patch("sys.argv", ["bug", str(chapter)]), contextlib.redirect_stdout(io.StringIO()) as listed:
-                bug.main()
-            out, bugs = listed.getvalue(), mistakes.bugs_of(chapter)
+            out, bugs = self.bug(chapter), mistakes.bugs_of(chapter)
             self.assertEqual(out.splitlines()[:-1], [f"{index:3}  {found.question}" for index, found in enumerate(bugs, 1)])
             for found in bugs:
                 self.assertNotIn(found.mistake["name"], out)
