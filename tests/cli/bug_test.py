@@ -2,8 +2,6 @@
 
 import re
 import unittest
-from contextlib import redirect_stdout
-from io import StringIO
 from unittest import mock
 
 from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
@@ -26,10 +24,9 @@ def index_of(chapter, name):
 class BugTest(ProgramTest):
     def bug(self, *arguments):
         """Standard output of ./lab bug, which runs in this process."""
-        out = StringIO()
-        with mock.patch("sys.argv", ["bug", *map(str, arguments)]), redirect_stdout(out):
-            bug.main()
-        return out.getvalue()
+        code, out, err = self.run_here(bug.main, *arguments)
+        self.assertEqual(code, 0, err)
+        return out
 
     def test_lists_questions_and_no_name(self):
         for chapter in CHAPTERS:
@@ -121,9 +118,8 @@ class BugTest(ProgramTest):
         self.assert_tool_refused(["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene")
 
     def test_a_chapter_without_bugs_says_so(self):
-        with mock.patch.object(bug, "bugs_of", return_value=[]), mock.patch("sys.argv", ["bug", "1"]):
-            with self.assertRaisesRegex(UserError, "chapter 1 has no bugs"):
-                bug.main()
+        with mock.patch.object(bug, "bugs_of", return_value=[]), self.assertRaisesRegex(UserError, "chapter 1 has no bugs"):
+            self.bug(1)
 
 
 if __name__ == "__main__":

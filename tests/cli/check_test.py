@@ -4,9 +4,7 @@ import csv
 import json
 import re
 import unittest
-from contextlib import redirect_stderr, redirect_stdout
 from copy import deepcopy
-from io import StringIO
 from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
@@ -55,11 +53,7 @@ class CheckTest(ProgramTest):
 
     def check(self, *arguments):
         """Exit code, standard output and standard error of the command, which runs in this process."""
-        out, err = StringIO(), StringIO()
-        with mock.patch("sys.argv", ["check", "--backend", "compute", *map(str, arguments)]), redirect_stdout(out), redirect_stderr(err):
-            with self.assertRaises(SystemExit) as end:
-                command.main()
-        return end.exception.code, out.getvalue(), err.getvalue()
+        return self.run_here(command.main, "--backend", "compute", *arguments)
 
     def check_few(self, *arguments):
         code, out, err = self.check(*FEW, "--json", *arguments)

@@ -9,7 +9,10 @@ import sys
 import tempfile
 import time
 import unittest
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
+from unittest import mock
 
 from image_files import Exr, largest_ulp_difference
 from tools_path import PROJECT, TOOLS
@@ -107,6 +110,16 @@ class ProgramTest(unittest.TestCase):
 
     def run_tool(self, *arguments, **options):
         return self.run_program("-B", TOOLS, *arguments, program=sys.executable, **options)
+
+    def run_here(self, main, *arguments):
+        """Runs the main() of a command in this process; returns the same as run_program. Its errors reach the test."""
+        out, err, code = StringIO(), StringIO(), 0
+        with mock.patch("sys.argv", ["lab", *map(str, arguments)]), redirect_stdout(out), redirect_stderr(err):
+            try:
+                main()
+            except SystemExit as end:
+                code = end.code
+        return code, out.getvalue(), err.getvalue()
 
     def assert_tool_refused(self, arguments, *words, **options):
         self.assert_refused(["-B", TOOLS, *arguments], *words, program=sys.executable, **options)

@@ -3,8 +3,6 @@
 import re
 import shutil
 import unittest
-from contextlib import redirect_stdout
-from io import StringIO
 from unittest import mock
 
 from program import BINARIES, TOOLS, UNOPTIMISED, ProgramTest  # first: it finds the tools
@@ -22,11 +20,10 @@ class SampleTest(ProgramTest):
 
     def sample(self, *arguments, binaries=BINARIES):
         """Standard output of the command, which runs in this process. Its picture is picture.png."""
-        out, words = StringIO(), ["sample", *arguments, f"--output={self.folder / 'picture.png'}"]
-        with (mock.patch("sys.argv", words), mock.patch.object(sample, "PROGRAM", binaries / "sample_points"),
-              mock.patch.dict("os.environ", UNOPTIMISED), redirect_stdout(out)):
-            sample.main()
-        return out.getvalue()
+        with mock.patch.object(sample, "PROGRAM", binaries / "sample_points"), mock.patch.dict("os.environ", UNOPTIMISED):
+            code, out, err = self.run_here(sample.main, *arguments, f"--output={self.folder / 'picture.png'}")
+        self.assertEqual(code, 0, err)
+        return out
 
     def refuse(self, arguments, *words):
         self.assert_tool_refused(["sample", *arguments], *words)

@@ -16,7 +16,7 @@ struct Subject {
     Estimator estimator;
     uint32_t splitting_factor;
     uint32_t roulette_start = 1;
-    uint32_t paths_of_a_sample = 1;  // fewer samples have the same error
+    uint32_t samples_divisor = 1;  // where a sample has so many paths that fewer have the same error
 };
 
 // Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
@@ -77,7 +77,7 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
                        uint32_t seed) {
     RenderSettings settings{.width = size,
                             .height = size,
-                            .samples = std::max(1u, samples / subject.paths_of_a_sample),
+                            .samples = samples / subject.samples_divisor,
                             .max_path_length = length,
                             .seed = seed,
                             .splitting_factor = subject.splitting_factor,

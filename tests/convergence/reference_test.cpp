@@ -34,9 +34,9 @@ constexpr double tile_floor = 5e-4;
 
 // Chapters 1 and 2, which find lights by bounces, are held to 1 % of the image's mean, the others to 0.3 %;
 // less strictly what takes longest: glass with a small lamp, whose caustics bounces find by chance (chapter 6
-// shows a larger one every time), and the studio. Chapters
-// that RepeatedChapter shows to be another one, path by path, do not run every time: 3 and 4 are 5 without
-// splitting and roulette, 7 and 8 are 9 with random numbers instead of points, which need more samples.
+// shows a larger one every time), and the studio. Chapters that RepeatedChapter shows to be another one, path
+// by path, do not run every time: 3 and 4 are 5 without splitting and roulette, 7 and 8 are 9 with random
+// numbers instead of points, which need more samples.
 const std::vector<ReferenceCase> reference_cases{
     {"cornell_box_1", 1, 14, 0.01},
     {"cornell_box_1", 2, 14, 0.01},
