@@ -115,8 +115,9 @@ TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
         RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
         EXPECT_GE(total.g, 0.9 * size * size) << name;
-        // Most of them are slivers in the world, and slivers let a ray in 10^6 hit them again, as above.
-        EXPECT_LE(total.r, 5e-6 * total.g) << name;
+        // What the instance alone deforms are slivers in the world, and a ray in 10^6 hits those again, as
+        // above.
+        EXPECT_LE(total.r, before == mat3(1) ? 5e-6 * total.g : 0) << name;
     }
 }
 
