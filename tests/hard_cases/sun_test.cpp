@@ -138,6 +138,22 @@ TEST_P(SunCases, LampAndSunAddUp) {
                 0.02);
 }
 
+// A dim sky, found by light samples alone, beside a sun below the horizon that takes nearly all of them. In a
+// probe of this size the alias table has 2^23 entries, and nearly all keep one sample in thousands.
+TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable) {
+    Scene scene = sunny_floor();
+    const uint32_t columns = MAX_PROBE_CELL_COLUMNS, rows = MAX_PROBE_CELL_ROWS;
+    scene.light_probe = Image{columns, rows, std::vector<float>(size_t{3} * columns * rows, 1.0f)};
+    const size_t sun = 3 * (size_t{1500} * columns + 1000);
+    std::fill_n(scene.light_probe->pixels.begin() + static_cast<ptrdiff_t>(sun), 3, 1e10f);
+    for (const char* chapter : {"08_light_probes", "09_low_discrepancy_points"}) {
+        RenderSettings settings{.samples = 1024, .max_path_length = 1, .seed = 31};
+        settings.estimator = chapter_estimator(chapter);
+        settings.estimator.defines.push_back("ONLY_LIGHT_SAMPLES");
+        expect_mean(chapter, estimate_mean(pixel_means(render(scene, settings), 1)), 1, 0.25, 2);
+    }
+}
+
 TEST_P(SunCases, BlackProbesGiveNothing) {
     RenderSettings settings{.samples = 16, .max_path_length = 4, .backend = GetParam()};
     settings.estimator = chapter_estimator("08_light_probes");

@@ -1,14 +1,29 @@
 #version 460
-// choose_light_triangle() for given random states, and for those of different samples.
+// choose_light_triangle() for given random states, and for those of different samples. With LOW_DISCREPANCY it chooses with
+// one pair of words as in chapter 9, but the words are random.
 #define FEATURE_LIGHT_SAMPLING
 #include "inside/estimator_stub.glsl"
 
-layout(scalar, binding = 0) writeonly buffer Results { uint results[]; };
+struct Choice {
+    uint triangle;
+    vec2 u;  // of the point on it
+};
+
+layout(scalar, binding = 0) writeonly buffer Results { Choice results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {
     uvec2 key;  // of the random start states, where none are given
     uvec2 states[STATE_COUNT];
     LightTriangle light_triangles[];
 };
+#ifdef LOW_DISCREPANCY
+uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
+    return get_state(pixel_index, sample_index, key);
+}
+uvec2 get_random_words(inout uvec2 seed) {
+    advance_random_state(seed);
+    return seed;
+}
+#endif
 #include "lights.glsl"
 
 layout(local_size_x = 128) in;
@@ -17,5 +32,5 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= results.length()) return;
     uvec2 seed = i < STATE_COUNT ? states[i] : random_start_state(i, 0u, key);
-    results[i] = choose_light_triangle(seed).triangle;
+    results[i].triangle = choose_light_triangle(seed, results[i].u).triangle;
 }

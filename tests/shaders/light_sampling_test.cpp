@@ -39,18 +39,24 @@ std::vector<LightTriangle> make_table(const std::vector<double>& weights) {
     return lights;
 }
 
-// The triangles that the device chooses: first after the given states of the random numbers (at least one),
-// then with the numbers of different samples.
-std::vector<uint32_t> choose(const std::vector<LightTriangle>& lights, const std::vector<RandomState>& states,
-                             size_t count, uint32_t run) {
+// As in light_choice.comp.
+struct Choice {
+    uint32_t triangle;
+    vec2 u;
+};
+
+// What the device chooses: first after the given states of the random numbers (at least one), then with the
+// numbers of different samples.
+std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::vector<RandomState>& states,
+                           size_t count, uint32_t run, std::vector<std::string> defines = {}) {
     std::vector<std::byte> inputs;
     const uvec2 key = seed_key(test_seed(run));
     append_bytes(inputs, std::span(&key, 1));
     append_bytes(inputs, std::span(states));
     append_bytes(inputs, std::span(lights));
-    std::vector<uint32_t> chosen(count);
-    run_shader({"light_choice.comp", {"STATE_COUNT " + std::to_string(states.size())}}, count,
-               std::as_writable_bytes(std::span(chosen)), inputs);
+    std::vector<Choice> chosen(count);
+    defines.push_back("STATE_COUNT " + std::to_string(states.size()));
+    run_shader({"light_choice.comp", defines}, count, std::as_writable_bytes(std::span(chosen)), inputs);
     return chosen;
 }
 
@@ -81,7 +87,7 @@ TEST(LightChoice, FollowsTheTableWordByWord) {
         }
         const auto chosen = choose(lights, states, states.size(), 0);
         for (size_t i = 0; i < states.size(); ++i)
-            ASSERT_EQ(chosen[i], expected[i]) << n << " lights, state " << i;
+            ASSERT_EQ(chosen[i].triangle, expected[i]) << n << " lights, state " << i;
     }
 }
 
@@ -95,10 +101,43 @@ TEST(LightChoice, HasTheProbabilitiesOfTheWeights) {
         std::vector<uint64_t> counts(n);
         const auto lights = make_table(weights);
         for (const uint32_t run : {1u, 2u})
-            for (const uint32_t triangle : choose(lights, {{1, 2}}, 8'000'000, run)) ++counts.at(triangle);
+            for (const Choice& choice : choose(lights, {{1, 2}}, 8'000'000, run))
+                ++counts.at(choice.triangle);
         expect_distribution(std::to_string(n) + " lights", counts, probabilities, 0.02);
         EXPECT_GT(counts.front(), 0u);
         EXPECT_GT(counts.back(), 0u);
+    }
+}
+
+// Chapter 9 chooses with a single pair of words. In large tables few words are left to an entry, and with 2^k
+// entries they are the same for all.
+TEST(LightChoice, ByOnePairOfWordsHasTheProbabilitiesOfDimLights) {
+    for (const size_t n : {size_t{1} << 20, size_t{1} << 22, size_t{3'000'000}}) {
+        std::vector<double> weights(n, 3e-4);
+        for (size_t i = 0; i < n; i += 4096) weights[i] = 4096;
+        double sum = 0;
+        for (const double weight : weights) sum += weight;
+        const auto choices = choose(make_table(weights), {{1, 2}}, 8'000'000, 3, {"LOW_DISCREPANCY"});
+        const auto dim =
+            std::ranges::count_if(choices, [](const Choice& c) { return c.triangle % 4096 != 0; });
+        const double bright = std::ceil(static_cast<double>(n) / 4096) * 4096 / sum;
+        const std::vector<uint64_t> counts{static_cast<uint64_t>(dim), choices.size() - dim};
+        expect_distribution(std::to_string(n) + " lights", counts, std::vector{1 - bright, bright}, 0.01);
+    }
+}
+
+TEST(LightChoice, LeavesUniformNumbers) {
+    for (const size_t n : {size_t{2}, size_t{1} << 22, size_t{3'000'000}}) {
+        std::vector<double> weights(n, 0.2);
+        for (size_t i = 0; i < n; i += 2) weights[i] = 1;
+        std::vector<double> numbers[2][2];
+        for (const auto& [triangle, u] :
+             choose(make_table(weights), {{1, 2}}, 1'000'000, 4, {"LOW_DISCREPANCY"}))
+            for (int axis = 0; axis < 2; ++axis) numbers[triangle % 2][axis].push_back(u[axis]);
+        for (const char* parity : {"even", "odd"})
+            for (int axis = 0; axis < 2; ++axis)
+                expect_uniform(std::to_string(n) + " lights, " + parity + ", number " + std::to_string(axis),
+                               numbers[*parity == 'o'][axis], 0.01);
     }
 }
 
