@@ -1,5 +1,6 @@
 """Long renders: they stop when told to, lose nothing, and go on where they were."""
 
+import json
 import math
 import resource
 import shutil
@@ -9,7 +10,7 @@ import unittest
 from pathlib import Path
 
 from image_files import Exr, relative_mse
-from program import BINARIES, MERGE, PROJECT, RenderTest
+from program import BINARIES, MERGE, PROJECT, QUAD_JSON, QUAD_MTL, QUAD_OBJ, RenderTest
 
 
 class Interruption(RenderTest):
@@ -185,6 +186,18 @@ class StoppingEarly(RenderTest):
         self.assert_refused(command, "--first-sample", "--reference", program=chapter)
         for program, *more in ((chapter, "--reference=reference.exr"), (BINARIES / "08_light_probes",)):
             self.render(*command, *more, program=program)
+
+    def test_a_film_without_radiance_has_an_unknown_error(self):
+        """A lamp so tiny that no path has met it yet: what is black is not exact."""
+        self.write("lamp.obj", QUAD_OBJ.replace("quad.mtl", "lamp.mtl") + "v 0 0 4\nv 0 1e-4 4\nv 1e-4 0 4\nusemtl lamp\nf 5 6 7\n")
+        self.write("lamp.mtl", QUAD_MTL + "newmtl lamp\nKe 1e6 1e6 1e6\n")
+        scene = json.loads(QUAD_JSON) | {"meshes": [{"file": "lamp.obj"}], "background": {"radiance": [0, 0, 0]}}
+        self.write("lamp.json", json.dumps(scene))
+        picture = self.picture("a", "--samples=16", "--target-error=0.5", "--report=a.json", scene="lamp.json")
+        self.assertEqual(picture.text("samples"), "16")
+        rows = json.loads((self.folder / "a.json").read_text())["rows"]
+        self.assertEqual([row["samples"] for row in rows], [1, 2, 4, 8, 16])
+        self.assertEqual([(row["mean"], row["rel_mse"]) for row in rows], [([0, 0, 0], None)] * len(rows))
 
     def test_samples_limit_an_error_that_is_out_of_reach(self):
         self.assertEqual(self.picture("a", "--samples=12", "--target-error=1e-9").text("samples"), "12")
