@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "files/hash.h"
 #include "rendering/settings.h"
 
 namespace lab {
@@ -21,24 +22,26 @@ bool Inspection::have_tools(const Session& session) {
             message_.clear();
         } catch (const std::exception& error) {
             message_ = window_message(error);
-            failed_shader_hash_ = work_shader_hash_;
+            failed_hash_ = work_hash_;
         }
     }
     const WindowBuild& build = session.build();
     Options options = build.job.options;
     options.image.view = nullptr;
+    const Estimator estimator = make_estimator(session.chapter(), options);
+    uint64_t hash = hash_text(estimator.file.string(), build.shader_hash);
+    for (const auto& define : estimator.defines) hash = hash_text(define + "\n", hash);
     const auto wanted = std::make_shared<Tools>(Tools{.scene = build.job.scene,
                                                       .gpu_scene = build.gpu_scene,
                                                       .acceleration_structure = build.acceleration_structure,
-                                                      .estimator = make_estimator(session.chapter(), options),
-                                                      .shader_hash = build.shader_hash,
+                                                      .estimator = estimator,
+                                                      .hash = hash,
                                                       .image_size = build.job.parameters.image_size});
-    if (tools_ && tools_->acceleration_structure == wanted->acceleration_structure &&
-        tools_->shader_hash == wanted->shader_hash && tools_->estimator.file == wanted->estimator.file &&
+    if (tools_ && tools_->acceleration_structure == wanted->acceleration_structure && tools_->hash == hash &&
         tools_->image_size == wanted->image_size)
         return true;
-    if (wanted->shader_hash == failed_shader_hash_) return false;
-    work_shader_hash_ = wanted->shader_hash;
+    if (hash == failed_hash_) return false;
+    work_hash_ = hash;
     work_.start([&device = device_, wanted] {
         const AccelerationStructure& structure = *wanted->acceleration_structure;
         wanted->recorder =

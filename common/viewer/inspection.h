@@ -40,7 +40,7 @@ class Inspection {
         std::shared_ptr<const GpuScene> gpu_scene;
         std::shared_ptr<const AccelerationStructure> acceleration_structure;
         Estimator estimator;
-        uint64_t shader_hash;
+        uint64_t hash;  // of what they are compiled from
         uvec2 image_size;
         std::unique_ptr<PathRecorder> recorder = nullptr;
         std::unique_ptr<HemisphereView> hemisphere = nullptr;
@@ -51,8 +51,8 @@ class Inspection {
     std::optional<Selection> selection_, shown_;
     std::shared_ptr<Tools> tools_;
     BackgroundWork<std::shared_ptr<Tools>> work_;
-    uint64_t work_shader_hash_ = 0;  // that the tools in progress are for
-    uint64_t failed_shader_hash_ = 0;
+    uint64_t work_hash_ = 0;  // that the tools in progress are for
+    uint64_t failed_hash_ = 0;
     std::string message_;
     std::optional<RecordedPath> path_;
     RenderParameters parameters_{};

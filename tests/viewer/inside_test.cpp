@@ -171,6 +171,34 @@ TEST_F(InsideTest, AShaderThatCannotBeRecordedDoesNotSpeakForTheNext) {
     EXPECT_TRUE(inspection.path()) << inspection.message();
 }
 
+TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor) {
+    chapter_ = load_chapter("07_multiple_importance_sampling");
+    Options options = options_with_reference();
+    options.appearance.sample_count = 1;
+    open(options);
+    Inspection inspection(*device_);
+    inspection.select({40, 40});
+    vec3 before(0);
+    const auto expect_the_sample_of_the_render = [&](const char* what) {
+        session().change(options);
+        run_frames(1);
+        wait_until(what, [&] {
+            inspection.update(session(), 0.01);
+            return !session().is_building() && session().samples() == 1 && inspection.has_hemisphere();
+        });
+        const uvec2 pixel = inspection.selection()->pixel;
+        const vec3 rendered = saved_film("one.exr").pixels[pixel.y * 128 + pixel.x].sum;
+        EXPECT_EQ(rendered, inspection.path()->radiance) << what;
+        EXPECT_NE(rendered, before) << what;
+        before = rendered;
+    };
+    expect_the_sample_of_the_render("both strategies");
+    options.estimator.strategy = Strategy::light;
+    expect_the_sample_of_the_render("light samples");
+    options.light.background = vec3(1);
+    expect_the_sample_of_the_render("a background");
+}
+
 TEST_F(InsideTest, ASecondRenderIsGivenUpWithoutWaiting) {
     // A sheet of so many triangles that its tree takes a while.
     constexpr int size = 250;
