@@ -38,6 +38,12 @@ def description(folder):
     return read_json(ROOT / "chapters" / folder / "chapter.json")
 
 
+def has_low_discrepancy(program):
+    """Whether the samples of a pixel depend on each other: of a chapter's folder or a copy of its program, or something else."""
+    folder = Path(program).stem
+    return folder in CHAPTERS.values() and description(folder).get("low_discrepancy", False)
+
+
 # ---------------------------------------------------------------------------------------------- command lines
 class Parser(argparse.ArgumentParser):
     """`name` is the command's, `description` the text above its options."""

@@ -6,6 +6,7 @@ import unittest
 
 import tools_path  # noqa: F401  (first: it finds the others)
 import numpy as np
+from project import chapter_named
 from references.images import Reference
 from report import numbers
 
@@ -13,23 +14,25 @@ PIXELS = 16 * 16
 REFERENCE = {"mean": [0.5, 0.25, 0.125], "variance": [1e-10] * 3, "freedom": 63}
 
 
-def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent=-1.0, bias=0.0, deviation=0.2):
-    """Rows at 1, 2, 4, …: error × samples^exponent with noise, and image means with a deviation for one sample."""
+def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent=-1.0, bias=0.0, deviation=0.2,
+                  evenness=0.5):
+    """Rows at 1, 2, 4, …: error × samples^exponent with noise, and image means with a deviation for one sample, which falls with
+    samples^-evenness."""
     dice = random.Random(dice_seed)
     rows, done, sums = [], 0, [0.0] * 3
     while done < samples:
         added = max(done, 1)
         for channel, mean in enumerate(REFERENCE["mean"]):
-            sums[channel] += mean * (added * (1 + bias) + deviation * math.sqrt(added) * dice.gauss(0, 1))
+            sums[channel] += mean * (added * (1 + bias) + deviation * added ** (1 - evenness) * dice.gauss(0, 1))
         done += added
         rows.append({"samples": done, "seconds": seconds * done, "device_seconds": 0.5 * seconds * done, "rays": 3 * PIXELS * done,
                      "rel_mse": error * done**exponent * math.exp(noise * dice.gauss(0, 1)), "mean": [s / done for s in sums]})
     return {"command_seconds": rows[-1]["seconds"] + 0.3, "rows": rows}
 
 
-def synthetic_case(name, count=5, first_dice=1, **truth):
+def synthetic_case(name, count=5, first_dice=1, program="", **truth):
     runs = [synthetic_run(dice, **truth) | {"seed": seed} for seed, dice in enumerate(range(first_dice, first_dice + count), 1)]
-    return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": "", "options": "", "backend": "", "note": "", "refused": None,
+    return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": program, "options": "", "backend": "", "note": "", "refused": None,
             "width": 16, "height": 16, "scale": 1, "paths_per_sample": 1, "max_path_length": 3, "reference": REFERENCE, "runs": runs}
 
 
@@ -158,6 +161,20 @@ class ReportNumbersTest(unittest.TestCase):
             case = summary(synthetic_case("a", first_dice=10 * trial))["cases"][0]
             alarms += any(channel["is_biased"] for channel in case["bias"])
         self.assertLessEqual(alarms, 5)  # 1 % is expected
+
+    def test_points_that_are_spread_evenly_have_the_error_of_their_scrambles(self):
+        """How far the means of reports scatter, and what each of them says of it."""
+        for program, evenness in (("", 0.5), (chapter_named("low_discrepancy_points"), 0.75)):
+            with self.subTest(evenness=evenness):
+                values, variances = [], []
+                for trial in range(1000):
+                    case = synthetic_case("a", first_dice=10 * trial, program=program, evenness=evenness)
+                    runs = numbers.runs_in_batches(case)
+                    test = numbers.biases(runs, REFERENCE, 1)[0]
+                    freedom = sum(len(run["rows"]) for run in runs) - 1
+                    values.append(test["value"])
+                    variances.append((test["half_width"] / numbers.two_sided(numbers.CONFIDENCE, freedom)) ** 2)
+                self.assertAlmostEqual(np.mean(variances) / np.var(values), 1, delta=0.2)
 
     def share_called_biased(self, runs, bias, part, level, trials=40000):
         """Of many tests at once, each of a render of its own and a reference of its own with `part` of the render's noise; what is

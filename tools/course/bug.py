@@ -18,12 +18,13 @@ from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, program_with
 from check.words import percent
 from course.mistakes import CATALOGUE, bugs_of, own_shader
 from lesson import diff
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, show_progress
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, has_low_discrepancy, number, show_progress
 from references.images import averaged, find_references, read_rgb, scene_file
 from report.measurement import new_case, run_case
-from report.numbers import batches, biases
+from report.numbers import batches, biases, last_rows, mean_of, runs_in_batches
 
 SCALE = 2  # pixels in a row for each of the reference's
+SCRAMBLES = 4  # of low-discrepancy points
 COLOURS = ("red", "green", "blue")
 
 
@@ -57,12 +58,18 @@ def new_render(chapter, scene, program):
 
 
 def render(case, samples, options):
-    """Adds a run to a case; returns the image."""
+    """Adds runs to a case; returns the mean image. Where samples depend on each other, several runs tell the error."""
+    runs = min(SCRAMBLES, samples) if has_low_discrepancy(case["program"]) else 1
+    case |= {"runs": [], "invalid_samples": 0}
+    pictures = []
     with tempfile.TemporaryDirectory() as folder:
         picture = Path(folder) / "picture.exr"
-        report = run_case(case, vars(options), ["--samples", samples, "--seed", 1, "--output", picture])
-        case |= {"runs": [{"seed": 1, "rows": report["rows"]}], "invalid_samples": report["invalid_samples"]}
-        return read_rgb(picture)
+        for seed in range(1, runs + 1):
+            report = run_case(case, vars(options), ["--samples", samples // runs, "--seed", seed, "--output", picture])
+            case["runs"].append({"seed": seed, "rows": report["rows"]})
+            case["invalid_samples"] += report["invalid_samples"]
+            pictures.append(read_rgb(picture))
+    return np.mean(pictures, axis=0)
 
 
 def telling_scene(chapter, programs, options):
@@ -76,7 +83,7 @@ def telling_scene(chapter, programs, options):
 
 def as_reference(case):
     """The mean of a render for scenes that have no reference, as biases() wants it."""
-    counts, means = batches(case["runs"])
+    counts, means = batches(runs_in_batches(case))
     mean, freedom = counts @ means / counts.sum(), len(counts) - 1
     return {"mean": mean, "variance": counts @ (means - mean) ** 2 / freedom / counts.sum(), "freedom": freedom}
 
@@ -85,15 +92,15 @@ def verdict(right, wrong):
     """What shows of two cases with so many samples, in a line."""
     if wrong["invalid_samples"]:
         return f"broken: {wrong['invalid_samples']} samples infinite or not a number"
-    tests = biases(wrong["runs"], wrong["reference"] or as_reference(right), len(COLOURS))
+    tests = biases(runs_in_batches(wrong), wrong["reference"] or as_reference(right), len(COLOURS))
     means = ", ".join(f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.2g} %" for colour, test in zip(COLOURS, tests))
     means += "" if wrong["reference"] else " against the right picture, since the scene has no reference"
     if any(test["is_biased"] for test in tests):
         return f"biased: {means}"
-    last, own = (case["runs"][0]["rows"][-1] for case in (wrong, right))
     for key, text in (("rel_mse", "noisy: {:.1f} times the error of the right picture"), ("rays", "expensive: {:.1f} times its rays")):
-        if (last[key] or 0) > TOO_MUCH * (own[key] or math.inf):  # a picture without noise has none to compare with
-            return f"{text.format(last[key] / own[key])}, the mean agrees: {means}"
+        now, own = (mean_of(last_rows(case["runs"]), key) for case in (wrong, right))
+        if (now or 0) > TOO_MUCH * (own or math.inf):  # a picture without noise has none to compare with
+            return f"{text.format(now / own)}, the mean agrees: {means}"
     return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would show"
 
 
@@ -109,7 +116,8 @@ def show(bug, index, scene, programs, options):
     path.parent.mkdir(exist_ok=True)
     from docs.figure_plots import right_and_wrong  # only here: Matplotlib takes longer to begin than all other modules together
     right_and_wrong(path, *images)
-    for name, text in (("scene", f"{cases[0]['scene']}, {samples} samples per pixel"), ("verdict", verdict(*cases)),
+    taken = sum(row["samples"] for row in last_rows(cases[0]["runs"]))
+    for name, text in (("scene", f"{cases[0]['scene']}, {taken} samples per pixel"), ("verdict", verdict(*cases)),
                        ("question", bug.question), ("picture", path.relative_to(ROOT))):
         print(f"{name:10} {text}")
 

@@ -13,8 +13,8 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, last_line, program_file, read_json,
-                     run_program, show_progress, write_json)
+from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, has_low_discrepancy, last_line, program_file,
+                     read_json, run_program, show_progress, write_json)
 from references.images import averaged, read_reference, read_rgb, rel_mse
 
 PILOT_PART = 0.3  # of a run's seconds: tells how many samples a run takes
@@ -274,7 +274,7 @@ class Measurement:
             return
         row = report["rows"][-1]
         samples = max(1, round(row["samples"] * self.run_seconds() / row["seconds"]))
-        if not case["reference_file"]:
+        if not case["reference_file"] or has_low_discrepancy(case["program"]):
             samples = max(2, 1 << (samples.bit_length() - 1))  # both halves of them must be in the rows
         case |= {"samples": samples, "backend": report["backend"], "note": report.get("note", "")}
         branches = re.search(r"--splitting-factor (\d+)", report.get("settings", ""))

@@ -9,6 +9,7 @@ from statistics import median
 from typing import NamedTuple
 
 import numpy as np
+from project import has_low_discrepancy
 from scipy.special import nctdtrinc, stdtrit
 
 CONFIDENCE = 0.95
@@ -169,6 +170,19 @@ def slope(case, key):
     return [mean, mean - half, mean + half]
 
 
+def runs_in_batches(case):
+    """The runs of a case with the rows from one to the next of which it added samples whose mean has a variance like 1 / their
+    number. That of low-discrepancy points falls faster: of them only the two halves are kept, which have independent scrambles,
+    or the whole run where its samples are no power of two."""
+    if not has_low_discrepancy(case["program"]):
+        return case["runs"]
+    kept = []
+    for run in case["runs"]:
+        halves = run["rows"][-2:]
+        kept.append({"rows": halves if halves[-1]["samples"] == 2 * halves[0]["samples"] else halves[-1:]})
+    return kept
+
+
 def batches(runs):
     """Samples [batch] and means [batch, channel] of what each run added from one row to the next: independent of each other."""
     counts, means = [], []
@@ -185,7 +199,8 @@ def batches(runs):
 def biases(runs, reference, comparisons):
     """The test for bias of each channel's mean over the image: difference from the reference as part of it.
 
-    The batches' variance is that of one sample over their sizes; the reference's own counts as well. `comparisons` such tests
+    The batches' variance is that of one sample over their sizes, or they all have equally many: then it may differ between first
+    and second halves. The reference's own counts as well. `comparisons` such tests
     together raise a false alarm in FALSE_ALARMS of all reports. `detectable` is the smallest bias that is found with the
     probability POWER, by the noncentral t-distribution, where noise is what it was estimated to be.
     """
@@ -237,7 +252,7 @@ def summarize_case(case, base, comparisons):
         if summary[key] and base["runs"]:
             summary[name] = [1.0, None, None] if case is base else paired_ratio(errors(base, key), errors(case, key))
     summary["seconds_to_target"], summary["start_up_seconds"] = seconds_to_target(case)
-    summary["bias"] = biases(case["runs"], case["reference"], comparisons)
+    summary["bias"] = biases(runs_in_batches(case), case["reference"], comparisons)
     return summary
 
 
