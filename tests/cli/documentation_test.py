@@ -136,6 +136,8 @@ class DocumentationTest(unittest.TestCase):
 
     def test_results_are_what_the_records_say(self):
         subprocess.run([sys.executable, "-B", TOOLS, "tables", "--check"], check=True)
+        for page in PAGES:
+            self.assertNotRegex(text_of(page), r"<!-- table: .* -->\n\s*<!-- end of table -->", page)
 
     def test_every_numerical_trap_has_tests_that_exist(self):
         cases = numerics.load_cases()

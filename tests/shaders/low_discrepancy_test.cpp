@@ -117,9 +117,8 @@ TEST(LowDiscrepancyPoints, AreUniformWithinTheirStrata) {
 }
 
 // Of two words of the same 64 samples in each of many pixels: the mean square of their coefficient of
-// correlation, times
-// 63. It is 1 where their orders are independent permutations. Where neighbours stay together, as here, it is
-// below 2. Where one order decides the other it is dozens.
+// correlation, times 63. It is 1 where their orders are independent permutations. Where neighbours stay
+// together, as here, it is below 2. Where one order decides the other it is dozens.
 template <typename First, typename Second>
 MeanEstimate shared_order(uint32_t pixels, First first, Second second) {
     constexpr uint32_t count = 64;
@@ -162,6 +161,22 @@ TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndScramblesAreIndependent) {
     expect_independent("the next scramble", shared_order(pixels, own, [&](uint32_t p, uint32_t i) {
                            return later.number(p, i, 1, 1);
                        }));
+}
+
+// What the chapter's page says of functions of two pairs: in the worst case neighbours agree.
+TEST(LowDiscrepancyPoints, ProductsOfSignsOfTwoPairsHaveTwiceTheVarianceOfRandomOnes) {
+    constexpr uint32_t pixels = 4096, count = 64;
+    const Points points(pixels, count, 2 * count, 150);
+    const auto sign = [&](uint32_t p, uint32_t i, uint32_t pair) {
+        return points.number(p, i, pair, 0) < 0.5 ? -1.0 : 1.0;
+    };
+    std::vector<double> squares;  // of a pixel's sum; for random numbers their mean is the count
+    for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
+        double sum = 0;
+        for (uint32_t i = 0; i < count; ++i) sum += sign(pixel, i, 1) * sign(pixel, i, 2);
+        squares.push_back(sum * sum / count);
+    }
+    expect_mean("variance over that of random numbers", estimate_mean(squares), 2, 0.2);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ from report.numbers import errors, paired_ratio, per_sample, with_interval, with
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
-TABLE = re.compile(r"(<!-- table: ([\w -]+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+TABLE = re.compile(r"(<!-- table: ([^\n]+?) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 KINDS = ("chapter", "splitting factor", "roulette start", "survival weight", "points, survival weight", "light sampling", "strategy",
          "splitting at every hit")
