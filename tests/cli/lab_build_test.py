@@ -1,0 +1,65 @@
+"""How ./lab builds: in a project of its own, whose programs take no time to compile."""
+
+import shutil
+import unittest
+
+from program import PROJECT, ProgramTest
+
+# A build that takes a second and fails while another one is under way.
+CMAKE = """cmake_minimum_required(VERSION 3.25)
+project(path_tracing_lab LANGUAGES NONE)
+add_custom_target(01_first COMMAND mkdir ${CMAKE_BINARY_DIR}/busy && sleep 1
+                  COMMAND ${CMAKE_COMMAND} -E copy ${CMAKE_SOURCE_DIR}/01_first ${CMAKE_BINARY_DIR}/bin/01_first
+                  COMMAND rmdir ${CMAKE_BINARY_DIR}/busy)
+"""
+
+
+class LabBuildTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.tree = self.folder / "lab"
+        (self.tree / "chapters/01_first").mkdir(parents=True)
+        for name in ("lab", "CMakePresets.json"):
+            shutil.copy(PROJECT / name, self.tree / name)
+        self.write("lab/CMakeLists.txt", CMAKE)
+        self.program_says("first")
+
+    def program_says(self, text, tree="lab"):
+        self.write(f"{tree}/01_first", f"#!/bin/sh\necho {text}\n").chmod(0o755)
+
+    def run_chapter(self, lab):
+        return self.render("run", 1, program=lab)
+
+    def test_a_renamed_checkout_builds(self):
+        self.assertEqual(self.run_chapter(self.tree / "lab"), "first\n")
+        renamed = self.tree.rename(self.folder / "renamed")
+        self.assertEqual(self.run_chapter(renamed / "lab"), "first\n")
+
+    def test_a_copied_checkout_builds_its_own_sources(self):
+        self.run_chapter(self.tree / "lab")
+        shutil.copytree(self.tree, self.folder / "copy")
+        self.program_says("copied", "copy")
+        self.assertEqual(self.run_chapter(self.folder / "copy/lab"), "copied\n")
+        self.assertEqual(self.run_chapter(self.tree / "lab"), "first\n")
+
+    def test_a_link_finds_the_checkout(self):
+        (self.folder / "link").symlink_to(self.tree / "lab")
+        self.assertEqual(self.run_chapter(self.folder / "link"), "first\n")
+
+    def test_commands_that_begin_together_build_one_after_the_other(self):
+        both = [self.start("run", 1, program=self.tree / "lab") for _ in range(2)]
+        ends = [process.communicate() for process in both]
+        self.assertEqual([(process.returncode, out) for process, (out, _) in zip(both, ends)], [(0, "first\n")] * 2, ends)
+        self.assertEqual(sum("waiting for another ./lab" in err for _, err in ends), 1, ends)
+
+    def test_nobody_waits_for_a_program_that_runs(self):
+        self.write("lab/01_first", "#!/bin/sh\necho first\nsleep 60\n").chmod(0o755)
+        with self.start("run", 1, program=self.tree / "lab") as first:
+            self.assertEqual(first.stdout.readline(), "first\n")
+            self.program_says("second")
+            self.assertEqual(self.run_chapter(self.tree / "lab"), "second\n")
+            first.terminate()
+
+
+if __name__ == "__main__":
+    unittest.main()
