@@ -47,7 +47,8 @@ void check_scene(const Chapter& chapter, const Scene& scene) {
 std::optional<ErrorMetrics> RenderJob::error_from(const FilmImage& half, const FilmImage& whole) const {
     const uint32_t before = half.min_samples();
     if (!has_independent_halves() || before == 0 || whole.min_samples() != 2 * before) return std::nullopt;
-    if (whole.mean_radiance() == std::array<double, 3>{}) return std::nullopt;  // black halves agree by chance
+    if (whole.mean_radiance() == std::array<double, 3>{})
+        return std::nullopt;  // black halves agree by chance
     return estimate_error(half.mean(), samples_after(half, whole).mean());
 }
 

@@ -22,8 +22,8 @@ struct RenderJob {
     // Whether the first half of 2^k samples is independent of the second, so that they tell the error. Of
     // low-discrepancy points samples 2^k to 2^(k+1) - 1 share a scramble, counted from 0.
     bool has_independent_halves() const { return !low_discrepancy || record.first_sample == 0; }
-    // The error of a film, told from an earlier state of it that has half the samples. Unknown for others, and
-    // for films in which no sample has found light yet.
+    // The error of a film, told from an earlier state of it that has half the samples. Unknown for others,
+    // and for films in which no sample has found light yet.
     std::optional<ErrorMetrics> error_from(const FilmImage& half, const FilmImage& whole) const;
 };
 

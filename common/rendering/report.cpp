@@ -69,7 +69,9 @@ void write_report(const std::filesystem::path& file, const FilmImage& image, con
                 {"rows", json::array()}};
     for (const auto& row : rows) report["rows"].push_back(to_json(row));
     const bool is_csv = lower_case_extension(file) == ".csv";
-    const std::string text = is_csv ? to_csv(report["rows"]) : report.dump(2) + "\n";
+    // The name of a scene may be any bytes; JSON is UTF-8.
+    const std::string text =
+        is_csv ? to_csv(report["rows"]) : report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
     write_file(file, text);
 }
 

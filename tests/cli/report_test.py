@@ -3,10 +3,11 @@
 import csv
 import json
 import math
+import os
 import unittest
 
 from image_files import Exr, relative_mse
-from program import PROJECT, RenderTest
+from program import PROJECT, QUAD_JSON, RenderTest
 
 FIELDS = ["samples", "seconds", "device_seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
 
@@ -24,6 +25,12 @@ class Report(RenderTest):
         for row in report["rows"]:
             for name in FIELDS:
                 self.assertIn(name, row)
+
+    def test_the_name_of_a_scene_need_not_be_utf_8(self):
+        name = os.fsdecode(b"b\xfcro.json")
+        (self.folder / name).write_text(QUAD_JSON)
+        self.picture("image", "--samples=1", "--report=report.json", scene=name)
+        self.assertEqual(json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["scene"], "b\ufffdro.json")
 
     def test_rows_at_powers_of_two(self):
         report = self.report("--samples=24")
