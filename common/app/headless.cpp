@@ -128,7 +128,7 @@ class HeadlessRender {
 
     bool is_accurate() const {
         return options_.target_error && !rows_.empty() && rows_.back().error &&
-               std::sqrt(rows_.back().error->rel_mse) <= *options_.target_error;
+               rows_.back().error->rel_rmse <= *options_.target_error;
     }
 
     void save_if_due() {
@@ -157,7 +157,10 @@ class HeadlessRender {
     }
 
     void add_row(uint32_t samples) {
-        if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
+        const bool is_for_summary =
+            !options_.quiet && 2 * uint64_t{samples} == job_.samples;  // tells its error
+        if (options_.report.empty() && !options_.target_error && !is_for_summary && samples < job_.samples)
+            return;
         const auto start = Clock::now();
         take_snapshot();
         rows_.push_back({.samples = samples,
@@ -197,7 +200,12 @@ class HeadlessRender {
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = record_.seconds - job_.record.seconds;
-        std::printf("mean radiance  %.5g %.5g %.5g (red, green, blue)\n", mean[0], mean[1], mean[2]);
+        // Pixels are independent of each other.
+        const std::optional<ErrorMetrics> error = rows_.empty() ? std::nullopt : rows_.back().error;
+        const double pixels = static_cast<double>(snapshot_.pixels.size());
+        std::printf("mean radiance  %.5g %.5g %.5g", mean[0], mean[1], mean[2]);
+        if (error) std::printf(" ± %.2g", std::sqrt(error->mse / pixels));
+        std::printf(" (red, green, blue%s)\n", error ? "; standard error" : "");
         std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(),
                     short_number(paths()).c_str(),
                     snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
@@ -207,10 +215,9 @@ class HeadlessRender {
         std::printf("acceleration   structure of %s bytes, built in %s\n",
                     short_number(static_cast<double>(acceleration_structure_.bytes())).c_str(),
                     duration_text(acceleration_structure_.build_seconds()).c_str());
-        if (!rows_.empty() && rows_.back().error)
+        if (error)
             std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n",
-                        100 * std::sqrt(rows_.back().error->rel_mse),
-                        reference_ ? "against the reference" : "estimated");
+                        100 * error->rel_rmse, reference_ ? "against the reference" : "estimated");
         if (snapshot_.invalid_samples() > 0)
             std::printf("invalid        %s\n", invalid_samples_text().c_str());
         for (const auto& file : options_.outputs) std::printf("picture        %s\n", file.string().c_str());

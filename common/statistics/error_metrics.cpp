@@ -39,7 +39,7 @@ ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, cons
     result.rel_mse_uncorrected = sums[1] / count;
     result.mse = std::max(result.mse_uncorrected - sums[2] / count, 0.0);
     result.rel_mse = std::max(result.rel_mse_uncorrected - sums[3] / count, 0.0);
-    result.rel_rmse = std::sqrt(result.mse) / (mean > 0 ? mean : 1);
+    result.rel_rmse = std::sqrt(result.rel_mse);
     return result;
 }
 

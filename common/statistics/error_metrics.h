@@ -14,7 +14,7 @@ namespace lab {
 struct ErrorMetrics {
     double mse = 0;                  // mean over pixels and channels of (x - r)^2
     double rel_mse = 0;              // mean of (x - r)^2 / (r^2 + 0.01 r̄^2), r̄ the mean of the reference
-    double rel_rmse = 0;             // sqrt(mse) / r̄
+    double rel_rmse = 0;             // sqrt(rel_mse): the error that the program prints
     double mse_uncorrected = 0;      // without the subtraction
     double rel_mse_uncorrected = 0;  // without the subtraction
 };

@@ -211,8 +211,7 @@ void Session::take_snapshots(uint32_t samples, double seconds) {
     FilmImage film = build_->renderer->film().read();
     if (is_for_verdict) live_verdict->add(film);
     if (!is_for_error) return;
-    if (const auto error = build_->job.error_from(snapshot_, film))
-        snapshot_error_ = std::sqrt(error->rel_mse);
+    if (const auto error = build_->job.error_from(snapshot_, film)) snapshot_error_ = error->rel_rmse;
     earlier_snapshot_ = std::move(snapshot_);
     snapshot_ = std::move(film);
     snapshot_record_ = record(seconds);

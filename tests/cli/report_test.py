@@ -4,6 +4,8 @@ import csv
 import json
 import math
 import os
+import re
+import statistics
 import unittest
 
 from image_files import Exr, relative_mse
@@ -66,7 +68,7 @@ class Report(RenderTest):
         row = report["rows"][-1]
         self.assertAlmostEqual(row["mse"] / mse, 1, delta=1e-4)
         self.assertAlmostEqual(row["rel_mse"] / relative_mse(self.image, reference), 1, delta=1e-4)
-        self.assertAlmostEqual(row["rel_rmse"] / (math.sqrt(mse) / (sum(r) / len(r))), 1, delta=1e-4)
+        self.assertAlmostEqual(row["rel_rmse"] / math.sqrt(relative_mse(self.image, reference)), 1, delta=1e-4)
         self.assertGreater(report["rows"][0]["mse"], 8 * row["mse"])
 
     def test_errors_without_a_reference_are_estimated(self):
@@ -75,6 +77,28 @@ class Report(RenderTest):
         estimated = self.report("--samples=1024")["rows"][-1]["mse"]
         measured = self.report("--samples=1024", "--reference=reference.exr")["rows"][-1]["mse"]
         self.assertTrue(0.5 < estimated / measured < 2, f"{estimated} against {measured}")
+
+    def test_the_program_prints_the_errors_of_the_report(self):
+        out = self.render(*self.command("--samples=32"), "--output=a.exr", "--report=a.json")
+        row = json.loads((self.folder / "a.json").read_text())["rows"][-1]
+        self.assertEqual(f"{100 * row['rel_rmse']:.3g}", re.search(r"^error +([\d.]+) %", out, re.MULTILINE)[1])
+        deviation = float(re.search(r"^mean radiance .* ± ([\d.e-]+) ", out, re.MULTILINE)[1])
+        self.assertAlmostEqual(deviation / math.sqrt(row["mse"] / (24 * 20)), 1, delta=0.01)
+        # Without a report, too, and neither slows down who does not want to know.
+        again = self.render(*self.command("--samples=32"), "--output=b.exr")
+        lines = [line for line in out.splitlines() if line.startswith(("mean", "error"))]
+        self.assertEqual([line for line in again.splitlines() if line.startswith(("mean", "error"))], lines)
+
+    def test_the_mean_is_as_exact_as_its_error_says(self):
+        """Over many renders of different seeds, each with the ± that it prints."""
+        means, variances = [], []
+        for seed in range(24):
+            out = self.render(*self.command("--samples=16", f"--seed={seed}"), "--output=a.exr")
+            *mean, deviation = map(float, re.search(r"^mean radiance +(\S+) (\S+) (\S+) ± (\S+)", out, re.MULTILINE).groups())
+            means.append(mean)
+            variances.append(deviation**2)
+        spread = sum(statistics.variance(channel) for channel in zip(*means)) / 3  # channels as one: their root mean square
+        self.assertTrue(0.5 < spread / statistics.mean(variances) < 2, f"{spread}, {statistics.mean(variances)}")
 
     def test_a_reference_of_another_size_is_refused(self):
         self.picture("small", "--samples=1", size=(8, 20))
