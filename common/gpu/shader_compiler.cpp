@@ -4,14 +4,15 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
+#include <algorithm>
 #include <cstring>
-#include <fstream>
-#include <regex>
+#include <optional>
 #include <set>
 #include <sstream>
 
 #include "error.h"
 #include "files/cache.h"
+#include "files/file.h"
 #include "files/hash.h"
 #include "files/project_folder.h"
 
@@ -20,27 +21,42 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// The name in a line #include "name", if it is one.
+std::optional<std::string> included_name(std::string_view line) {
+    const auto skip = [&](std::string_view word) {
+        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        const bool is_there = line.starts_with(word);
+        if (is_there) line.remove_prefix(word.size());
+        return is_there;
+    };
+    if (!skip("#") || !skip("include") || !skip("\"")) return std::nullopt;
+    const size_t end = line.find('"');
+    if (end == std::string_view::npos) return std::nullopt;
+    return std::string(line.substr(0, end));
+}
+
 // Puts the text of included files in place of their #include "…" lines, each file once. #line directives keep
 // the names and lines of messages right. One text then serves as input of the compiler and as key of the
-// cache.
+// cache. Shaders come from elsewhere: what they include must lie in the folder of a file that is named here,
+// in shaders/ or in chapters/. Line ends and the mark at the beginning may be those of Windows.
 class Includer {
   public:
-    explicit Includer(const ShaderSource& source) : named_(source.named_includes) {}
+    explicit Includer(const ShaderSource& source) : named_(source.named_includes) {
+        folders_ = {project_folder() / "shaders", project_folder() / "chapters",
+                    fs::absolute(source.file).parent_path()};
+        for (const auto& [name, file] : named_) folders_.push_back(fs::absolute(file).parent_path());
+        for (fs::path& folder : folders_) folder = fs::weakly_canonical(folder);
+    }
 
     std::string expand(const fs::path& file) {
-        std::ifstream stream(file);
-        if (!stream) throw UserError("cannot read the shader " + file.string());
+        std::string contents = read_file(file, max_shader_bytes);
+        if (contents.starts_with("\xEF\xBB\xBF")) contents.erase(0, 3);
+        std::istringstream stream(std::move(contents));
         std::string text, line;
         for (int number = 1; std::getline(stream, line); ++number) {
-            std::smatch name;
-            if (!std::regex_match(line, name, include_line_)) {
-                text += line + "\n";
-                continue;
-            }
-            const fs::path included = find(name[1].str(), file, number);
-            if (seen_.insert(fs::weakly_canonical(included)).second)
-                text += "#line 1 \"" + included.generic_string() + "\"\n" + expand(included);
-            text += "#line " + std::to_string(number + 1) + " \"" + file.generic_string() + "\"\n";
+            if (line.ends_with('\r')) line.pop_back();
+            const std::optional<std::string> name = included_name(line);
+            text += name ? include(*name, file, number) : line + "\n";
         }
         return text;
     }
@@ -49,17 +65,41 @@ class Includer {
     const std::set<fs::path>& included() const { return seen_; }
 
   private:
-    fs::path find(const std::string& name, const fs::path& includer, int line) const {
+    // What stands for a line of the includer.
+    std::string include(const std::string& name, const fs::path& includer, int line) {
+        const std::string place = includer.generic_string() + ":" + std::to_string(line) + ": ";
+        const fs::path file = find(name, includer, place);
+        std::string text;
+        if (seen_.insert(fs::weakly_canonical(file)).second)
+            text += "#line 1 \"" + file.generic_string() + "\"\n" + expand(file);
+        return text + "#line " + std::to_string(line + 1) + " \"" + includer.generic_string() + "\"\n";
+    }
+
+    fs::path find(const std::string& name, const fs::path& includer, const std::string& place) const {
         if (const auto named = named_.find(name); named != named_.end()) return named->second;
-        if (const auto beside = includer.parent_path() / name; fs::exists(beside)) return beside;
-        if (const auto shared = project_folder() / "shaders" / name; fs::exists(shared)) return shared;
-        throw UserError(includer.generic_string() + ":" + std::to_string(line) +
-                        ": cannot find the include file \"" + name + "\"");
+        for (const fs::path& folder : {includer.parent_path(), project_folder() / "shaders"}) {
+            std::error_code error;
+            const fs::path file = folder / name;
+            if (!fs::exists(file, error)) continue;
+            if (!is_in_the_tree(file))
+                throw UserError(place + "the include file " + in_quotes(name) +
+                                " is outside of the shader's folder, shaders/ and chapters/: copy it there");
+            return file;
+        }
+        throw UserError(place + "cannot find the include file " + in_quotes(name));
+    }
+
+    bool is_in_the_tree(const fs::path& file) const {
+        const fs::path real = fs::weakly_canonical(file);
+        return std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& folder) {
+            return std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first ==
+                   folder.end();
+        });
     }
 
     const std::map<std::string, fs::path>& named_;
+    std::vector<fs::path> folders_;
     std::set<fs::path> seen_;
-    const std::regex include_line_{R"re(\s*#\s*include\s*"([^"]+)".*)re"};
 };
 
 EShLanguage stage_of(const fs::path& file) {
@@ -70,7 +110,8 @@ EShLanguage stage_of(const fs::path& file) {
     return stages.at(file.extension().string());
 }
 
-// glslang writes "ERROR: file:line: 'token' : text"; editors and people look for "file:line: text".
+// glslang writes "ERROR: file:line: 'token' : text"; editors and people look for "file:line: text". For a
+// character that is not ASCII the token is one byte, which no terminal shows.
 std::string readable(const std::string& log) {
     std::istringstream lines(log);
     std::string line, text;
@@ -78,7 +119,13 @@ std::string readable(const std::string& log) {
         if (line.rfind("ERROR: ", 0) != 0 || line.find("compilation errors") != std::string::npos ||
             line.find("compilation terminated") != std::string::npos)
             continue;
-        text += (text.empty() ? "" : "\n") + line.substr(std::strlen("ERROR: "));
+        line = line.substr(std::strlen("ERROR: "));
+        const size_t token = line.find(": '");
+        if (token != std::string::npos && token + 4 < line.size() &&
+            static_cast<unsigned char>(line[token + 3]) >= 0x80 && line[token + 4] == '\'')
+            line =
+                line.substr(0, token) + ": a character that is not ASCII, which GLSL knows in comments only";
+        text += (text.empty() ? "" : "\n") + line;
     }
     return text.empty() ? log : text;
 }

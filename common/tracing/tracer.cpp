@@ -59,7 +59,7 @@ uint64_t estimator_hash(const Estimator& estimator) {
     // What render.comp and render.rgen have in common.
     for (const auto& file :
          files_of({"interface.h", "scene.glsl", "ray.glsl", "render_samples.glsl"}, estimator))
-        hash = hash_text(read_file(file, 1 << 24), hash);
+        hash = hash_text(read_file(file, max_shader_bytes), hash);
     return hash;
 }
 

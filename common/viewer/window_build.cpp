@@ -9,7 +9,7 @@ namespace lab {
 uint64_t hash_of(const std::set<std::filesystem::path>& files) {
     uint64_t hash = 0;
     try {
-        for (const auto& file : files) hash = hash_text(read_file(file, 1 << 24), hash + 1);
+        for (const auto& file : files) hash = hash_text(read_file(file, max_shader_bytes), hash + 1);
     } catch (const UserError&) {
         return 0;
     }

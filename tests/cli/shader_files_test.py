@@ -1,0 +1,86 @@
+"""Shaders as people hand them in: written on other systems, and with includes that lead somewhere else."""
+
+import os
+import re
+import unittest
+from pathlib import Path
+
+from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
+from check.grading import make_tree
+from image_files import Exr
+
+CHAPTER = "01_uniform_sampling"
+GREY = "vec3 path_trace(Ray ray, inout uvec2 seed) { return get_grey(); }\n"
+HELPER = "vec3 get_grey() { return vec3(0.5); }\n"
+
+
+class ShaderFiles(ProgramTest):
+    """Chapter 1 with another shader, in a tree of its own as ./lab check makes it."""
+
+    def setUp(self):
+        super().setUp()
+        file = self.write("mine.glsl", "")
+        self.program, self.shader = make_tree(CHAPTER, file, self.folder / "tree")
+
+    def beside(self, name, contents):
+        """Writes a file beside the shader."""
+        return self.write(Path("tree/chapters") / CHAPTER / name, contents)
+
+    def assert_renders(self, shader):
+        self.shader.write_bytes(shader)
+        self.render("quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--output=grey.exr",
+                    program=self.program, environment=UNOPTIMISED)
+        self.assertEqual(Exr(self.folder / "grey.exr").mean(), [0.5, 0.5, 0.5])
+
+    def assert_shader_refused(self, shader, *words):
+        self.shader.write_bytes(shader if isinstance(shader, bytes) else shader.encode())
+        self.assert_refused(["quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--output=no.exr"], *words,
+                            program=self.program)
+
+    def test_line_ends_and_byte_order_mark_of_windows(self):
+        self.beside("helper.glsl", b"\xef\xbb\xbf// A helper\r\n" + HELPER.replace("\n", "\r\n").encode())
+        shader = '#include "helper.glsl"\n// é, in a comment\n#define LONG \\\n    1\n' + GREY
+        for mark in (b"", b"\xef\xbb\xbf"):
+            for line_end in ("\n", "\r\n"):
+                self.assert_renders(mark + shader.replace("\n", line_end).encode())
+
+    def test_what_is_no_ascii_in_code_is_reported_with_its_line(self):
+        for name in ("π", "“"):
+            for encoding in ("utf-8", "cp1253"):
+                text = f"// one\r\nfloat {name} = 3.14;\r\n{GREY}".encode(encoding, "replace")
+                self.assert_shader_refused(text, r"path_trace\.glsl:2: a character that is not ASCII, ")
+
+    def test_includes_are_small_files_below_the_tree(self):
+        outside = self.write("outside.glsl", HELPER)
+        folder = self.shader.parent
+        os.mkfifo(folder / "pipe")
+        (folder / "link").symlink_to(outside)
+        (folder / "link_to_a_folder").symlink_to(self.folder)
+        (folder / "folder").mkdir()
+        self.beside("large.glsl", HELPER + " " * (4 << 20))
+        place, outside_words = r"path_trace\.glsl:2: .*", ".* is outside of the shader's folder"
+        for name, before, after in (
+                ("/dev/zero", place, outside_words), (str(outside), place, outside_words), ("../../../outside.glsl", place, outside_words),
+                ("link", place, outside_words), ("link_to_a_folder/outside.glsl", place, outside_words),
+                ("folder/../../../../outside.glsl", place, outside_words), ("nothing", place + "cannot find .*", '"'),
+                ("a" * 5000, place + "cannot find .*", ""), ("pipe", "", ": not a regular file"), ("folder", "", ": not a regular file"),
+                ("large.glsl", "", ": the file has 4 MiB, the limit is 1 MiB")):
+            with self.subTest(name[:40]):
+                self.assert_shader_refused(f'// one\n#include "{name}"\n{GREY}', before + re.escape(name[:40]) + after)
+
+    def test_includes_in_the_tree_may_be_links(self):
+        self.beside("helper.glsl", HELPER)
+        (self.shader.parent / "link").symlink_to("helper.glsl")
+        self.assert_renders(f'#include "link"\n#include "../{CHAPTER}/helper.glsl"\n{GREY}'.encode())
+
+    def test_long_lines(self):
+        blanks = b" " * 300000
+        self.beside("helper.glsl", HELPER)
+        self.assert_renders(b"//" + blanks + b"\n" + blanks + b'#include "helper.glsl" //' + blanks + b"\n" + GREY.encode())
+
+    def test_a_shader_that_is_too_large(self):
+        self.assert_shader_refused(GREY + " " * (4 << 20), r"path_trace\.glsl", "MiB")
+
+
+if __name__ == "__main__":
+    unittest.main()
