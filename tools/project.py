@@ -44,6 +44,11 @@ def has_low_discrepancy(program):
     return folder in CHAPTERS.values() and description(folder).get("low_discrepancy", False)
 
 
+def printable(name):
+    """A path or a name as text that can be written: some, from archives of other systems, are no UTF-8."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
+
+
 # ---------------------------------------------------------------------------------------------- command lines
 class Parser(argparse.ArgumentParser):
     """`name` is the command's, `description` the text above its options."""
@@ -88,7 +93,7 @@ def run_tool(tool):
 def run_program(command, **options):
     """Runs a program without input and captures what it says. In a session of its own Ctrl-C does not reach it."""
     return subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True,
-                          **{"cwd": ROOT, "text": True, "start_new_session": True, **options})
+                          **{"cwd": ROOT, "encoding": "utf-8", "errors": "replace", "start_new_session": True, **options})
 
 
 def run_to_end(command, what, expected=0, **options):

@@ -2,9 +2,12 @@
 
 import csv
 import json
+import os
 import re
+import shutil
 import unittest
 from copy import deepcopy
+from pathlib import Path
 from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
@@ -20,6 +23,7 @@ ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
     return vec3(sum);
 }
 """
+NO_UTF8 = [os.fsdecode(name) for name in (b"m\xfcller.glsl", b"m\xfdller.glsl")]  # as archives from elsewhere have
 FEW = (3, "--runs", 5, "--samples", 4)
 # A chapter that notes its arguments.
 NOTING = """#!/bin/sh
@@ -49,7 +53,7 @@ class CheckTest(ProgramTest):
         result, pictures, early = deepcopy(self.judged[key])
         for cases in early:
             watch(cases)
-        return result | {"file": str(file)}, pictures
+        return result | {"file": project.printable(file)}, pictures
 
     def check(self, *arguments):
         """Exit code, standard output and standard error of the command, which runs in this process."""
@@ -137,17 +141,20 @@ class CheckTest(ProgramTest):
         (self.folder / "all/dora").mkdir(parents=True)
         self.write("all/anna.glsl", text)
         self.write("all/bob.glsl", "nothing")
+        for name in NO_UTF8:
+            self.write(Path("all") / name, text)
         self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # no rays
         (self.folder / "all/gone.glsl").symlink_to("nowhere")
         self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
         grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
         expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "dora": "biased"}
+        expected |= {r"m\xfcller": "correct", r"m\xfdller": "correct"}
         code, out, err = self.check(*grade_all)
         self.assertEqual(code, 2, err)
         table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
-        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png"])
+        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"])
         self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
 
         self.write("all/abe.glsl", ENDLESS)
@@ -219,6 +226,30 @@ class CheckTest(ProgramTest):
         code, _, err = self.run_tool("check", 3, file)
         self.assertEqual(code, 2)
         self.assertRegex(err, rf"\Aerror: [^\n]*{re.escape(str(file))}:{line + 2}: [^\n]+\n\Z")
+
+    def test_the_compilers_message_arrives_whatever_its_bytes(self):
+        code, _, err = self.check(*FEW, self.write("mine.glsl", b'#line 7 "\xfc.glsl"\nnothing;\n' + SHADER.read_bytes()))
+        self.assertEqual(code, 2)
+        self.assertRegex(err, r"\Aerror: [^\n]*\.glsl:7: [^\n]*syntax error[^\n]*\n\Z")
+
+    def test_a_name_that_is_no_utf8_can_be_printed(self):
+        for contents, code in ((SHADER.read_bytes(), 0), (b"nothing", 2)):
+            file = self.write(NO_UTF8[0], contents)
+            for form in ((), ("--github",)):
+                actual, out, err = self.check(*FEW, *form, file)
+                self.assertEqual(actual, code, err)
+                self.assertIn(r"m\xfcller.glsl", (out + err).encode().decode())
+
+    def test_where_no_picture_can_be_written_the_verdict_stays(self):
+        """In a checkout that is read-only."""
+        (self.folder / "read_only").mkdir()
+        self.write("read_only/output", "no folder")
+        with mock.patch.object(command, "ROOT", self.folder / "read_only"):
+            code, result = self.check_few(self.wrong())
+        self.assertEqual((code, result["verdict"]), (1, "biased"))
+        picture = Path(result["picture"])
+        self.addCleanup(shutil.rmtree, picture.parent)
+        self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
 
     def test_an_endless_loop_is_ended(self):
         code, _, err = self.run_tool("check", 3, self.write("endless.glsl", ENDLESS), "--time-limit", 1)

@@ -13,6 +13,7 @@ Exit code: 0 correct, 1 biased, noisy or expensive, 2 cannot be graded; of --all
 """
 import json
 import sys
+import tempfile
 import traceback
 from pathlib import Path
 
@@ -21,7 +22,7 @@ from check.folder import UNGRADED, grade_all
 from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
 from check.likely_mistake import likely_mistake
 from check.words import explain, hint_lines, scene_words, tell_early
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, printable
 from report.measurement import relative
 
 POINTS = 10
@@ -68,7 +69,7 @@ def check(options, file, picture=None):
     """The result of a check; UserError where there is none. What is not correct has a picture, others only where `picture` is
     the file for it."""
     if not file.is_file():
-        raise UserError(f"{file}: no such file")
+        raise UserError(f"{printable(file)}: no such file")
     watch = (lambda cases: None) if options.is_quiet else tell_early
     result, pictures = judge(options.chapter, file, vars(options) | {"first_seed": first_seed(options.seed)}, watch=watch)
     is_correct = result["verdict"] == "correct"
@@ -79,7 +80,11 @@ def check(options, file, picture=None):
             del mistake["name"]
     if picture or not is_correct:
         from check.pictures import draw  # only here: Matplotlib takes longer to begin than all other modules together
-        path = draw(result, pictures, picture or ROOT / f"output/check_{options.chapter}.png")
+        name = f"check_{options.chapter}.png"
+        try:
+            path = draw(result, pictures, picture or ROOT / "output" / name)
+        except OSError:  # a checkout that is read-only, for instance
+            path = draw(result, pictures, Path(tempfile.mkdtemp()) / name)
         result["picture"] = relative(path)
     return result
 
@@ -102,7 +107,7 @@ def report(options, result):
         print(explain(result))
     if options.form == "github":
         hints = [result["error"]] if "error" in result else [text for _, text in hint_lines(result)]
-        print(as_github(result["verdict"], options.file, result.get("unfinished_line"), hints), end="")
+        print(as_github(result["verdict"], options.file and printable(options.file), result.get("unfinished_line"), hints), end="")
 
 
 def main():

@@ -12,17 +12,12 @@ from urllib.parse import quote
 
 from check.grading import KNOWLEDGE
 from check.words import explain, hint_lines
-from project import ROOT, UserError, read_json, write_json
+from project import ROOT, UserError, printable, read_json, write_json
 from report.measurement import digest_of_sources
 
 UNGRADED = 2  # exit code
 COLUMNS = ["submission", "verdict", "unfinished_line", "mistakes", "questions", "error", "seconds"]
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
-
-
-def printable(name):
-    """Archives from elsewhere may hold names that are no UTF-8."""
-    return name.encode("utf-8", "replace").decode()
 
 
 def submissions(folder):

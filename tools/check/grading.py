@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import BINARIES, CHAPTERS, ROOT, UserError, description, program_file, read_json, show_progress
+from project import BINARIES, CHAPTERS, ROOT, UserError, description, printable, program_file, read_json, show_progress
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
@@ -133,7 +133,7 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None):
         except BaseException as error:
             pool.shutdown(cancel_futures=True)
             if isinstance(error, UserError):
-                raise UserError(str(error).replace(str(shader.resolve()), str(file))) from None
+                raise UserError(str(error).replace(str(shader.resolve()), printable(file))) from None
             raise
     return cases
 
@@ -195,6 +195,6 @@ def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases:
     cases = render(chapter, file, settings, scenes, watch)
     results = [grade(case, levels[case["scene"]], len(cases)) for case in cases]
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
-    return {"chapter": chapter, "file": str(file), "verdict": verdict, "runs": settings["runs"],
+    return {"chapter": chapter, "file": printable(file), "verdict": verdict, "runs": settings["runs"],
             "samples": settings["samples"] or SCENES[chapter][0], "first_seed": settings["first_seed"], "false_alarms": FALSE_ALARMS,
             "too_much": TOO_MUCH, "picture": None, "likely_mistake": None, "scenes": results}, [case["picture"] for case in cases]

@@ -71,7 +71,7 @@ PLAYGROUNDS = {
 def draw(sampler, count, seed, dimensions, device=None, samples=1):
     """Array [index, column] of points: the first ones of pixels, or `samples` of each pixel."""
     command = [PROGRAM, sampler, "--count", count, "--samples", samples, "--seed", seed, "--dimensions", dimensions]
-    result = run_program(command + (["--device", device] if device else []), text=False)
+    result = run_program(command + (["--device", device] if device else []), encoding=None, errors=None)
     if result.returncode != 0:
         raise UserError(result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}")
     return np.frombuffer(result.stdout, np.float32).reshape(count, -1).astype(float)
