@@ -1,6 +1,7 @@
 // The scene's arrays as the device sees them. What a scene has not got is not declared.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_nonuniform_qualifier : require
+#extension GL_EXT_samplerless_texture_functions : require
 
 layout(scalar, set = 0, binding = BINDING_RENDER_PARAMETERS) uniform RenderParametersBlock {
     RenderParameters parameters;
@@ -18,7 +19,8 @@ layout(scalar, set = 0, binding = BINDING_NORMALS) readonly buffer Normals { vec
 layout(scalar, set = 0, binding = BINDING_TEXTURE_COORDINATES) readonly buffer TextureCoordinates {
     vec2 texture_coordinates[];
 };
-layout(set = 0, binding = BINDING_TEXTURES) uniform sampler2D textures[TEXTURE_COUNT];
+layout(set = 0, binding = BINDING_TEXTURES) uniform texture2D textures[TEXTURE_COUNT];
+layout(scalar, set = 0, binding = BINDING_TEXTURE_SIZES) readonly buffer TextureSizes { uvec2 texture_sizes[]; };
 #endif
 #ifdef FEATURE_DOUBLE_SIDED
 layout(scalar, set = 0, binding = BINDING_OTHER_SIDES) readonly buffer OtherSides {
@@ -37,7 +39,7 @@ layout(scalar, set = 0, binding = BINDING_LIGHT_TRIANGLES) readonly buffer Light
 layout(scalar, set = 0, binding = BINDING_PROBE_CELLS) readonly buffer ProbeCells { ProbeCell probe_cells[]; };
 #endif
 #ifdef FEATURE_LIGHT_PROBE
-layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform sampler2D light_probe;
+layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform texture2D light_probe;
 #endif
 
 #ifdef FEATURE_DIELECTRICS

@@ -38,9 +38,10 @@ vec4 fetch_colour(int index, ivec2 texel) {
     return vec4(mix(curved, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045))), 1.0);
 }
 
-// Linear colour of a texture.
+// Linear colour of a texture. Its size is not that of textureSize(): where the threads of a group have different textures,
+// there is a driver that tells all of them the size of one.
 vec3 get_texture_colour(int index, vec2 uv) {
-    TexelNeighbours t = get_texel_neighbours(uv, textureSize(textures[nonuniformEXT(index)], 0), true);
+    TexelNeighbours t = get_texel_neighbours(uv, ivec2(texture_sizes[index]), true);
     return mix_texels(fetch_colour(index, t.upper_left),
                       fetch_colour(index, ivec2(t.lower_right.x, t.upper_left.y)),
                       fetch_colour(index, ivec2(t.upper_left.x, t.lower_right.y)),

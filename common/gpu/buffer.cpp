@@ -154,7 +154,6 @@ SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height
                                    vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {width, height, 1}));
         change_layout(commands, *image_, target, vk::ImageLayout::eShaderReadOnlyOptimal);
     });
-    sampler_ = {device.handle(), vk::SamplerCreateInfo()};
 }
 
 StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height)

@@ -77,19 +77,14 @@ class DeviceImage {
     vk::raii::ImageView view_ = nullptr;
 };
 
-// Image that shaders read texel by texel.
+// Image that shaders read texel by texel, without a sampler.
 class SampledImage : public DeviceImage {
   public:
     // `pixels` row by row without gaps in `format`.
     SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
                  std::span<const std::byte> pixels);
 
-    vk::DescriptorImageInfo info() const {
-        return {*sampler_, *view_, vk::ImageLayout::eShaderReadOnlyOptimal};
-    }
-
-  private:
-    vk::raii::Sampler sampler_ = nullptr;
+    vk::DescriptorImageInfo info() const { return {{}, *view_, vk::ImageLayout::eShaderReadOnlyOptimal}; }
 };
 
 // Image of 8-bit RGBA that compute shaders write, always in the layout eGeneral. Starts black.

@@ -54,7 +54,13 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
     }
     add("materials", BINDING_MATERIALS, lights.materials);
     if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);
-    if (features.textures) add("texture coordinates", BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
+    std::vector<uvec2> texture_sizes;
+    if (features.textures) {
+        add("texture coordinates", BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
+        for (const Texture& texture : scene.textures)
+            texture_sizes.emplace_back(texture.width, texture.height);
+        add("sizes of textures", BINDING_TEXTURE_SIZES, texture_sizes);
+    }
     if (features.transforms) add("instances", BINDING_INSTANCES, scene.instances);
     std::vector<uint32_t> other_sides;
     if (features.double_sided) {
@@ -83,7 +89,7 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
         bindings_.back().images.push_back(images_.back().info());
     };
     const auto add_binding = [&](uint32_t index) {
-        bindings_.push_back({.index = index, .type = vk::DescriptorType::eCombinedImageSampler});
+        bindings_.push_back({.index = index, .type = vk::DescriptorType::eSampledImage});
     };
     if (features.textures) {
         add_binding(BINDING_TEXTURES);

@@ -68,6 +68,24 @@ TEST_P(TextureCases, SizesNeedNotBePowersOfTwo) {
     EXPECT_LT(worst, decoding_error() + 1e-4);
 }
 
+// The threads of a group see all of them at once.
+TEST_P(TextureCases, NeighboursHaveDifferentSizes) {
+    const std::vector<Texture> textures{numbered_texture(13, 7), numbered_texture(1, 5),
+                                        numbered_texture(200, 3)};
+    std::vector<vec2> coordinates;
+    std::vector<dvec3> expected;
+    for (uint32_t i = 0; i < 400; ++i) {
+        const Texture& texture = textures[i % textures.size()];
+        const uvec2 position(i * 29 % texture.width, i * 53 % texture.height);
+        coordinates.emplace_back((glm::dvec2(position) + 0.5) / glm::dvec2(texture.width, texture.height));
+        expected.push_back(texel(texture, position.x, position.y));
+    }
+    const auto albedos = albedo_at(GetParam(), textures, coordinates);
+    for (size_t i = 0; i < albedos.size(); ++i)
+        ASSERT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error() + 1e-4)
+            << "texture " << i % 3;
+}
+
 TEST_P(TextureCases, LargeOnesShowEveryTexel) {
     constexpr uint32_t size = 8192;
     const Texture texture = numbered_texture(size, size);

@@ -20,7 +20,7 @@ struct Footprint {
 struct Needs {
     std::set<uint32_t> bindings = {};
     std::set<std::string> functions = {}, material_members = {}, parameter_members = {};
-    bool samples_images = false;
+    bool reads_images = false;
 };
 
 const std::map<std::string, Needs>& needs_of_features() {
@@ -29,16 +29,16 @@ const std::map<std::string, Needs>& needs_of_features() {
     static const std::map<std::string, Needs> needs{
         {"vertex normals", {.bindings = {BINDING_NORMALS}}},
         {"textures",
-         {.bindings = {BINDING_TEXTURE_COORDINATES, BINDING_TEXTURES},
+         {.bindings = {BINDING_TEXTURE_COORDINATES, BINDING_TEXTURES, BINDING_TEXTURE_SIZES},
           .functions = {"get_texture_colour"},
           .material_members = {"albedo_texture"},
-          .samples_images = true}},
+          .reads_images = true}},
         {"sky", {.parameter_members = {"background"}}},
         {"light probe",
          {.bindings = {BINDING_LIGHT_PROBE, BINDING_PROBE_CELLS},
           .functions = {"get_light_probe_radiance", "choose_probe_cell"},
           .parameter_members = {"background", "probe_rotation"},
-          .samples_images = true}},
+          .reads_images = true}},
         {"area lights",
          {.bindings = {BINDING_LIGHT_TRIANGLES},
           .functions = {"choose_light_triangle"},
@@ -98,7 +98,7 @@ void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
         others.insert({BINDING_ACCELERATION_STRUCTURE, BINDING_GEOMETRY_FIRST_TRIANGLES});
     EXPECT_EQ(bare.bindings, arrays);
     EXPECT_EQ(bare.code.bindings, joined(arrays, others));
-    EXPECT_FALSE(bare.code.samples_images);
+    EXPECT_FALSE(bare.code.reads_images);
     EXPECT_EQ(bare.code.functions, std::set<std::string>{});
     EXPECT_EQ(bare.code.material_members, (std::set<std::string>{"diffuse_albedo", "emission"}));
     EXPECT_FALSE(bare.code.parameter_members.contains("background"));
@@ -129,7 +129,8 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
         EXPECT_EQ(actual.code.material_members, joined(bare.code.material_members, needs.material_members));
         EXPECT_EQ(actual.code.parameter_members,
                   joined(bare.code.parameter_members, needs.parameter_members));
-        EXPECT_EQ(actual.code.samples_images, needs.samples_images);
+        EXPECT_EQ(actual.code.reads_images, needs.reads_images);
+        EXPECT_FALSE(actual.code.has_samplers);
         if (feature.name != "area lights") {
             EXPECT_GT(actual.code.instructions, bare.code.instructions);
         }

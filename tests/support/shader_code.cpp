@@ -106,7 +106,8 @@ void ShaderCode::merge(const ShaderCode& other) {
     functions.insert(other.functions.begin(), other.functions.end());
     material_members.insert(other.material_members.begin(), other.material_members.end());
     parameter_members.insert(other.parameter_members.begin(), other.parameter_members.end());
-    samples_images |= other.samples_images;
+    reads_images |= other.reads_images;
+    has_samplers |= other.has_samplers;
     instructions += other.instructions;
 }
 
@@ -121,7 +122,8 @@ ShaderCode read_code(const ShaderSource& source, const std::set<std::string>& fu
         if (functions.contains(name)) code.functions.insert(name);
     code.material_members = members_read(text, "Material", BINDING_MATERIALS, 2);
     code.parameter_members = members_read(text, "RenderParameters", BINDING_RENDER_PARAMETERS, 1);
-    code.samples_images = text.find("OpTypeSampledImage") != std::string::npos;
+    code.reads_images = !find_all(text, R"re(OpTypeImage %\d+ 2D )re").empty();
+    code.has_samplers = text.find("OpTypeSampledImage") != std::string::npos;
     code.instructions = count_instructions(text);
     return code;
 }

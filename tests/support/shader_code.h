@@ -14,7 +14,8 @@ struct ShaderCode {
     std::set<std::string> functions;          // those of the asked ones that can be reached
     std::set<std::string> material_members;   // those of Material that are read
     std::set<std::string> parameter_members;  // those of RenderParameters that are read
-    bool samples_images = false;              // textures or a light probe
+    bool reads_images = false;                // textures or a light probe
+    bool has_samplers = false;                // of which some devices allow sixteen
     size_t instructions = 0;                  // in the bodies of all functions
 
     // Adds what another shader of the same pipeline does.

@@ -8,16 +8,22 @@ namespace lab {
 
 std::vector<vec3> albedo_at(Backend backend, const Texture& texture, const std::vector<vec2>& coordinates,
                             const vec3& factor) {
-    Material material = diffuse_material(factor);
-    material.albedo_texture = 0;
+    return albedo_at(backend, std::vector{texture}, coordinates, factor);
+}
+
+std::vector<vec3> albedo_at(Backend backend, const std::vector<Texture>& textures,
+                            const std::vector<vec2>& coordinates, const vec3& factor) {
+    std::vector<Material> materials(textures.size(), diffuse_material(factor));
+    for (size_t i = 0; i < textures.size(); ++i) materials[i].albedo_texture = static_cast<int>(i);
     // Each quad fills three pixels, of which the middle one is read: a ray through the edge of a pixel may
     // meet the quad beside it.
     constexpr uint32_t width = 3;
     std::vector<Quad> quads;
     for (size_t i = 0; i < coordinates.size(); ++i)
-        quads.push_back({{width * i, -1, 0}, {width, 0, 0}, {0, 3, 0}});
-    Scene scene = make_scene({material}, quads);
-    scene.textures = {texture};
+        quads.push_back(
+            {{width * i, -1, 0}, {width, 0, 0}, {0, 3, 0}, static_cast<uint32_t>(i % textures.size())});
+    Scene scene = make_scene(materials, quads);
+    scene.textures = textures;
     for (const vec2& uv : coordinates)
         scene.texture_coordinates.insert(scene.texture_coordinates.end(), 4, uv);
     const auto count = static_cast<uint32_t>(coordinates.size());
