@@ -18,12 +18,21 @@ struct Allocation {
 
 std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
 
-// Memory of a type that has all `required` properties and, where there is a choice, the preferred ones.
+[[noreturn]] void refuse_allocations(const Device& device) {
+    throw DeviceFailure("too many arrays, textures and meshes for the device, which allows " +
+                        std::to_string(device.limits().maxMemoryAllocationCount) + ": use a smaller scene");
+}
+
+// Memory of a type that has all `required` properties and, where there is a choice, the preferred ones. Where
+// those are used up, a device that shares the CPU's memory goes on in the rest of it; a GPU with a memory of
+// its own would crawl.
 Allocation allocate(const Device& device, const vk::MemoryRequirements& requirements,
                     vk::MemoryPropertyFlags required, vk::MemoryPropertyFlags preferred,
                     vk::MemoryAllocateFlags flags = {}) {
     const auto memory = device.physical().getMemoryProperties();
-    for (const auto wanted : {required | preferred, required})
+    bool is_used_up = false;
+    for (const auto wanted : {required | preferred, required}) {
+        if (is_used_up && !device.description().shares_memory) break;
         for (uint32_t type = 0; type < memory.memoryTypeCount; ++type) {
             const auto properties = memory.memoryTypes[type].propertyFlags;
             if (!(requirements.memoryTypeBits >> type & 1) || (properties & wanted) != wanted) continue;
@@ -31,35 +40,49 @@ Allocation allocate(const Device& device, const vk::MemoryRequirements& requirem
                 const vk::MemoryAllocateFlagsInfo flags_info(flags);
                 const vk::MemoryAllocateInfo info(requirements.size, type, &flags_info);
                 return {{device.handle(), info}, properties};
+            } catch (const vk::TooManyObjectsError&) {
+                refuse_allocations(device);
             } catch (const vk::OutOfDeviceMemoryError&) {
             } catch (const vk::OutOfHostMemoryError&) {
             }
-            const auto heap = memory.memoryHeaps[memory.memoryTypes[type].heapIndex].size;
-            throw DeviceFailure("out of device memory: " + mebibytes(requirements.size) +
-                                " more are needed and the device has " + mebibytes(heap) +
-                                " in all: use a smaller image or scene");
+            is_used_up = true;
         }
-    throw DeviceError("the device has no suitable kind of memory");
+    }
+    if (!is_used_up) throw DeviceError("the device has no suitable kind of memory");
+    throw DeviceFailure("out of device memory: " + mebibytes(requirements.size) +
+                        " more are needed and the device has " + mebibytes(device.description().memory) +
+                        " in all: use a smaller image or scene");
 }
 
-// Bytes that such a buffer may have.
-size_t size_limit(const Device& device, const MemoryNeed& need) {
-    if (need.is_seen_in_parts) return device.description().largest_buffer;
-    if (need.usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
-        return size_t{16} * device.limits().maxTexelBufferElements;
-    if (need.usage & vk::BufferUsageFlagBits::eStorageBuffer) return device.limits().maxStorageBufferRange;
-    return SIZE_MAX;
+void require_size(const Device& device, const MemoryNeed& need) {
+    const size_t limit =
+        need.is_seen_in_parts ? device.description().largest_buffer : largest_visible(device, need.usage);
+    if (need.bytes > limit)
+        throw DeviceFailure("too large for the device: " + need.what + ", a buffer of " +
+                            mebibytes(need.bytes) + " where it allows " + mebibytes(limit) +
+                            ": use a smaller image or scene");
+    const uint32_t side = device.limits().maxImageDimension2D;
+    if (std::max(need.image_size.width, need.image_size.height) > side)
+        throw DeviceFailure(
+            "too large for the device: " + need.what + " of " + std::to_string(need.image_size.width) +
+            " x " + std::to_string(need.image_size.height) + " pixels, where it allows " +
+            std::to_string(side) + " x " + std::to_string(side) + " at most: make it smaller");
 }
 
 }  // namespace
 
+size_t largest_visible(const Device& device, vk::BufferUsageFlags usage) {
+    if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
+        return size_t{16} * device.limits().maxTexelBufferElements;
+    if (usage & vk::BufferUsageFlagBits::eStorageBuffer) return device.limits().maxStorageBufferRange;
+    return SIZE_MAX;
+}
+
 void require_memory(const Device& device, std::span<const MemoryNeed> needs) {
+    if (needs.size() > device.limits().maxMemoryAllocationCount) refuse_allocations(device);
     size_t sum = 0;
     for (const MemoryNeed& need : needs) {
-        if (const size_t limit = size_limit(device, need); need.bytes > limit)
-            throw DeviceFailure("too large for the device: " + need.what + ", a buffer of " +
-                                mebibytes(need.bytes) + " where it allows " + mebibytes(limit) +
-                                ": use a smaller image or scene");
+        require_size(device, need);
         sum += need.bytes;
     }
     const size_t memory = device.description().memory;
@@ -128,11 +151,7 @@ void Buffer::clear() {
 
 DeviceImage::DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
                          vk::ImageUsageFlags usage) {
-    const uint32_t limit = device.limits().maxImageDimension2D;
-    if (std::max(width, height) > limit)
-        throw DeviceFailure("an image of " + std::to_string(width) + "x" + std::to_string(height) +
-                            " is larger than the device allows (" + std::to_string(limit) +
-                            "): make it smaller");
+    require_size(device, {.what = "an image", .bytes = 0, .image_size = {width, height}});
     image_ = {device.handle(), vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
                                                    vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
                                                    usage | vk::ImageUsageFlagBits::eTransferDst)};

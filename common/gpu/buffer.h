@@ -12,10 +12,14 @@ struct MemoryNeed {
     size_t bytes;
     vk::BufferUsageFlags usage = {};
     bool is_seen_in_parts = false;  // shaders see as much of it at a time as they can
+    vk::Extent2D image_size = {};   // in pixels, of an image
 };
 
-// Throws DeviceFailure, with the sizes, for a buffer that is larger than the device allows and for more bytes
-// together than its memory has: so that nothing is allocated in vain.
+// Bytes that shaders see of one buffer of this usage.
+size_t largest_visible(const Device& device, vk::BufferUsageFlags usage);
+
+// Throws DeviceFailure, with the numbers, for a buffer or an image that is larger than the device allows, for
+// more of them, and for more bytes together than its memory has: so that nothing is allocated in vain.
 void require_memory(const Device& device, std::span<const MemoryNeed> needs);
 
 class Buffer {

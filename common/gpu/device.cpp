@@ -70,13 +70,14 @@ std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& devi
     return missing;
 }
 
-size_t largest_local_memory(const vk::raii::PhysicalDevice& device) {
+// Of all heaps, or where the CPU's memory is far away, of those that are the device's own.
+size_t usable_memory(const vk::raii::PhysicalDevice& device, bool shares_memory) {
     const auto memory = device.getMemoryProperties();
-    size_t largest = 0;
+    size_t sum = 0;
     for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)
-        if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
-            largest = std::max<size_t>(largest, memory.memoryHeaps[i].size);
-    return largest;
+        if (shares_memory || memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
+            sum += memory.memoryHeaps[i].size;
+    return sum;
 }
 
 DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
@@ -85,12 +86,15 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
                               vk::PhysicalDeviceMaintenance3Properties>();
     const auto& general = properties.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
+    const bool shares_memory = general.deviceType == vk::PhysicalDeviceType::eIntegratedGpu ||
+                               general.deviceType == vk::PhysicalDeviceType::eCpu;
     DeviceDescription description{
         .name = general.deviceName.data(),
         .kind = kind_text(general.deviceType),
         .driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data(),
         .api_version = version_text(general.apiVersion),
-        .memory = largest_local_memory(device),
+        .shares_memory = shares_memory,
+        .memory = usable_memory(device, shares_memory),
         // The place of a part has 32 bits.
         .largest_buffer = std::min<size_t>(
             properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),

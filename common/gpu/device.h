@@ -36,7 +36,8 @@ struct DeviceDescription {
     std::string kind;    // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
     std::string driver;  // name and version as the driver tells them
     std::string api_version;
-    size_t memory = 0;                                    // bytes of the largest that is the device's own
+    bool shares_memory = false;                           // all of it with the CPU
+    size_t memory = 0;                                    // bytes that shaders can work in
     size_t largest_buffer = 0;                            // bytes of one that shaders see in parts
     std::map<Backend, std::vector<std::string>> missing;  // what the device lacks for each backend
 

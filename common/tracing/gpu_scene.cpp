@@ -1,7 +1,9 @@
 #include "tracing/gpu_scene.h"
 
+#include <algorithm>
 #include <numeric>
 
+#include "error.h"
 #include "scene/light_table.h"
 #include "scene/probe_table.h"
 
@@ -14,6 +16,18 @@ struct Array {
     uint32_t binding;
     std::span<const std::byte> data;
 };
+
+// Throws DeviceFailure for more textures than shaders can see. They see the light probe and both arrays of
+// the backend compute as images, too, and each other binding takes a place.
+void require_visible(const Device& device, size_t texture_count) {
+    const auto& limits = device.limits();
+    const size_t most = std::min(std::max(limits.maxPerStageDescriptorSampledImages, 3u) - 3,
+                                 std::max(limits.maxPerStageResources, BINDING_COUNT) - BINDING_COUNT);
+    if (texture_count > most)
+        throw DeviceFailure("the scene has " + std::to_string(texture_count) +
+                            " textures, and shaders of the device see " + std::to_string(most) +
+                            " at most: join some of them");
+}
 
 size_t bytes_of(const Image& probe) { return probe.pixels.size() / 3 * 4 * sizeof(float); }
 
@@ -73,9 +87,13 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
         add("other sides of triangles", BINDING_OTHER_SIDES, other_sides);
     }
 
-    for (const auto& texture : scene.textures) memory_needs_.push_back({"textures", texture.pixels.size()});
-    if (features.light_probe) memory_needs_.push_back({"light probe's texels", bytes_of(*scene.light_probe)});
+    const auto add_image_need = [&](const char* name, size_t bytes, const auto& image) {
+        memory_needs_.push_back({.what = name, .bytes = bytes, .image_size = {image.width, image.height}});
+    };
+    for (const Texture& texture : scene.textures) add_image_need("texture", texture.pixels.size(), texture);
+    if (features.light_probe) add_image_need("light probe", bytes_of(*scene.light_probe), *scene.light_probe);
     require_memory(device, memory_needs_);
+    require_visible(device, scene.textures.size());
     for (size_t i = 0; i < arrays.size(); ++i) {
         buffers_.emplace_back(device, arrays[i].data, memory_needs_[i].usage);
         bindings_.push_back(storage_binding(arrays[i].binding, buffers_.back()));

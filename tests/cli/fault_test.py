@@ -121,6 +121,39 @@ class FailingDevice(RenderTest):
         self.assert_refused(arguments, "too large for the device", "8192 MiB", code=3, environment={**FAULT_LAYER, "FAULT_MEMORY_MIB": "0"})
 
 
+class SmallDevice(RenderTest):
+    """A layer between program and driver tells of smaller limits than the driver has."""
+
+    def assert_same_picture(self, limits, *arguments, scene, size):
+        whole = self.picture("whole", *arguments, scene=scene, size=size)
+        small = self.picture("small", *arguments, scene=scene, size=size, environment={**FAULT_LAYER, **limits})
+        self.assertEqual(whole.pixels(), small.pixels())
+
+    def refuse(self, limits, *words, scene="textured"):
+        command = self.command("--samples=1", "--quiet", scene=scene)
+        self.assert_refused(command, *words, code=3, environment={**FAULT_LAYER, **limits})
+
+    def test_an_integrated_gpu_works_in_the_memory_of_the_cpu_too(self):
+        """The film alone is larger than what the device calls its own."""
+        self.assert_same_picture({"FAULT_CARVE_OUT_MIB": "8"}, "--samples=1", scene="cornell_box", size=(768, 768))
+
+    def test_memory_that_is_used_up_everywhere(self):
+        limits = {"FAULT_CARVE_OUT_MIB": "8", "FAULT_MEMORY_MIB": "12"}
+        command = self.command("--samples=1", "--quiet", size=(768, 768))
+        self.assert_refused(command, "out of device memory", code=3, environment={**FAULT_LAYER, **limits})
+
+    def test_more_textures_than_a_shader_may_see(self):
+        for limit in ({"FAULT_maxPerStageDescriptorSampledImages": "5"}, {"FAULT_maxPerStageResources": "25"}):
+            self.refuse(limit, "3 textures", "2 at most")
+
+    def test_more_allocations_than_the_device_has(self):
+        self.refuse({"FAULT_maxMemoryAllocationCount": "8"}, "too many", "8")  # known before any is made
+        self.refuse({"FAULT_maxMemoryAllocationCount": "16"}, "too many", "16")
+
+    def test_an_image_that_is_too_large(self):
+        self.refuse({"FAULT_maxImageDimension2D": "64"}, "texture", "64 x 64 at most")
+
+
 class SharedCache(RenderTest):
     def setUp(self):
         super().setUp()

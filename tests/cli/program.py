@@ -162,10 +162,10 @@ class ProgramTest(unittest.TestCase):
 class RenderTest(ProgramTest):
     """Renders small pictures of the Cornell box."""
 
-    def picture(self, name, *arguments, scene="cornell_box", size=(24, 20)):
+    def picture(self, name, *arguments, scene="cornell_box", size=(24, 20), **options):
         """Renders to NAME.exr and reads it."""
         file = self.folder / f"{name}.exr"
-        self.render(*self.command(*arguments, scene=scene, size=size), "--quiet", "--output", file)
+        self.render(*self.command(*arguments, scene=scene, size=size), "--quiet", "--output", file, **options)
         return Exr(file)
 
     def command(self, *arguments, scene="cornell_box", size=(24, 20)):

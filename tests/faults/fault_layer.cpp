@@ -1,11 +1,15 @@
-// A Vulkan layer between program and driver that makes a device fail: no device fails when a test wants it
-// to. FAULT_LOSE_DEVICE_AFTER=N: the device is lost after N submissions. FAULT_MEMORY_MIB=N: it has no more
-// memory than that. The Vulkan loader finds the layer through VK_LAYER_PATH and VK_INSTANCE_LAYERS.
+// A Vulkan layer between program and driver that makes a device fail, or a smaller one of it: no device does
+// so when a test wants it to. FAULT_LOSE_DEVICE_AFTER=N: the device is lost after N submissions.
+// FAULT_MEMORY_MIB=N: it has no more memory than that. FAULT_CARVE_OUT_MIB=N: it is an integrated GPU that
+// calls this much memory its own and the rest the CPU's. FAULT_maxImageDimension2D=N, and so on: it has this
+// limit. The Vulkan loader finds the layer through VK_LAYER_PATH and VK_INSTANCE_LAYERS.
 #include <vulkan/vk_layer.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <type_traits>
 
 namespace {
 
@@ -22,10 +26,67 @@ uint64_t limit(const char* variable) {
 
 uint64_t submissions_left = limit("FAULT_LOSE_DEVICE_AFTER");
 uint64_t mebibytes_left = limit("FAULT_MEMORY_MIB");
+const uint64_t carve_out_mebibytes = limit("FAULT_CARVE_OUT_MIB");
+const bool is_integrated = carve_out_mebibytes != UINT64_MAX;
+uint64_t own_mebibytes_left = carve_out_mebibytes;
+uint64_t allocations_left = limit("FAULT_maxMemoryAllocationCount");
+uint32_t driver_memory_types = 0;  // behind each, an integrated GPU has the same one in the CPU's heap
 
 template <typename Function>
 Function next(const char* name) {
     return reinterpret_cast<Function>(next_device_function(device, name));
+}
+
+// The next ones of the instance: once it is there, the loader answers with those of the first layer.
+PFN_vkGetPhysicalDeviceProperties next_get_properties = nullptr;
+PFN_vkGetPhysicalDeviceProperties2 next_get_properties2 = nullptr;
+PFN_vkGetPhysicalDeviceMemoryProperties next_get_memory_properties = nullptr;
+
+void change_properties(VkPhysicalDeviceProperties& properties) {
+    if (is_integrated) properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    VkPhysicalDeviceLimits& limits = properties.limits;
+    const auto lower = [](uint32_t& value, const char* variable) {
+        value = static_cast<uint32_t>(std::min<uint64_t>(value, limit(variable)));
+    };
+    lower(limits.maxImageDimension2D, "FAULT_maxImageDimension2D");
+    lower(limits.maxTexelBufferElements, "FAULT_maxTexelBufferElements");
+    lower(limits.maxMemoryAllocationCount, "FAULT_maxMemoryAllocationCount");
+    lower(limits.maxPerStageDescriptorSampledImages, "FAULT_maxPerStageDescriptorSampledImages");
+    lower(limits.maxPerStageResources, "FAULT_maxPerStageResources");
+}
+
+void VKAPI_CALL get_properties(VkPhysicalDevice physical, VkPhysicalDeviceProperties* properties) {
+    next_get_properties(physical, properties);
+    change_properties(*properties);
+}
+
+void VKAPI_CALL get_properties2(VkPhysicalDevice physical, VkPhysicalDeviceProperties2* properties) {
+    next_get_properties2(physical, properties);
+    change_properties(properties->properties);
+}
+
+void VKAPI_CALL get_memory_properties(VkPhysicalDevice physical, VkPhysicalDeviceMemoryProperties* memory) {
+    next_get_memory_properties(physical, memory);
+    if (!is_integrated) return;
+    driver_memory_types = memory->memoryTypeCount;
+    VkMemoryHeap& own = memory->memoryHeaps[0];
+    memory->memoryHeaps[memory->memoryHeapCount] = {own.size - (carve_out_mebibytes << 20), 0};
+    own.size = carve_out_mebibytes << 20;
+    for (uint32_t type = 0; type < driver_memory_types; ++type)
+        memory->memoryTypes[memory->memoryTypeCount++] = {
+            memory->memoryTypes[type].propertyFlags & ~VkFlags{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT},
+            memory->memoryHeapCount};
+    ++memory->memoryHeapCount;
+}
+
+void VKAPI_CALL get_buffer_requirements(VkDevice of, VkBuffer buffer, VkMemoryRequirements* requirements) {
+    next<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(of, buffer, requirements);
+    requirements->memoryTypeBits |= requirements->memoryTypeBits << driver_memory_types;
+}
+
+void VKAPI_CALL get_image_requirements(VkDevice of, VkImage image, VkMemoryRequirements* requirements) {
+    next<PFN_vkGetImageMemoryRequirements>("vkGetImageMemoryRequirements")(of, image, requirements);
+    requirements->memoryTypeBits |= requirements->memoryTypeBits << driver_memory_types;
 }
 
 VkResult VKAPI_CALL queue_submit(VkQueue queue, uint32_t count, const VkSubmitInfo* submits, VkFence fence) {
@@ -38,8 +99,22 @@ VkResult VKAPI_CALL allocate_memory(VkDevice of, const VkMemoryAllocateInfo* inf
                                     const VkAllocationCallbacks* callbacks, VkDeviceMemory* memory) {
     const uint64_t mebibytes = info->allocationSize >> 20;
     if (mebibytes > mebibytes_left) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    if (allocations_left == 0) return VK_ERROR_TOO_MANY_OBJECTS;
+    VkMemoryAllocateInfo of_driver = *info;
+    if (is_integrated && info->memoryTypeIndex >= driver_memory_types) {
+        of_driver.memoryTypeIndex -= driver_memory_types;
+    } else if (is_integrated) {
+        if (mebibytes > own_mebibytes_left) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+        own_mebibytes_left -= mebibytes;
+    }
     mebibytes_left -= mebibytes;
-    return next<PFN_vkAllocateMemory>("vkAllocateMemory")(of, info, callbacks, memory);
+    --allocations_left;
+    return next<PFN_vkAllocateMemory>("vkAllocateMemory")(of, &of_driver, callbacks, memory);
+}
+
+void VKAPI_CALL free_memory(VkDevice of, VkDeviceMemory memory, const VkAllocationCallbacks* callbacks) {
+    if (memory) ++allocations_left;
+    next<PFN_vkFreeMemory>("vkFreeMemory")(of, memory, callbacks);
 }
 
 // The loader's link to the next layer or the driver, which is taken off the chain for those that follow.
@@ -61,7 +136,15 @@ VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info, const VkAl
     const auto create =
         reinterpret_cast<PFN_vkCreateInstance>(next_instance_function(VK_NULL_HANDLE, "vkCreateInstance"));
     const VkResult result = create(info, callbacks, created);
-    if (result == VK_SUCCESS) instance = *created;
+    if (result != VK_SUCCESS) return result;
+    instance = *created;
+    const auto take_next = [](auto& function, const char* name) {
+        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
+            next_instance_function(instance, name));
+    };
+    take_next(next_get_properties, "vkGetPhysicalDeviceProperties");
+    take_next(next_get_properties2, "vkGetPhysicalDeviceProperties2");
+    take_next(next_get_memory_properties, "vkGetPhysicalDeviceMemoryProperties");
     return result;
 }
 
@@ -82,6 +165,11 @@ PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice of, const char* name) {
         return reinterpret_cast<PFN_vkVoidFunction>(device_function);
     if (!std::strcmp(name, "vkQueueSubmit")) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
     if (!std::strcmp(name, "vkAllocateMemory")) return reinterpret_cast<PFN_vkVoidFunction>(allocate_memory);
+    if (!std::strcmp(name, "vkFreeMemory")) return reinterpret_cast<PFN_vkVoidFunction>(free_memory);
+    if (!std::strcmp(name, "vkGetBufferMemoryRequirements"))
+        return reinterpret_cast<PFN_vkVoidFunction>(get_buffer_requirements);
+    if (!std::strcmp(name, "vkGetImageMemoryRequirements"))
+        return reinterpret_cast<PFN_vkVoidFunction>(get_image_requirements);
     return next_device_function(of, name);
 }
 
@@ -90,6 +178,12 @@ PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance of, const char* name)
         return reinterpret_cast<PFN_vkVoidFunction>(instance_function);
     if (!std::strcmp(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(create_instance);
     if (!std::strcmp(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(create_device);
+    if (!std::strcmp(name, "vkGetPhysicalDeviceProperties"))
+        return reinterpret_cast<PFN_vkVoidFunction>(get_properties);
+    if (!std::strcmp(name, "vkGetPhysicalDeviceProperties2"))
+        return reinterpret_cast<PFN_vkVoidFunction>(get_properties2);
+    if (!std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties"))
+        return reinterpret_cast<PFN_vkVoidFunction>(get_memory_properties);
     return next_instance_function(of, name);
 }
 
