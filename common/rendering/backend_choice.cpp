@@ -48,7 +48,7 @@ std::optional<Backend> find_backend(const std::string& name) {
 // Whether the device can hold the tree of the `compute` backend, which has every triangle of every instance.
 bool fits_compute(const Device& device, const Scene& scene) {
     const uint64_t count = instanced_triangle_count(scene);
-    const MemoryNeed need = GpuBvh::memory_need(count);
+    const MemoryNeed need = GpuBvh::memory_need(device, count);
     try {
         require_memory(device, {&need, 1});
         return count <= max_triangle_count;

@@ -1,26 +1,49 @@
 #include "tracing/gpu_bvh.h"
 
+#include <algorithm>
+
 namespace lab {
+namespace {
+
+using Usage = vk::BufferUsageFlagBits;
+
+// Many devices read texel buffers faster, but those of some have no more than 65536 texels.
+Usage usage_for(const Device& device, size_t bytes) {
+    const size_t texels = largest_visible(device, Usage::eUniformTexelBuffer),
+                 storage = largest_visible(device, Usage::eStorageBuffer);
+    return bytes > texels && storage > texels ? Usage::eStorageBuffer : Usage::eUniformTexelBuffer;
+}
 
 template <typename T>
-GpuBvh::Texels::Texels(const Device& device, const LargeArray<T>& data)
-    : buffer(device, std::span<const T>(data), vk::BufferUsageFlagBits::eUniformTexelBuffer),
-      view(device.handle(),
-           vk::BufferViewCreateInfo({}, buffer.handle(), vk::Format::eR32G32B32A32Uint, 0, VK_WHOLE_SIZE)) {}
+size_t bytes_of(const LargeArray<T>& data) {
+    return std::span<const T>(data).size_bytes();
+}
 
-MemoryNeed GpuBvh::memory_need(uint64_t triangle_count) {
-    return {"triangles of all instances", triangle_count * sizeof(BvhTriangle),
-            vk::BufferUsageFlagBits::eUniformTexelBuffer};
+}  // namespace
+
+template <typename T>
+GpuBvh::Texels::Texels(const Device& device, const LargeArray<T>& data, Usage usage)
+    : buffer(device, std::span<const T>(data), usage) {
+    if (usage == Usage::eUniformTexelBuffer)
+        view = {device.handle(), vk::BufferViewCreateInfo({}, buffer.handle(), vk::Format::eR32G32B32A32Uint,
+                                                          0, VK_WHOLE_SIZE)};
+}
+
+MemoryNeed GpuBvh::memory_need(const Device& device, uint64_t triangle_count) {
+    const size_t bytes = triangle_count * sizeof(BvhTriangle);
+    return {"triangles of all instances", bytes, usage_for(device, bytes)};
 }
 
 GpuBvh::GpuBvh(const Device& device, const Bvh& bvh)
-    : nodes_(device, bvh.nodes),
-      triangles_(device, bvh.triangles),
+    : usage_(usage_for(device, std::max(bytes_of(bvh.nodes), bytes_of(bvh.triangles)))),
+      nodes_(device, bvh.nodes, usage_),
+      triangles_(device, bvh.triangles, usage_),
       max_stack_entries_(bvh.max_stack_entries),
       build_seconds_(bvh.build_seconds) {}
 
 std::vector<Binding> GpuBvh::bindings() const {
-    const auto binding = [](uint32_t index, const Texels& texels) {
+    const auto binding = [&](uint32_t index, const Texels& texels) {
+        if (usage_ == Usage::eStorageBuffer) return storage_binding(index, texels.buffer);
         return Binding{
             .index = index, .type = vk::DescriptorType::eUniformTexelBuffer, .texel_views = {*texels.view}};
     };
@@ -28,7 +51,9 @@ std::vector<Binding> GpuBvh::bindings() const {
 }
 
 std::vector<std::string> GpuBvh::defines() const {
-    return {"BVH_STACK_SIZE " + std::to_string(max_stack_entries_)};
+    std::vector<std::string> defines{"BVH_STACK_SIZE " + std::to_string(max_stack_entries_)};
+    if (usage_ == Usage::eStorageBuffer) defines.emplace_back("BVH_IN_STORAGE_BUFFERS");
+    return defines;
 }
 
 }  // namespace lab

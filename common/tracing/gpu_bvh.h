@@ -1,4 +1,4 @@
-// A bounding volume hierarchy on the device, as shaders/trace_ray/compute.glsl reads it.
+// A bounding volume hierarchy on the device, as shaders/trace_ray/bvh.glsl declares it.
 #pragma once
 #include "gpu/compute_kernel.h"
 #include "tracing/bvh.h"
@@ -8,7 +8,7 @@ namespace lab {
 class GpuBvh {
   public:
     // Of a tree, before it is built: its triangles alone.
-    static MemoryNeed memory_need(uint64_t triangle_count);
+    static MemoryNeed memory_need(const Device& device, uint64_t triangle_count);
 
     // Throws DeviceFailure if the device cannot hold or address it. The device must outlive the result.
     GpuBvh(const Device& device, const Bvh& bvh);
@@ -21,13 +21,14 @@ class GpuBvh {
     double build_seconds() const { return build_seconds_; }
 
   private:
-    // An array as 16-byte texels: many devices read them faster than storage buffers.
+    // An array of 16-byte texels.
     struct Texels {
         Buffer buffer;
-        vk::raii::BufferView view;
+        vk::raii::BufferView view = nullptr;  // of a texel buffer
         template <typename T>
-        Texels(const Device& device, const LargeArray<T>& data);
+        Texels(const Device& device, const LargeArray<T>& data, vk::BufferUsageFlagBits usage);
     };
+    vk::BufferUsageFlagBits usage_;
     Texels nodes_;
     Texels triangles_;
     uint32_t max_stack_entries_;

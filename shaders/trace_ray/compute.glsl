@@ -1,19 +1,11 @@
-// trace_ray() for any device: a bounding volume hierarchy (BVH) that common/tracing/bvh.cpp has built.
-#extension GL_EXT_samplerless_texture_functions : require
-
-// A node is eight texels: low x, high x, low y, high y, low z, high z of its four children, and references to them.
-layout(set = 0, binding = BINDING_BVH_NODES) uniform utextureBuffer bvh_nodes;
-// A triangle is three texels: x, y and z of its vertices. The fourth components are instance, triangle and nothing.
-layout(set = 0, binding = BINDING_BVH_TRIANGLES) uniform utextureBuffer bvh_triangles;
+// trace_ray() for any device: steps through a bounding volume hierarchy (BVH) of our own.
+#include "bvh.glsl"
 
 // References are below END for inner nodes: their index, and above for leaves: (triangle count << 28) | first triangle.
 const uint END = 0x0fffffffu;
 const uint MISS = 0xffffffffu;
 
 uint traversal_steps = 0u;  // nodes and triangles that this invocation has visited
-
-vec4 fetch_node_row(int row) { return uintBitsToFloat(texelFetch(bvh_nodes, row)); }
-vec3 fetch_triangle_row(int row) { return uintBitsToFloat(texelFetch(bvh_triangles, row).xyz); }
 
 // The closest hit nearer than t_max, or with `any_hit` the first that turns up.
 bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
@@ -47,7 +39,7 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
             vec4 near_x = fetch_node_row(node + near.x), far_x = fetch_node_row(node + far.x);
             vec4 near_y = fetch_node_row(node + near.y), far_y = fetch_node_row(node + far.y);
             vec4 near_z = fetch_node_row(node + near.z), far_z = fetch_node_row(node + far.z);
-            uvec4 children = texelFetch(bvh_nodes, node + 6);
+            uvec4 children = fetch_node_texel(node + 6);
             // As integers, the bits of positive floats are ordered like the floats and negative ones stay negative.
             ivec4 enter_x = floatBitsToInt(near_x * inverse.x + near_offset.x);
             ivec4 enter_y = floatBitsToInt(near_y * inverse.y + near_offset.y);
@@ -98,8 +90,8 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
         }
     }
     if (hit_triangle < 0) return false;
-    hit.instance = texelFetch(bvh_triangles, hit_triangle).w;
-    hit.triangle = texelFetch(bvh_triangles, hit_triangle + 1).w;
+    hit.instance = fetch_triangle_texel(hit_triangle).w;
+    hit.triangle = fetch_triangle_texel(hit_triangle + 1).w;
 #ifdef FEATURE_DIELECTRICS
     hit.material_class = get_material_class(hit.triangle);
 #endif

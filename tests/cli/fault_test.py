@@ -142,6 +142,9 @@ class SmallDevice(RenderTest):
         command = self.command("--samples=1", "--quiet", size=(768, 768))
         self.assert_refused(command, "out of device memory", code=3, environment={**FAULT_LAYER, **limits})
 
+    def test_a_tree_that_is_too_large_for_texel_buffers(self):
+        self.assert_same_picture({"FAULT_maxTexelBufferElements": "65536"}, "--samples=1", scene="sunny", size=(48, 40))
+
     def test_more_textures_than_a_shader_may_see(self):
         for limit in ({"FAULT_maxPerStageDescriptorSampledImages": "5"}, {"FAULT_maxPerStageResources": "25"}):
             self.refuse(limit, "3 textures", "2 at most")
