@@ -15,7 +15,12 @@
 #include <unistd.h>
 #endif
 #ifdef __linux__
+#include <fcntl.h>
 #include <sched.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+
+#include <cerrno>
 #endif
 #ifdef __APPLE__
 #include <mach-o/dyld.h>
@@ -29,14 +34,42 @@ static std::string variable(const char* name) {
 }
 
 #ifdef __linux__
-bool has_display() { return !variable("DISPLAY").empty() || !variable("WAYLAND_DISPLAY").empty(); }
+std::vector<WindowSystem> window_systems() {
+    std::vector<WindowSystem> systems;
+    // The variables of a user's session may be all that others, such as root, get to see of it.
+    const std::string socket = variable("WAYLAND_DISPLAY");
+    std::error_code unreadable;
+    if (!socket.empty() &&
+        std::filesystem::exists(std::filesystem::path(variable("XDG_RUNTIME_DIR")) / socket, unreadable))
+        systems.push_back(WindowSystem::wayland);
+    if (!variable("DISPLAY").empty()) systems.push_back(WindowSystem::x11);
+    return systems;
+}
+
+bool would_survive(int (*step)()) {
+    const pid_t child = fork();
+    if (child < 0) return true;  // nobody knows
+    if (child == 0) {
+        const int nowhere = open("/dev/null", O_WRONLY);
+        for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
+        prctl(PR_SET_DUMPABLE, 0);  // leave no core file behind
+        step();
+        _exit(0);
+    }
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return WIFEXITED(status);
+}
 
 size_t processor_count() {
     cpu_set_t processors;
     return sched_getaffinity(0, sizeof processors, &processors) == 0 ? CPU_COUNT(&processors) : 1;
 }
 #else
-bool has_display() { return true; }
+std::vector<WindowSystem> window_systems() { return {WindowSystem::other}; }
+
+bool would_survive(int (*)()) { return true; }
 
 size_t processor_count() { return std::thread::hardware_concurrency(); }
 #endif

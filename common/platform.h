@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <vector>
 
 namespace lab {
 
@@ -17,8 +18,13 @@ bool is_terminal(std::FILE* stream);
 // From now on bytes are written as they are: Windows gives lines other ends.
 void make_binary(std::FILE* stream);
 
-// Whether windows can be shown.
-bool has_display();
+// What windows can be shown by, what is to be tried first before the others. Only Linux has a choice.
+enum class WindowSystem { wayland, x11, other };
+std::vector<WindowSystem> window_systems();
+
+// Whether the program would be there after a step that might bring it down. Linux, where libraries come from
+// elsewhere, has a child process find out, and nothing of what it prints is shown.
+bool would_survive(int (*step)());
 
 // Its file, or empty where that is not known.
 std::filesystem::path running_program();

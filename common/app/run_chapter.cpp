@@ -72,7 +72,7 @@ std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& optio
     const bool is_forced = options.run.window == WindowChoice::always;
     if (options.run.window == WindowChoice::never) return nullptr;
     if (!is_forced &&
-        (!has_display() || !is_terminal(stdout) || needs_no_window(options) || options.run.quiet))
+        (window_systems().empty() || !is_terminal(stdout) || needs_no_window(options) || options.run.quiet))
         return nullptr;
     try {
         return std::make_unique<Window>(chapter.name, window_size(image_size));

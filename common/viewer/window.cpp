@@ -15,16 +15,31 @@ namespace {
 std::string glfw_error() {
     const char* text = nullptr;
     glfwGetError(&text);
-    return text ? text : "unknown error";
+    return text ? text : "GLFW does not work here";
+}
+
+// Starts GLFW, which has a choice from version 3.4 on; by itself that tries Wayland first, asked for or not.
+bool start_glfw() {
+    for ([[maybe_unused]] const WindowSystem system : window_systems()) {
+#ifdef GLFW_PLATFORM
+        if (system != WindowSystem::other)
+            glfwInitHint(GLFW_PLATFORM,
+                         system == WindowSystem::wayland ? GLFW_PLATFORM_WAYLAND : GLFW_PLATFORM_X11);
+#endif
+        // GLFW 3.4 dies on Wayland's compositors without a seat, which have neither keyboard nor mouse.
+        if (would_survive(glfwInit) && glfwInit()) return true;
+    }
+    return false;
 }
 
 }  // namespace
 
 Window::Window(const std::string& title, uvec2 size) {
-    if (!has_display())
+    if (window_systems().empty())
         throw UserError(
-            "there is no display (DISPLAY and WAYLAND_DISPLAY are not set) for a window: use --headless");
-    if (glfwInit() && glfwVulkanSupported()) {
+            "there is no display (DISPLAY is not set, and WAYLAND_DISPLAY names none) for a window: use "
+            "--headless");
+    if (start_glfw() && glfwVulkanSupported()) {
         glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
         window_ = glfwCreateWindow(static_cast<int>(size.x), static_cast<int>(size.y), title.c_str(), nullptr,

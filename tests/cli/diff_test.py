@@ -1,11 +1,10 @@
 """./lab diff: the difference of neighbouring chapters' shaders, with counts of what has changed."""
 
 import os
-import pty
 import subprocess
 import unittest
 
-from program import PROJECT as ROOT  # first: it finds the tools
+from program import PROJECT as ROOT, open_terminal  # first: it finds the tools
 from lesson import diff as show_diff
 
 STEPS = show_diff.BEFORE
@@ -43,7 +42,7 @@ class DiffTest(unittest.TestCase):
         plain = diff(5, stdout=subprocess.PIPE).stdout
         self.assertNotIn("\033", plain)
         self.assertIn("+             throughput /= survival_probability;\n", plain)
-        leader, follower = pty.openpty()
+        leader, follower = open_terminal()
         self.assertEqual(diff(5, stdout=follower).returncode, 0)
         os.close(follower)
         self.assertIn(b"\033[32m", os.read(leader, 1 << 16))

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pty
 import re
 import resource
 import subprocess
@@ -48,6 +49,14 @@ MERGE_ULPS = 2
 TIMEOUT_SECONDS = 120
 BAD_INPUT_SECONDS = 20
 BAD_INPUT_MEMORY = 8 << 30
+
+
+def open_terminal():
+    """A terminal for a program: our end and the program's. Containers and chroots may have none to give."""
+    try:
+        return pty.openpty()
+    except OSError as error:
+        raise unittest.SkipTest(f"no pseudo-terminals here: {error}") from error
 
 
 class ProgramTest(unittest.TestCase):

@@ -1,13 +1,15 @@
 """When a chapter opens a window, and that it leaves displays alone otherwise. tests/viewer looks inside the window."""
 
 import os
-import pty
 import shutil
+import socketserver
+import struct
 import subprocess
+import threading
 import unittest
 
 from image_files import Exr
-from program import BINARIES, CHAPTER, FAULT_LAYER, PROJECT, ProgramTest
+from program import BINARIES, CHAPTER, FAULT_LAYER, PROJECT, ProgramTest, open_terminal
 
 WITH_DISPLAY = PROJECT / "tests/support/with_display.sh"
 GUARD_EXIT_CODE = 77  # of tests/faults/glfw_guard.cpp
@@ -17,10 +19,21 @@ SOME_DISPLAY = {"DISPLAY": ":4711", "WAYLAND_DISPLAY": None}
 RENDER = ["quad.json", "--width=8", "--height=8", "--samples=1"]
 
 
+class PoorCompositor(socketserver.BaseRequestHandler):
+    """A Wayland compositor that has no seat: in fact it has nothing, and only tells when it is done with telling that."""
+
+    def handle(self):
+        while header := self.request.recv(8):
+            receiver, request, size = struct.unpack("=IHH", header)
+            arguments = self.request.recv(size - 8)
+            if (receiver, request) == (1, 0):  # wl_display.sync, to be answered by wl_callback.done
+                self.request.sendall(struct.pack("=4sHHI", arguments, 0, 12, 0))
+
+
 class Windows(ProgramTest):
     def run_at_terminal(self, *arguments, environment):
         """Exit code and output of a run whose standard output is a terminal, as for someone who types the command."""
-        ours, theirs = pty.openpty()
+        ours, theirs = open_terminal()
         variables = {**os.environ, **environment}
         process = subprocess.Popen([CHAPTER, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=theirs,
                                    stderr=subprocess.PIPE, text=True,
@@ -56,6 +69,30 @@ class Windows(ProgramTest):
     def test_a_window_without_a_display_is_refused(self):
         self.assert_refused([*RENDER, "--window"], "display", "--headless", environment=NO_DISPLAY)
         self.assert_refused([*RENDER, "--window"], "no window", "--headless", environment=SOME_DISPLAY)
+
+    def test_a_window_needs_wayland_to_be_there(self):
+        """The variables of a session stay where its compositor is out of reach."""
+        for folder in (None, self.folder):
+            environment = {"DISPLAY": None, "WAYLAND_DISPLAY": "nothing-0", "XDG_RUNTIME_DIR": folder}
+            self.assert_refused([*RENDER, "--window"], "no display", "--headless", environment=environment)
+
+    def test_a_compositor_without_a_seat_is_no_obstacle(self):
+        """GLFW 3.4 dies on it."""
+        environment = {"DISPLAY": None, "WAYLAND_DISPLAY": "poor-0", "XDG_RUNTIME_DIR": str(self.folder)}
+        server = socketserver.ThreadingUnixStreamServer(str(self.folder / "poor-0"), PoorCompositor)
+        self.addCleanup(server.server_close)
+        threading.Thread(target=server.serve_forever).start()
+        self.addCleanup(server.shutdown)
+        self.assert_refused([*RENDER, "--window"], "no window", "--headless", environment=environment)
+        code, err = self.run_at_terminal(*RENDER, environment=environment)
+        self.assertEqual(code, 0, err)
+        self.assertRegex(err, r"\Anote: no window can be opened [^\n]*--headless\n\Z")
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
+    def test_tests_leave_the_desktop_alone(self):
+        out = self.render("sh", "-c", "echo $DISPLAY $WAYLAND_DISPLAY", program=WITH_DISPLAY,
+                          environment={"WAYLAND_DISPLAY": "wayland-0"})
+        self.assertRegex(out, r"\A:\d+\n\Z")
 
     @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
     def test_a_lost_device_leaves_what_was_read_last(self):

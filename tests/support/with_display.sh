@@ -7,4 +7,5 @@ exec 3< <(exec Xvfb -displayfd 1 -screen 0 1280x1024x24 -nolisten tcp -noreset 2
 server=$!
 trap 'kill "$server" 2>/dev/null || true' EXIT
 read -r number <&3
+unset WAYLAND_DISPLAY  # the user's desktop would come first
 DISPLAY=:$number "$@"

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <cstdlib>
 
 #include "bvh_triangles.h"
 #include "files/file.h"
@@ -68,6 +69,11 @@ TEST(ReadFile, RefusesPipesAndDevices) {
         EXPECT_USER_ERROR(read_exr(folder / name), "not a regular file");
         EXPECT_USER_ERROR(read_texture(folder / name), "not a regular file");
     }
+}
+
+TEST(Platform, OutlivesAStepThatBringsDownItsProgram) {
+    EXPECT_FALSE(would_survive([]() -> int { std::abort(); }));
+    EXPECT_TRUE(would_survive([] { return 1; }));
 }
 
 }  // namespace
