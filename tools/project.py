@@ -104,9 +104,10 @@ def run_to_end(command, what, expected=0, **options):
     return process.stdout
 
 
-def last_line(process):
-    """What a program that failed said last."""
-    return process.stderr.strip().split("\n")[-1].removeprefix("error: ") or f"exit code {process.returncode}"
+def failure_text(process):
+    """What a program that failed said: the first line of its error, from which others may follow, or else its last line."""
+    lines = process.stderr.strip().split("\n")
+    return next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1]) or f"exit code {process.returncode}"
 
 
 def commit():

@@ -15,6 +15,7 @@
 #include "files/file.h"
 #include "files/hash.h"
 #include "files/project_folder.h"
+#include "gpu/compiler_messages.h"
 
 namespace lab {
 namespace {
@@ -110,26 +111,6 @@ EShLanguage stage_of(const fs::path& file) {
     return stages.at(file.extension().string());
 }
 
-// glslang writes "ERROR: file:line: 'token' : text"; editors and people look for "file:line: text". For a
-// character that is not ASCII the token is one byte, which no terminal shows.
-std::string readable(const std::string& log) {
-    std::istringstream lines(log);
-    std::string line, text;
-    while (std::getline(lines, line)) {
-        if (line.rfind("ERROR: ", 0) != 0 || line.find("compilation errors") != std::string::npos ||
-            line.find("compilation terminated") != std::string::npos)
-            continue;
-        line = line.substr(std::strlen("ERROR: "));
-        const size_t token = line.find(": '");
-        if (token != std::string::npos && token + 4 < line.size() &&
-            static_cast<unsigned char>(line[token + 3]) >= 0x80 && line[token + 4] == '\'')
-            line =
-                line.substr(0, token) + ": a character that is not ASCII, which GLSL knows in comments only";
-        text += (text.empty() ? "" : "\n") + line;
-    }
-    return text.empty() ? log : text;
-}
-
 std::vector<uint32_t> compile(const ShaderSource& source, const std::string& text,
                               const std::string& preamble) {
     static const bool initialised = glslang::InitializeProcess();
@@ -147,10 +128,10 @@ std::vector<uint32_t> compile(const ShaderSource& source, const std::string& tex
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
     if (!shader.parse(GetDefaultResources(), 460, false, messages))
-        throw UserError(readable(shader.getInfoLog()));
+        throw UserError(readable_errors(shader.getInfoLog()));
     glslang::TProgram program;
     program.addShader(&shader);
-    if (!program.link(messages)) throw UserError(name + ": " + readable(program.getInfoLog()));
+    if (!program.link(messages)) throw UserError(name + ": " + readable_errors(program.getInfoLog()));
     std::vector<uint32_t> words;
     glslang::GlslangToSpv(*program.getIntermediate(stage), words);
     return words;

@@ -11,6 +11,16 @@ from image_files import Exr
 
 CHAPTER = "01_uniform_sampling"
 GREY = "vec3 path_trace(Ray ray, inout uvec2 seed) { return get_grey(); }\n"
+# What stands in chapter 1 -> what is written instead, lines further down where it is found, and what is said.
+MISTAKES = {
+    "vec3 path_trace(": ("vec3 pathtrace(", None, "'path_trace'", r"the shader has to define vec3 path_trace\(Ray"),
+    "vec3 throughput = vec3(1.0);": ("vec3 throughput = vec3(1.0)", 1, "'' : +syntax error", "is a semicolon missing"),
+    "throughput *= PI": ("througput *= PI", 0, "'througput'", "is it misspelt"),
+    "get_shading_data(": ("get_shading_daat(", 0, "'get_shading_daat'", "is the name misspelt"),
+    "get_random_numbers(seed)": ("get_random_numbers()", 0, "'get_random_numbers'", ".*argument"),
+    "vec3 radiance = vec3(0.0);": ("vec3 radiance = 0.0;", 0, "'=' ", ".*same type"),
+    "return radiance;": ("return radiance; }", 1, "'' : +syntax error", ".*} too many"),
+}
 HELPER = "vec3 get_grey() { return vec3(0.5); }\n"
 
 
@@ -49,6 +59,16 @@ class ShaderFiles(ProgramTest):
             for encoding in ("utf-8", "cp1253"):
                 text = f"// one\r\nfloat {name} = 3.14;\r\n{GREY}".encode(encoding, "replace")
                 self.assert_shader_refused(text, r"path_trace\.glsl:2: a character that is not ASCII, ")
+
+    def test_the_commonest_mistakes_come_with_advice(self):
+        """One line each, since the rest of what the compiler says follows from it."""
+        own = (PROJECT / "chapters" / CHAPTER / "path_trace.glsl").read_text(encoding="utf-8")
+        line = {text: number for number, full in enumerate(own.split("\n"), 1) for text in MISTAKES if text in full}
+        for right, (wrong, below, word, advice) in MISTAKES.items():
+            with self.subTest(wrong):
+                self.assertEqual(own.count(right), 1)
+                place = rf"path_trace\.glsl:{line[right] + below}: " if below is not None else r"render_samples\.glsl:\d+: "
+                self.assert_shader_refused(own.replace(right, wrong), place + word + r".* \(" + advice)
 
     def test_includes_are_small_files_below_the_tree(self):
         outside = self.write("outside.glsl", HELPER)

@@ -13,7 +13,7 @@ from check.grading import OPTIONS, SCENES, program_with
 from course.bug import new_render
 from docs import figure_plots, first_steps, tables
 from docs.bug_blocks import GALLERY, find_bug
-from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, description, last_line, load_records, read_json,
+from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, description, failure_text, load_records, read_json,
                      run_program, show_progress)
 from references.images import read_rgb
 from report.measurement import digest_of_sources
@@ -57,7 +57,7 @@ class Render:
                 process = run_program([program, self.scene, "--width", self.size, "--height", self.height or self.size, *options,
                                        "--backend", "compute", "--quiet", "--output", unfinished, "--report", report])
             if process.returncode != 0:
-                raise UserError(f"{self.name}: {last_line(process)}")
+                raise UserError(f"{self.name}: {failure_text(process)}")
             os.replace(unfinished, file)
         return read_json(report)
 

@@ -13,8 +13,8 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, has_low_discrepancy, last_line, program_file,
-                     read_json, run_program, show_progress, write_json)
+from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, failure_text, has_low_discrepancy,
+                     program_file, read_json, run_program, show_progress, write_json)
 from references.images import averaged, read_reference, read_rgb, rel_mse
 
 PILOT_PART = 0.3  # of a run's seconds: tells how many samples a run takes
@@ -126,7 +126,7 @@ def working_variants():
     tried = {variant: run_program([*peer_command(variant), ROOT / "assets/scenes/cornell_box.json", *size]) for variant in VARIANTS}
     works = [variant for variant in VARIANTS if tried[variant].returncode == 0]
     if not works:
-        raise UserError(last_line(tried["scalar_rgb"]))
+        raise UserError(failure_text(tried["scalar_rgb"]))
     return works
 
 
@@ -154,7 +154,7 @@ def run_case(case, settings, arguments):
                             "On a slow machine allow more by --time-limit") from None
         seconds = time.perf_counter() - started
         if process.returncode != 0:
-            error = last_line(process)
+            error = failure_text(process)
             if "cannot render" in error or case["is_peer"]:
                 raise Refused(error)
             lost = "the device was lost: " if process.returncode == DEVICE_LOST else ""
