@@ -38,6 +38,12 @@ def description(folder):
     return read_json(ROOT / "chapters" / folder / "chapter.json")
 
 
+def original(number):
+    """The number of the chapter that this one is a copy of, by its title, or its own."""
+    title = description(CHAPTERS[number])["title"]
+    return next(other for other in CHAPTERS if description(CHAPTERS[other])["title"] == title)
+
+
 def has_low_discrepancy(program):
     """Whether the samples of a pixel depend on each other: of a chapter's folder or a copy of its program, or something else."""
     folder = Path(program).stem

@@ -38,6 +38,9 @@ struct Chapter {
 // Names of the folders in chapters/ that hold a chapter, in order.
 std::vector<std::string> chapter_folders();
 
+// The same without copies, in which people try things: of chapters with the same title only the first.
+std::vector<std::string> course_chapters();
+
 // The chapter in a folder of chapters/. Throws UserError if its chapter.json is missing or wrong, with the
 // key and what is possible.
 Chapter load_chapter(const std::string& name);

@@ -1,5 +1,6 @@
 """A chapter is added by copying a folder and nothing else, as docs/teaching.md says."""
 
+import json
 import re
 import shlex
 import shutil
@@ -61,6 +62,15 @@ class AddedChapterTest(ProgramTest):
         (self.tree / "chapters" / COPY / "chapter.json").write_text('{"title": "Light choice", "light": true}', encoding="utf-8")
         self.assert_refused(["--output=refused.exr"], r"chapter\.json", '"light"', "light_sampling", program=program)
 
+    def test_is_graded_as_the_chapter_that_it_is_a_copy_of(self):
+        shader = self.tree / "chapters" / COPY / "path_trace.glsl"
+        check = ["-B", self.tree / "tools", "check", 20, "--runs", 4, "--backend", "compute", "--json"]
+        own = shader.read_text(encoding="utf-8")
+        for text, verdict in ((own, "correct"), (own.replace("* cos_light", "", 1), "biased")):
+            shader.write_text(text, encoding="utf-8")
+            _, out, err = self.run_program(*check, program=sys.executable, environment={"LAB_BINARIES": str(BINARIES)})
+            self.assertEqual(json.loads(out)["verdict"], verdict, err)
+
     def test_is_known_to_the_commands_and_pages(self):
         self.assertRegex(self.run_in_tree("./lab", "run"), r"\n +20  \w+")
         self.assertIn(f"+ chapters/{COPY}/path_trace.glsl", self.run_in_tree("./lab", "diff", 20))
@@ -68,7 +78,9 @@ class AddedChapterTest(ProgramTest):
                                  "import sys; sys.path.append('tools'); from docs import tables; print(tables.PAGES)")
         self.assertIn(COPY, names)
         self.run_in_tree(sys.executable, "-B", "tools", "tables", "--check")
-        self.assert_refused(["-B", self.tree / "tools", "check", 20], "chapter 20 is not measured", r"learn\.py learn", code=2,
+        description = self.tree / "chapters" / COPY / "chapter.json"
+        description.write_text(description.read_text(encoding="utf-8").replace('"title": "', '"title": "My '), encoding="utf-8")
+        self.assert_refused(["-B", self.tree / "tools", "check", 20], "chapter 20 has a title of its own", r"learn\.py learn", code=2,
                             program=sys.executable)
 
 

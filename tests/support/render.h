@@ -11,8 +11,8 @@
 
 namespace lab {
 
-// The chapters whose estimators are tested: all folders of chapters/, in order.
-inline const std::vector<std::string> all_chapters = chapter_folders();
+// The chapters whose estimators are tested, in order.
+inline const std::vector<std::string> all_chapters = course_chapters();
 
 // Those that sample lights.
 std::vector<std::string> light_sampling_chapters();
@@ -26,6 +26,7 @@ std::vector<std::string> pseudorandom_chapters_from(uint32_t first);
 // Whether its paths split: whether it has --splitting-factor.
 bool splits_paths(const std::string& chapter);
 
+// Where the environment's LAB_TEST_COPY names the folder of a copy of this chapter, that of the copy.
 Estimator chapter_estimator(const std::string& chapter);
 Estimator every_hit_estimator();  // --split-every-hit
 Estimator view_estimator(const std::string& view, const std::string& chapter = all_chapters.front());

@@ -10,7 +10,7 @@ namespace lab {
 namespace {
 
 TEST(Chapter, SaysWhatItsShaderDoes) {
-    const auto names = chapter_folders();
+    const auto names = course_chapters();
     EXPECT_GE(names.size(), 6u);
     const Chapter all = load_chapter("05_russian_roulette");
     for (const auto& name : names) {

@@ -1,4 +1,4 @@
-"""Grades a shader of chapter N: is it correct, biased, or noisier or more expensive than its technique should be?
+"""Grades a shader of chapter N, or of the chapter that N is a copy of: is it correct, biased, or noisier or more expensive than its technique should be?
 
 Renders scenes that have a reference image, each several times. The means of the whole image and of its tiles are tested
 against the reference: a correct shader is called biased in about one of 1000 checks. Error and rays are compared with those of
@@ -22,7 +22,7 @@ from check.folder import UNGRADED, grade_all
 from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
 from check.likely_mistake import likely_mistake
 from check.words import explain, hint_lines, scene_words, tell_early
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, printable
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable
 from report.measurement import relative
 
 POINTS = 10
@@ -115,9 +115,10 @@ def main():
     try:
         options = parse()
         refuse(options)
+        file = options.file or ROOT / "chapters" / CHAPTERS[options.chapter] / "path_trace.glsl"
+        options.chapter = original(options.chapter)
         if options.folder:
             sys.exit(grade_all(options, check))
-        file = options.file or ROOT / "chapters" / CHAPTERS[options.chapter] / "path_trace.glsl"
         result = check(options, file)
     except SystemExit as end:  # of the parser
         if isinstance(end.code, str):

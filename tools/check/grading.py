@@ -172,7 +172,8 @@ def read_levels(chapter):
     """Scene -> level of the chapter's own shader."""
     known = read_json(KNOWLEDGE)
     if str(chapter) not in known:
-        raise UserError(f"the shader of chapter {chapter} is not measured yet: tests/mistakes/learn.py learn does it")
+        raise UserError(f"chapter {chapter} has a title of its own and is not measured yet: ./lab check 3 FILE grades a file as chapter 3's, "
+                        "tests/mistakes/learn.py learn measures a new chapter")
     return known[str(chapter)]["levels"]
 
 
