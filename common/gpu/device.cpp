@@ -91,7 +91,8 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
     DeviceDescription description{
         .name = general.deviceName.data(),
         .kind = kind_text(general.deviceType),
-        .driver = std::string(driver.driverName.data()) + " " + driver.driverInfo.data(),
+        .driver = driver.driverName.data() + std::string(driver.driverInfo[0] ? " " : "") +
+                  driver.driverInfo.data(),
         .api_version = version_text(general.apiVersion),
         .shares_memory = shares_memory,
         .memory = usable_memory(device, shares_memory),

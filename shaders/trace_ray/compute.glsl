@@ -63,9 +63,10 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
         }
         // No else: where the node led to a leaf, its triangles are tested in the same turn.
         if (reference > END) {
-            int triangle = 3 * int(reference & END);
-            int end = triangle + 3 * int(reference >> 28u);
-            do {
+            int first = 3 * int(reference & END);
+            int end = first + 3 * int(reference >> 28u);
+            // Not do-while: a driver lets threads that have left a loop at its bottom repeat it without what they had loaded.
+            for (int triangle = first; triangle < end; triangle += 3) {
                 ++traversal_steps;
                 vec3 x = fetch_triangle_row(triangle + axes.x);
                 vec3 y = fetch_triangle_row(triangle + axes.y);
@@ -84,8 +85,7 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
                     hit.barycentrics = weights.yz;
                     hit_triangle = triangle;
                 }
-                triangle += 3;
-            } while (triangle < end);
+            }
             reference = any_hit && hit_triangle >= 0 ? END : stack[top--];
         }
     }

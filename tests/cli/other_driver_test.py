@@ -1,0 +1,64 @@
+"""SwiftShader, Chromium's Vulkan driver for the CPU, shares no code with Mesa's: a second opinion on every machine."""
+
+import os
+import unittest
+
+from tools_path import PROJECT  # first: it finds the others
+import numpy as np
+from program import BINARIES, RenderTest
+
+PLACES = [os.environ.get("LAB_SWIFTSHADER", ""), "/usr/lib/chromium/vk_swiftshader_icd.json",
+          "/usr/lib64/chromium-browser/vk_swiftshader_icd.json", "/opt/google/chrome/vk_swiftshader_icd.json"]
+DRIVER = next(filter(os.path.isfile, PLACES), "")
+SWIFTSHADER = {"VK_DRIVER_FILES": DRIVER, "VK_ICD_FILENAMES": DRIVER}
+CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
+SCENES = sorted(path.stem for path in (PROJECT / "assets/scenes").glob("*.json"))
+
+# A path that takes another way nearly always differs by more than a tenth. Few may; most of them meet glass or textures.
+OTHER_WAY, MOST_OTHER_WAYS = 0.1, 0.005
+# What the means of all others may differ by: as much as its sines and cosines are wrong.
+SINE_ERROR = 2e-4
+
+
+def setUpModule():
+    if "LAB_TEST_ALL" not in os.environ:
+        raise unittest.SkipTest("takes minutes: ./lab test --all")
+    if not DRIVER:
+        raise unittest.SkipTest("SwiftShader is missing: Debian's package chromium has it, or LAB_SWIFTSHADER names its .json")
+
+
+class SwiftShader(RenderTest):
+    def paths(self, device, chapter, scene, environment=None):
+        """The radiance of a path in each pixel."""
+        program = BINARIES / chapter
+        picture = self.picture(device, "--samples=1", f"--device={device}", scene=scene, size=(96, 96), program=program,
+                               environment=environment)
+        self.assertEqual(picture.text("invalid_samples"), "0")
+        return np.array(picture.pixels()).reshape(3, -1)
+
+    def test_paths_are_those_of_mesas_driver(self):
+        cases = [(chapter, "cornell_box") for chapter in CHAPTERS] + [(CHAPTERS[-1], scene) for scene in SCENES]
+        for chapter, scene in cases:
+            with self.subTest(chapter=chapter, scene=scene):
+                expected = self.paths("llvmpipe", chapter, scene)
+                actual = self.paths("SwiftShader", chapter, scene, SWIFTSHADER)
+                differences = actual - expected
+                limits = OTHER_WAY * np.maximum(expected, actual) + 1e-6 * expected.mean()
+                self.assertLess(np.any(abs(differences) > limits, axis=0).mean(), MOST_OTHER_WAYS)
+                # A path that takes another way is as likely to gain as to lose: five standard deviations of the sum.
+                deviation = np.sqrt((differences.sum(axis=0) ** 2).sum())
+                self.assertLess(abs(differences.sum()), 5 * deviation + SINE_ERROR * expected.sum())
+
+    def test_hard_cases(self):
+        code, out, _ = self.run_program(program=BINARIES / "hard_cases_tests", environment=SWIFTSHADER, timeout=900)
+        self.assertEqual(code, 0, out)
+        self.assertRegex(out, r"\[  PASSED  \] [5-9]\d tests")
+
+    def test_it_has_no_ray_tracing(self):
+        for backend in ("pipeline", "query"):
+            arguments = ["cornell_box", "--quiet", f"--backend={backend}"]
+            self.assert_refused(arguments, "lacks VK_KHR", "these work on it: compute", code=2, environment=SWIFTSHADER)
+
+
+if __name__ == "__main__":
+    unittest.main()
