@@ -20,7 +20,8 @@ std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) -
 
 [[noreturn]] void refuse_allocations(const Device& device) {
     throw DeviceFailure("too many arrays, textures and meshes for the device, which allows " +
-                        std::to_string(device.limits().maxMemoryAllocationCount) + ": use a smaller scene");
+                        std::to_string(device.limits().maxMemoryAllocationCount) +
+                        " of them: use a smaller scene");
 }
 
 // Memory of a type that has all `required` properties and, where there is a choice, the preferred ones. Where

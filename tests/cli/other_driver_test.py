@@ -1,6 +1,7 @@
 """SwiftShader, Chromium's Vulkan driver for the CPU, shares no code with Mesa's: a second opinion on every machine."""
 
 import os
+import re
 import unittest
 
 from tools_path import PROJECT  # first: it finds the others
@@ -49,10 +50,14 @@ class SwiftShader(RenderTest):
                 deviation = np.sqrt((differences.sum(axis=0) ** 2).sum())
                 self.assertLess(abs(differences.sum()), 5 * deviation + SINE_ERROR * expected.sum())
 
-    def test_hard_cases(self):
-        code, out, _ = self.run_program(program=BINARIES / "hard_cases_tests", environment=SWIFTSHADER, timeout=900)
-        self.assertEqual(code, 0, out)
-        self.assertRegex(out, r"\[  PASSED  \] [5-9]\d tests")
+    def test_shaders_and_hard_cases_on_it(self):
+        """Those of its backend: others are skipped. What takes long is left to the first driver."""
+        environment = {**SWIFTSHADER, "LAB_TEST_ALL": None}
+        for program, least in (("shaders_tests", 100), ("parity_tests", 10), ("hard_cases_tests", 50)):
+            with self.subTest(program=program):
+                code, out, _ = self.run_program(program=BINARIES / program, environment=environment, timeout=1200)
+                self.assertEqual(code, 0, out)
+                self.assertGreater(int(re.search(r"\[  PASSED  \] (\d+) tests", out).group(1)), least)
 
     def test_it_has_no_ray_tracing(self):
         for backend in ("pipeline", "query"):
