@@ -15,6 +15,7 @@ import mistake
 import project
 from check import command, grading
 from check.formats import as_github
+from course.mistakes import plant
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
 ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
@@ -217,6 +218,26 @@ class CheckTest(ProgramTest):
         self.assertEqual((code, box["verdict"]), (1, "noisy"), box["noise"])
         self.assertGreater(box["noise"][2], 2)  # it is 2 + (mean / deviation)² in each pixel
         self.assertAlmostEqual(box["rays"], 1.5, delta=0.02)
+
+    def planted(self, chapter, find, replace):
+        """Name of a file with a chapter's own shader, changed in one place."""
+        text = (PROJECT / "chapters" / project.CHAPTERS[chapter] / "path_trace.glsl").read_text(encoding="utf-8")
+        return self.write("mine.glsl", plant(text, find, replace, "the chapter's shader"))
+
+    def test_mistakes_at_a_turned_light_probe_above_lamps_are_found(self):
+        for find, replace in ((" - 0.5) - parameters.probe_rotation;", " - 0.5) + parameters.probe_rotation;"),
+                              ("happens(LIGHT_PROBE_PROBABILITY, seed)", "happens(0.8, seed)")):
+            with mock.patch.dict(grading.SCENES, {8: (12, ["check_sky_4"])}):
+                code, out, err = self.check(8, "--runs", 5, "--json", self.planted(8, find, replace))
+            self.assertEqual(code, 1, f"{replace}: {out}{err}")
+
+    def test_points_that_lose_what_the_chapter_gains_are_noisy(self):
+        file = self.planted(9, "scramble_reversed(get_second_dimension(index), keys.y)", "scramble_reversed(index, keys.y)")
+        with mock.patch.dict(grading.SCENES, {9: (16, ["cornell_box_1"])}):
+            code, out, err = self.check(9, "--json", file)
+        scene = json.loads(out)["scenes"][0]
+        self.assertEqual((code, scene["verdict"]), (1, "noisy"), scene["noise"])
+        self.assertLess(scene["most_noise"], grading.TOO_MUCH)
 
     def test_a_broken_shader_is_reported_by_file_and_line(self):
         lines = SHADER.read_text(encoding="utf-8").splitlines()

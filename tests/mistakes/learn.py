@@ -18,6 +18,7 @@ import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from statistics import fmean
 from threading import Lock
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
@@ -33,6 +34,9 @@ RECORD = RECORDS / "check/confusion.json"
 OTHER_KNOWLEDGE = Path(__file__).with_name("other_scenes.json")  # as grading.KNOWLEDGE, of OTHER_SCENES
 # Levels have the seeds of a check without --seed, see grading.first_seed(); the others have seeds that no check has.
 LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0), "factor": 1}
+# The chapter that a chapter has less noise than with the same samples, where that is its lesson.
+GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in grading.DESCRIPTIONS.items()
+              if "gains_over" in says.get("check", {})}
 LEARNING = {"runs": 5, "first_seed": 1001, "factor": 2}  # times the samples of a check
 TRYING = {"runs": grading.RUNS, "first_seed": 3001, "factor": 1}  # as a check does, with seeds that nothing was learnt from
 
@@ -41,6 +45,12 @@ def settings(chapter, plan, scenes=None):
     """What a verdict depends on besides the shader."""
     samples, own_scenes = grading.SCENES[chapter]
     return {"plan": plan, "samples": samples, "scenes": scenes or own_scenes, "options": grading.OPTIONS[chapter]}
+
+
+def level_digest(chapter, scenes):
+    """Of what the levels of a chapter depend on."""
+    shaders = [own_shader(number).read_text(encoding="utf-8") for number in (chapter, GAINS_OVER.get(chapter)) if number]
+    return digest(settings(chapter, LEVELS, scenes), *shaders)
 
 
 def digest(*parts):
@@ -65,8 +75,17 @@ class Workshop:
             return grading.judge(chapter, file, self.settings(chapter, plan, seed), levels, scenes)[0]
 
     def levels(self, chapter, scenes):
-        cases = grading.render(chapter, own_shader(chapter), self.settings(chapter, LEVELS), scenes)
-        return {case["scene"]: grading.level(case) for case in cases}
+        """Those of the chapter's own shader, with what it gains over the one that chapter.json names."""
+        def levels_of(number):
+            cases = grading.render(number, own_shader(number), self.settings(chapter, LEVELS), scenes)
+            return {case["scene"]: grading.level(case) for case in cases}
+
+        levels = levels_of(chapter)
+        if chapter in GAINS_OVER:
+            for scene, base in levels_of(GAINS_OVER[chapter]).items():
+                errors = [fmean(level["rel_mse"].values()) for level in (base, levels[scene])]
+                levels[scene]["gain"] = float(f"{errors[0] / errors[1]:.3g}")
+        return levels
 
     def map(self, what, function, items):
         """Calls a function for all items, with progress."""
@@ -98,7 +117,7 @@ def planned_knowledge(scenes, before):
     knowledge, work = {}, []
     for chapter, names in scenes.items():
         known = before.get(str(chapter), {"mistakes": {}})
-        measured = digest(settings(chapter, LEVELS, names), own_shader(chapter).read_text(encoding="utf-8"))
+        measured = level_digest(chapter, names)
         levels = known["levels"] if known.get("measured") == measured else None
         knowledge[str(chapter)] = {"measured": measured, "levels": levels, "mistakes": {}}
     for chapter, mistake, text in catalogue():

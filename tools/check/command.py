@@ -2,9 +2,9 @@
 
 Renders scenes that have a reference image, each several times. The means of the whole image and of its tiles are tested
 against the reference: a correct shader is called biased in about one of 1000 checks. Error and rays are compared with those of
-the chapter's own shader: too much is 1.5 times, unless the one pays for the other. What is wrong is compared with what
-common mistakes do to the pictures. The answer is a question to think about and the slide to read again; --teacher names
-the mistake as well. After a third of the renders a first verdict says what is sure by then.
+the chapter's own shader: too much is 1.5 times, unless the one pays for the other, and less where less noise is the lesson.
+What is wrong is compared with what common mistakes do to the pictures. The answer is a question to think about and the slide to
+read again; --teacher names the mistake as well. After a third of the renders a first verdict says what is sure by then.
 
 --all grades each shader in a folder: files NAME.glsl, and path_trace.glsl in folders of their own. It writes results.csv
 and a page with pictures, and goes on where it was interrupted. For autograders see docs/grading.

@@ -30,6 +30,9 @@ OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) els
 TILE = 16  # pixels
 FALSE_ALARMS = 0.001  # of all checks of correct shaders
 TOO_MUCH = 1.5  # times the error of a sample or its rays
+# Of what the technique gains, on the scale of the error's logarithm, a shader may lose so much; an error so many times as large
+# is never too much.
+LOST_PART, LITTLE = 0.25, 1.1
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
 EARLY_RUNS = 4  # after which a first verdict is worth telling
 JOBS = 2  # renders at a time: while one starts, another renders
@@ -146,6 +149,12 @@ def level(case):
             "rays": float(f"{mean_of(rows.values(), 'rays') / samples / case['width'] / case['height']:.4g}")}
 
 
+def most_noise(recorded):
+    """So many times the error of the chapter's own shader, of which this is recorded, is not too much yet. Where its lesson is less
+    noise, a shader without it may have less than TOO_MUCH."""
+    return min(TOO_MUCH, max(recorded["gain"]**LOST_PART, LITTLE)) if "gain" in recorded else TOO_MUCH
+
+
 def grade(case, recorded, comparisons):
     """The verdict on a scene, with the numbers that it follows from."""
     reference, now = reference_regions(ROOT / case["reference_file"]), level(case)
@@ -158,14 +167,14 @@ def grade(case, recorded, comparisons):
     # Noise that is paid for by fewer rays is no fault, and rays that pay by less noise are none either.
     if case["invalid_samples"] or any(test["is_biased"] for test in tests):
         verdict = "biased"
-    elif noise[1] is not None and noise[1] * min(rays, 1) > TOO_MUCH:
+    elif noise[1] is not None and noise[1] * min(rays, 1) > most_noise(recorded):
         verdict = "noisy"
     else:
         verdict = "expensive" if rays * min(noise[1] or noise[0] or 1, 1) > TOO_MUCH else "correct"
     columns = case["width"] // TILE
     tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tests[3:])]
     return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": tests[:3],
-            "tiles": tiles, "noise": noise, "rays": rays}
+            "tiles": tiles, "noise": noise, "most_noise": most_noise(recorded), "rays": rays}
 
 
 def read_levels(chapter):

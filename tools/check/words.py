@@ -32,7 +32,8 @@ def scene_words(scene):
         least = max(test["detectable"] for test in scene["image"])
         words.append(f"a bias from {100 * least:.2g} % would have shown")
         if scene["noise"][0] is not None:
-            words.append(f"noise x {scene['noise'][0]:.2f} [{scene['noise'][1]:.2f}, {scene['noise'][2]:.2f}]")
+            limit = f", at most {scene['most_noise']:.2f} is right" if scene["verdict"] == "noisy" else ""
+            words.append(f"noise x {scene['noise'][0]:.2f} [{scene['noise'][1]:.2f}, {scene['noise'][2]:.2f}]{limit}")
         words.append(f"rays x {scene['rays']:.2f}")
     return words
 

@@ -27,9 +27,10 @@ from references.scenes import read_scene
 GOES_ON = True
 # The references that the tests use: maximal path lengths for each scene.
 SHIPPED = {"cornell_box": (1, 6), "torus": (5,), "heart_light": (4,), "textured": (4,), "glossy": (5,), "instances": (4,),
-           "glass": (8,), "clear_glass": (8,), "check_room": (2, 6), "check_glass": (8,), "plates": (3,), "sunny": (4,), "studio": (4,)}
+           "glass": (8,), "clear_glass": (8,), "check_room": (2, 6), "check_glass": (8,), "plates": (3,), "sunny": (4,), "studio": (4,),
+           "check_sky": (4,)}
 SHIPPED_SIZES = {"plates": (144, 96)}  # others: 128 x 128
-SHIPPED_SAMPLES = {"sunny": 16384, "studio": 16384}  # others: 65536
+SHIPPED_SAMPLES = {"sunny": 16384, "studio": 16384, "check_sky": 16384}  # others: 65536
 
 BATCHES = 64  # for the variance of the mean: known to 18 %
 MIN_BATCHES = 32  # of an interrupted render
