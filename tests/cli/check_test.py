@@ -155,7 +155,8 @@ class CheckTest(ProgramTest):
         table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
-        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)), ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"])
+        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)),
+                         ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"])
         self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
 
         self.write("all/abe.glsl", ENDLESS)
@@ -273,9 +274,13 @@ class CheckTest(ProgramTest):
         self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
 
     def test_an_endless_loop_is_ended(self):
-        code, _, err = self.run_tool("check", 3, self.write("endless.glsl", ENDLESS), "--time-limit", 1)
-        self.assertEqual(code, 2)
-        self.assertRegex(err, r"\Aerror: [^\n]*(ended after 1 s|device)[^\n]*\n\Z")
+        """Also one outside of the shader: that over the bounces of a path whose end never comes."""
+        path = self.planted(10, "get_background_radiance(path.ray.direction);\n        return false;",
+                            "get_background_radiance(path.ray.direction);\n        return true;")
+        for chapter, file in ((3, self.write("endless.glsl", ENDLESS)), (10, path)):
+            code, _, err = self.run_tool("check", chapter, file, "--time-limit", 1)
+            self.assertEqual(code, 2)
+            self.assertRegex(err, r"\Aerror: [^\n]*(ended after 1 s: does each loop [^\n]*, and each path\?|device)[^\n]*\n\Z")
 
     def test_what_cannot_be_graded(self):
         for arguments in ((99,), (3, "nothing.glsl"), ("three",), (3, "--all", "nowhere"), (3, "--all", ".", SHADER)):
