@@ -22,7 +22,9 @@ constexpr double renderer_rounding = 1e-5;
 
 double square(double x) { return x * x; }
 
-// "-14 % ± 1 %": the interval holds the bias with probability 0.95. As many digits as the interval has one.
+}  // namespace
+
+// As many digits as the interval has one.
 std::string interval_text(const Difference& difference) {
     const double half_width = 1.96 * difference.standard_error;
     const int digits =
@@ -32,8 +34,6 @@ std::string interval_text(const Difference& difference) {
                   100 * half_width);
     return text;
 }
-
-}  // namespace
 
 LiveVerdict::LiveVerdict(Reference reference, glm::uvec2 image_size, double false_alarms)
     : reference_(std::move(reference)), false_alarms_(false_alarms) {
@@ -65,6 +65,13 @@ void LiveVerdict::add(const FilmImage& film) {
     test();
 }
 
+Reference::Part LiveVerdict::expected(const Region& region, int channel) const {
+    const glm::uvec2 corner = region.first * tile;
+    const glm::uvec2 end =
+        glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
+    return reference_.part(channel, corner, end - corner);
+}
+
 // Of a channel's mean over a region, in units of radiance.
 Difference LiveVerdict::difference(const Region& region, int channel) const {
     const glm::uvec2 corner = region.first * tile;
@@ -80,13 +87,13 @@ Difference LiveVerdict::difference(const Region& region, int channel) const {
     double variance = square(difference.standard_error);
     // Where light is found by chance, too few finds make the mean and its spread too small together. Rare
     // events have a variance proportional to their mean: what the reference's mean would give counts.
-    const Reference::Part expected = reference_.part(channel, corner, end - corner);
-    const double mean = expected.mean + difference.value;
-    if (mean > 0) variance *= std::max(expected.mean / mean, 1.0);
+    const Reference::Part reference = expected(region, channel);
+    const double mean = reference.mean + difference.value;
+    if (mean > 0) variance *= std::max(reference.mean / mean, 1.0);
     // What never occurred yet does not show in the spread at all. The reference's renderer has seen it.
     const double reference_samples = reference_samples_ / square(scale_);
-    variance = std::max(variance, expected.variance * reference_samples / samples_);
-    difference.standard_error = std::sqrt(variance + square(renderer_rounding * expected.mean));
+    variance = std::max(variance, reference.variance * reference_samples / samples_);
+    difference.standard_error = std::sqrt(variance + square(renderer_rounding * reference.mean));
     return difference;
 }
 
@@ -105,30 +112,35 @@ void LiveVerdict::test() {
                     .is_biased = verdict_ && verdict_->is_biased,
                     .differences = {},
                     .map = {tiles_.x, tiles_.y, std::vector<double>(size_t{tiles_.x} * tiles_.y)},
+                    .map_differences = {},
                     .map_tile_size = tile * scale_};
     std::array<double, 3> scales;
     for (int channel = 0; channel < 3; ++channel) {
-        const double mean =
-            reference_.part(channel, {0, 0}, {reference_.mean.width, reference_.mean.height}).mean;
+        const double mean = expected({{0, 0}, tiles_}, channel).mean;
         scales[channel] = mean > 0 ? mean : 1;
         const Difference of_image = difference({{0, 0}, tiles_}, channel).relative_to(scales[channel]);
         verdict.differences[channel] = of_image;
         verdict.smallest_detectable[channel] = of_image.smallest_detectable(sidak(level, 3), power);
         verdict.is_biased |= of_image.p_value() < sidak(level, 3);
     }
-    // Of a region the channel that is farthest off.
+    // Of a region the channel that is farthest off, as part of the reference's mean there.
     const auto worst = [&](uint32_t x, uint32_t y, uint32_t edge) {
         Difference farthest;
         for (int channel = 0; channel < 3; ++channel) {
-            Difference d = difference({{x, y}, glm::min(glm::uvec2(x, y) + edge, tiles_)}, channel);
-            d.standard_error = std::hypot(d.standard_error, tile_floor * scales[channel]);
+            const Region region{{x, y}, glm::min(glm::uvec2(x, y) + edge, tiles_)};
+            const double floor = tile_floor * scales[channel];
+            Difference d = difference(region, channel);
+            d.standard_error = std::hypot(d.standard_error, floor);
+            d = d.relative_to(std::max(expected(region, channel).mean, floor));
             if (channel == 0 || std::abs(d.z()) > std::abs(farthest.z())) farthest = d;
         }
         return farthest;
     };
     for (uint32_t y = 0; y < tiles_.y; ++y)
-        for (uint32_t x = 0; x < tiles_.x; ++x)
-            verdict.map.values[size_t{y} * tiles_.x + x] = worst(x, y, 1).z();
+        for (uint32_t x = 0; x < tiles_.x; ++x) {
+            verdict.map_differences.push_back(worst(x, y, 1));
+            verdict.map.values[size_t{y} * tiles_.x + x] = verdict.map_differences.back().z();
+        }
     if (const uint32_t edge = finest_reliable_edge(); edge > 0) {
         verdict.tile_size = edge * tile * scale_;
         const glm::uvec2 regions = (tiles_ + edge - 1u) / edge;
@@ -144,8 +156,10 @@ void LiveVerdict::test() {
     verdict_ = std::move(verdict);
 }
 
-std::array<uint8_t, 3> z_colour(double z) {
-    const double x = std::clamp(z / 5, -1.0, 1.0);
+std::array<uint8_t, 3> z_colour(double z) { return signed_colour(z / 5); }
+
+std::array<uint8_t, 3> signed_colour(double x) {
+    x = std::clamp(x, -1.0, 1.0);
     const auto byte = [](double part) { return static_cast<uint8_t>(std::lround(255 * part)); };
     return {byte(1 + std::min(x, 0.0)), byte(1 - std::abs(x)), byte(1 - std::max(x, 0.0))};
 }

@@ -22,6 +22,8 @@ struct ZMap {
 // What such a number is shown as: red where it is too bright, blue where too dark, full colour at 5 standard
 // errors.
 std::array<uint8_t, 3> z_colour(double z);
+// The same from -1 to 1.
+std::array<uint8_t, 3> signed_colour(double x);
 
 struct Verdict {
     uint32_t samples = 0;  // a pixel, when it was found
@@ -33,8 +35,12 @@ struct Verdict {
     uint32_t tile_size = 0;  // of the tiles that were tested, in pixels of the image; 0: none yet
     uint32_t tiles = 0, bright_tiles = 0, dark_tiles = 0;  // all, significantly too bright, too dark
     ZMap map;  // tiles of 8 x 8 pixels of the reference, of each the channel that is farthest off
-    uint32_t map_tile_size = 0;  // of these, in pixels of the image
+    std::vector<Difference> map_differences;  // of these tiles and channels, as part of the reference's mean
+    uint32_t map_tile_size = 0;               // of these, in pixels of the image
 };
+
+// "-14 % ± 1 %" of a difference as part of something: the interval holds the bias with probability 0.95.
+std::string interval_text(const Difference& difference);
 
 // "agrees with the reference: …" or "biased: …", in one line.
 std::string to_text(const Verdict& verdict);
@@ -68,6 +74,7 @@ class LiveVerdict {
     struct Region {
         glm::uvec2 first, end;  // in tiles
     };
+    Reference::Part expected(const Region& region, int channel) const;
     Difference difference(const Region& region, int channel) const;
     uint32_t finest_reliable_edge() const;
     void test();

@@ -26,6 +26,13 @@ std::string text(const char* format, double a, double b) {
     return buffer;
 }
 
+// The round part of the reference that a colour of tiles reaches to: 1, 2, 5, … 100 %.
+double full_colour_at(double largest) {
+    for (const double part : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
+        if (largest <= part) return part;
+    return 1;
+}
+
 // Edge of square tiles that are neither too small nor too many.
 uint32_t tile_size_for(const glm::uvec2& image_size) {
     return std::max(8u, (std::max(image_size.x, image_size.y) + most_tiles - 1) / most_tiles);
@@ -63,14 +70,14 @@ void TileOverlay::update(const Session& session) {
     }
     uint32_t samples = session.last_snapshot().min_samples();
     const Verdict* verdict = session.latest_verdict();
-    if (shown == Overlay::bias) samples = verdict ? verdict->samples : 0;
+    if (shows_bias()) samples = verdict ? verdict->samples : 0;
     const bool is_old = shown == Overlay::samples && seconds_since(last_update_) > 0.5;
     if (coloured_ == shown && coloured_samples_ == samples && !is_old) return;
     coloured_ = shown;
     coloured_samples_ = samples;
     last_update_ = Clock::now();
     colours_.clear();
-    if (shown == Overlay::bias) return colour_bias(session);
+    if (shows_bias()) return colour_bias(session);
     const glm::uvec2 image = session.build().job.parameters.image_size;
     tile_size_ = tile_size_for(image);
     tiles_ = (image + tile_size_ - 1u) / tile_size_;
@@ -86,11 +93,33 @@ void TileOverlay::colour_bias(const Session& session) {
     }
     tile_size_ = verdict->map_tile_size;
     tiles_ = {verdict->map.width, verdict->map.height};
-    for (const double z : verdict->map.values) {
-        const auto [red, green, blue] = z_colour(z);
-        colours_.push_back(IM_COL32(red, green, blue, 255 * opacity));
+    const auto add = [&](const std::array<uint8_t, 3>& rgb) {
+        colours_.push_back(IM_COL32(rgb[0], rgb[1], rgb[2], 255 * opacity));
+    };
+    legend_ = "red: too bright, blue: too dark, full colour at ";
+    if (shown == Overlay::bias) {
+        for (const double z : verdict->map.values) add(z_colour(z));
+        legend_ += "5 standard errors";
+        return;
     }
-    legend_ = "red: too bright, blue: too dark, full colour at 5 standard errors";
+    // Noise may be any part of what little light a tile has: only what is certain is coloured.
+    const auto certain = [&](size_t i) {
+        return std::abs(verdict->map.values[i]) >= 5 ? verdict->map_differences[i].value : 0;
+    };
+    double largest = 0;
+    for (size_t i = 0; i < verdict->map.values.size(); ++i) largest = std::max(largest, std::abs(certain(i)));
+    const double full = full_colour_at(largest);
+    for (size_t i = 0; i < verdict->map.values.size(); ++i) add(signed_colour(certain(i) / full));
+    legend_ += text("%.0f %% of the reference; white: less than %.0f standard errors", 100 * full, 5);
+}
+
+void TileOverlay::explain(const Session& session, const glm::uvec2& pixel) const {
+    const Verdict* verdict = session.latest_verdict();
+    if (!shows_bias() || !verdict || colours_.empty()) return;
+    const glm::uvec2 at = pixel / verdict->map_tile_size;
+    const size_t i = size_t{at.y} * verdict->map.width + at.x;
+    ImGui::SetTooltip("this tile: %s of the reference,\n%+.1f standard errors",
+                      interval_text(verdict->map_differences[i]).c_str(), verdict->map.values[i]);
 }
 
 // By `heat_of` what is estimated of each tile.

@@ -11,8 +11,9 @@
 
 namespace lab {
 
-enum class Overlay { none, bias, noise, samples };
-inline constexpr const char* overlay_names[] = {"none", "bias (live verdict)", "noise", "sample count"};
+enum class Overlay { none, bias, relative_bias, noise, samples };
+inline constexpr const char* overlay_names[] = {"none", "bias in standard errors", "bias in percent", "noise",
+                                                "sample count"};
 
 class TileOverlay {
   public:
@@ -21,9 +22,12 @@ class TileOverlay {
 
     // Between Screen::begin_frame() and Screen::show(), over the picture.
     void draw(const Session& session, const Rectangle& picture);
+    // Says at the pointer what a tile of bias is, in numbers.
+    void explain(const Session& session, const glm::uvec2& pixel) const;
     const std::string& legend() const { return legend_; }  // of the colours
 
   private:
+    bool shows_bias() const { return shown == Overlay::bias || shown == Overlay::relative_bias; }
     void update(const Session& session);
     void colour_bias(const Session& session);
     void colour_tiles(const FilmImage& earlier, const FilmImage& later,

@@ -113,7 +113,12 @@ TEST(LiveVerdict, SaysHowLargeTheBiasIsAndWhere) {
     EXPECT_EQ(verdict.verdict()->bright_tiles, 0u);
     const ZMap& map = verdict.verdict()->map;
     ASSERT_EQ(map.values.size(), 16u);
-    for (uint32_t i = 0; i < 16; ++i) EXPECT_EQ(map.values[i] < -5, i % 4 < 2) << "tile " << i;
+    for (uint32_t i = 0; i < 16; ++i) {
+        EXPECT_EQ(map.values[i] < -5, i % 4 < 2) << "tile " << i;
+        const Difference& tile = verdict.verdict()->map_differences[i];
+        EXPECT_NEAR(tile.value, i % 4 < 2 ? -0.3 : 0, 5 * tile.standard_error) << "tile " << i;
+        EXPECT_LT(tile.standard_error, 0.03) << "tile " << i;
+    }
 }
 
 TEST(LiveVerdict, SaysItInOneLine) {

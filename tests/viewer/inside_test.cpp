@@ -63,13 +63,16 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
         return sum;
     };
     const double with_bias = blueness();
-    for (const char* tiles : {"noise", "samples", "none"}) {
+    double with_percent = 0;
+    for (const char* tiles : {"percent", "noise", "samples", "none"}) {
         press(GLFW_KEY_T);
         run_frames(1);
         press(GLFW_KEY_T, false);
         take_screenshot(std::string("viewer_tiles_") + tiles);
+        if (std::string(tiles) == "percent") with_percent = blueness();
     }
     EXPECT_GT(with_bias, blueness() + 1e5);
+    EXPECT_GT(with_percent, blueness() + 1e4);
 
     write(shader, good);
     wait_until("unbiased",
