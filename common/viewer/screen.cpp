@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "clock.h"
 #include "error.h"
@@ -25,6 +26,19 @@ vk::SurfaceFormatKHR choose_format(const Device& device) {
         if (format.format == vk::Format::eB8G8R8A8Unorm || format.format == vk::Format::eR8G8B8A8Unorm)
             return format;
     return formats.front();
+}
+
+// A font that reads well and is mostly there; without any, Dear ImGui's own of pixels.
+void add_font(ImFontAtlas& fonts, float scale) {
+    for (const char* file : {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
+                             "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
+                             "/usr/share/fonts/TTF/DejaVuSans.ttf",                // Arch
+                             "/System/Library/Fonts/Supplemental/Arial.ttf",       // macOS
+                             "C:/Windows/Fonts/segoeui.ttf"})
+        if (std::ifstream(file) && fonts.AddFontFromFileTTF(file, std::round(15 * scale))) return;
+    ImFontConfig font;
+    font.SizePixels = std::round(13 * scale);
+    fonts.AddFontDefault(&font);
 }
 
 // Over an image that was written by a blit, which is then presented.
@@ -78,9 +92,8 @@ void Screen::start_user_interface() {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // leave no file behind
     const float scale = window_->scale();
-    ImFontConfig font;
-    font.SizePixels = std::round(13 * scale);
-    io.Fonts->AddFontDefault(&font);
+    add_font(*io.Fonts, scale);
+    ImGui::GetStyle().FramePadding.y = 2;  // all controls fit into a window of 700 pixels
     ImGui::GetStyle().ScaleAllSizes(scale);
     ImGui_ImplGlfw_InitForVulkan(window_->handle(), true);
 
