@@ -18,7 +18,7 @@ namespace {
 
 constexpr int longest_shown_path = 16;  // of the sliders, like the slides' rows of pictures
 
-float panel_width() { return 27 * ImGui::GetFontSize(); }
+float panel_width() { return 24 * ImGui::GetFontSize(); }
 
 // A slider for a whole number that may be left to `automatic`, shown with a box to tick.
 void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t automatic, int high) {
@@ -68,18 +68,18 @@ void draw_progress(const Session& session, double frames_per_second) {
     ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
     ImGui::Separator();
     if (session.target_samples() < UINT32_MAX - record.first_sample)
-        ImGui::Text("%.6g of %u samples a pixel, %s", samples, session.target_samples(),
+        ImGui::Text("%.6g of %u samples per pixel in %s", samples, session.target_samples(),
                     duration_text(seconds).c_str());
     else
-        ImGui::Text("%.6g samples a pixel, %s", samples, duration_text(seconds).c_str());
-    ImGui::Text("%s samples/s, %s rays/s, %.0f frames/s", short_number(samples / seconds).c_str(),
+        ImGui::Text("%.6g samples per pixel in %s", samples, duration_text(seconds).c_str());
+    ImGui::Text("per second: %s samples, %s rays, %.0f frames", short_number(samples / seconds).c_str(),
                 short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
     constexpr double wanted = 0.01;
     if (const auto error = session.relative_error(); error && *error > wanted)
-        ImGui::Text("error about %.3g %%, 1 %% in %s", 100 * *error,
+        ImGui::Text("relative error %.3g %%, 1 %% in %s", 100 * *error,
                     duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
     else if (error)
-        ImGui::Text("error about %.2g %%", 100 * *error);
+        ImGui::Text("relative error %.2g %%", 100 * *error);
     else
         ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves"
                                                        : "error not known yet");
@@ -115,8 +115,9 @@ void draw_picture(const Session& session, Options& options) {
     }
     ImGui::SliderFloat("exposure", &options.appearance.exposure, -10, 10, "%.1f EV");
     uint32_t width = size.x, height = size.y;
-    if (number_field("width", width)) options.image.width = std::clamp(width, 1u, max_image_extent);
-    if (number_field("height", height)) options.image.height = std::clamp(height, 1u, max_image_extent);
+    if (number_field("width (pixels)", width)) options.image.width = std::clamp(width, 1u, max_image_extent);
+    if (number_field("height (pixels)", height))
+        options.image.height = std::clamp(height, 1u, max_image_extent);
 }
 
 }  // namespace
@@ -191,7 +192,8 @@ void Controls::draw_scene(Session& session, Options& options) {
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Or drop a .json or .obj file on the window");
     vec3 background = session.background();
-    if (ImGui::ColorEdit3("background", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR))
+    if (ImGui::ColorEdit3("background radiance", &background.x,
+                          ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR))
         options.light.background = glm::max(background, vec3(0));
     ImGui::Checkbox("specular lobes (Ks)", &options.scene.specular);
 }
@@ -237,8 +239,11 @@ void Controls::draw_camera(Session& session, CameraControl& camera_control) {
     copy("Copy flags", camera_flags(pose, '='));
     ImGui::SameLine();
     copy("Copy JSON", camera_json(pose));
+    ImGui::SameLine();
+    if (ImGui::Button("First camera (F)")) session.reset_camera();
     ImGui::TextWrapped(
-        "W A S D Q E move at %s/s (wheel), drag to look; Tab hides this, space pauses, R restarts",
+        "W A S D Q E move, %s units of the scene per second (wheel); drag to look. Moving ends the verdict: "
+        "F goes back. T: tiles, Tab hides this, space pauses, R restarts",
         short_number(camera_control.speed()).c_str());
 }
 

@@ -13,30 +13,66 @@ namespace {
 
 const ImVec4 grey(0.65f, 0.65f, 0.65f, 1), green(0.45f, 0.9f, 0.45f, 1), red(1.0f, 0.45f, 0.4f, 1);
 
-void text_vector(const char* name, const vec3& v) { ImGui::Text("%s %.4g %.4g %.4g", name, v.x, v.y, v.z); }
+ImVec4 colour_of(VerdictState state) {
+    switch (state) {
+        case VerdictState::agrees:
+            return green;
+        case VerdictState::biased:
+            return red;
+        default:
+            return grey;
+    }
+}
+
+void text_colour(const char* name, const vec3& v) {
+    ImGui::TextWrapped("%s RGB %.3g %.3g %.3g", name, v.x, v.y, v.z);
+}
+void text_point(const char* name, const vec3& v) {
+    ImGui::TextWrapped("%s (%.3g, %.3g, %.3g)", name, v.x, v.y, v.z);
+}
 
 }  // namespace
 
-void InsidePanel::draw(const Session& session, const Rectangle& picture, double seconds) {
+int InsidePanel::height() const {
+    if (!inspection_.selection()) return 0;
+    return static_cast<int>(17 * ImGui::GetFontSize() * ImGui::GetIO().DisplayFramebufferScale.y);
+}
+
+void InsidePanel::draw(const Session& session, const Rectangle& picture, const Rectangle& panel,
+                       double seconds) {
     select_clicked_pixel(session, picture);
     inspection_.update(session, seconds);
     overlay_.draw(session, picture);
+    if (hovered_) overlay_.explain(session, *hovered_);
     if (inspection_.path())
         draw_path(*inspection_.path(), inspection_.parameters().camera, inspection_.selection()->vertex,
                   picture);
 
-    if (!inspection_.selection()) return;
-    const float width = 27 * ImGui::GetFontSize();
-    ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - width, 0}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({width, 0});
-    ImGui::SetNextWindowSizeConstraints({width, 0}, {width, ImGui::GetIO().DisplaySize.y});
+    if (inspection_.selection() && panel.size.y > 0) draw_panel(panel);
+}
+
+void InsidePanel::draw_panel(const Rectangle& panel) {
+    const Placement placement(panel);
+    ImGui::SetNextWindowPos({placement.corner.x, placement.corner.y});
+    ImGui::SetNextWindowSize({placement.size.x, placement.size.y});
+    const auto& selection = *inspection_.selection();
+    char title[80];
+    std::snprintf(title, sizeof title, "A path: sample %u of pixel (%u, %u)###path", selection.sample,
+                  selection.pixel.x, selection.pixel.y);
     bool is_open = true;
-    if (ImGui::Begin("A path", &is_open)) {
+    if (ImGui::Begin(title, &is_open,
+                     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse)) {
         if (inspection_.is_building()) ImGui::TextColored(grey, "compiling the recorder ...");
         if (!inspection_.message().empty()) ImGui::TextWrapped("%s", inspection_.message().c_str());
         if (inspection_.path()) {
-            draw_path_list();
+            draw_sample();
+            ImGui::BeginChild("vertices", {0.59f * ImGui::GetContentRegionAvail().x, 0}, true);
+            draw_vertices();
+            ImGui::EndChild();
+            ImGui::SameLine();
+            ImGui::BeginChild("hemisphere");
             draw_hemisphere();
+            ImGui::EndChild();
         }
     }
     ImGui::End();
@@ -73,15 +109,16 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
 }
 
 void InsidePanel::draw_verdict(const Session& session) {
-    const Verdict* verdict = session.latest_verdict();
+    const VerdictState state = session.verdict_state();
     // Always as high, so that what follows does not jump.
     ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false,
                       ImGuiWindowFlags_NoScrollbar);
-    ImGui::PushStyleColor(ImGuiCol_Text, !verdict ? grey : verdict->is_biased ? red : green);
+    ImGui::PushStyleColor(ImGuiCol_Text, colour_of(state));
     ImGui::TextWrapped("%s", session.verdict_text().c_str());
+    if (session.has_moved()) ImGui::TextWrapped("F: back to the first camera");
     ImGui::PopStyleColor();
     ImGui::EndChild();
-    if (verdict && ImGui::IsItemHovered())
+    if (state != VerdictState::none && ImGui::IsItemHovered())
         ImGui::SetTooltip("An unbiased render is ever called biased with a probability of %.3g",
                           LiveVerdict::default_false_alarms);
 }
@@ -96,29 +133,34 @@ void InsidePanel::draw_pixel(const Session& session) {
         const NoiseEstimate value = estimate_noise(session.earlier_snapshot(), film, *pixel, {1, 1});
         const glm::uvec2 corner = *pixel - glm::min(*pixel, glm::uvec2(3));
         const NoiseEstimate around = estimate_noise(session.earlier_snapshot(), film, corner, {7, 7});
-        ImGui::Text("pixel %u,%u: %.4g %.4g %.4g", pixel->x, pixel->y, value.mean[0], value.mean[1],
-                    value.mean[2]);
-        ImGui::Text("%.0f samples, %llu invalid, error about %.2g", value.samples,
-                    static_cast<unsigned long long>(value.invalid_samples), around.standard_error);
+        ImGui::TextWrapped("pixel (%u, %u): mean of %.0f samples, %llu invalid", pixel->x, pixel->y,
+                           value.samples, static_cast<unsigned long long>(value.invalid_samples));
+        text_colour("radiance", vec3(value.mean[0], value.mean[1], value.mean[2]));
+        ImGui::Text("standard error about %.2g", around.standard_error);
     } else {
         ImGui::TextColored(grey, "point at a pixel for its value");
     }
     if (!selection) ImGui::TextColored(grey, "click: follow a path; right click: leave it");
 }
 
-void InsidePanel::draw_path_list() {
+void InsidePanel::draw_sample() {
     auto& selection = *inspection_.selection();
     const RecordedPath& path = *inspection_.path();
-    ImGui::Text("sample %u: radiance %.4g %.4g %.4g", selection.sample, path.radiance.x, path.radiance.y,
-                path.radiance.z);
-    ImGui::SameLine();
+    // Buttons come first: they stay where they are, whatever the numbers.
     if (ImGui::SmallButton("<") && selection.sample > 0) --selection.sample;
     ImGui::SameLine();
     if (ImGui::SmallButton(">")) ++selection.sample;
+    next_sample_button_ = {ImGui::GetItemRectMin().x + 5, ImGui::GetItemRectMin().y + 5};
+    ImGui::SameLine();
+    text_colour("this sample's radiance", path.radiance);
+}
+
+void InsidePanel::draw_vertices() {
+    auto& selection = *inspection_.selection();
+    const RecordedPath& path = *inspection_.path();
     if (!path.is_complete) ImGui::TextColored(red, "too long to be shown as a whole");
     const bool is_weighted = path.has_throughput || path.vertices.size() == 1;
     if (!is_weighted) ImGui::TextColored(red, "the shader has no variable `throughput` to follow");
-    ImGui::BeginChild("vertices", {0, 16 * ImGui::GetFontSize()}, true);
     for (size_t i = 0; i < path.vertices.size(); ++i) {
         const PathVertex& vertex = path.vertices[i];
         ImGui::PushID(static_cast<int>(i));
@@ -128,23 +170,25 @@ void InsidePanel::draw_path_list() {
         if (ImGui::Selectable(title, i == selection.vertex)) selection.vertex = i;
         if (vertex.survival_probability)
             ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
-        if (is_weighted) text_vector("throughput", vertex.throughput);
+        if (is_weighted) text_colour("throughput", vertex.throughput);
         if (vertex.is_hit) {
-            text_vector("position", vertex.position);
-            text_vector("normal", vertex.normal);
+            text_point("position", vertex.position);
+            text_point("normal", vertex.normal);
         } else {
-            text_vector("leaves the scene towards", vertex.direction);
+            text_point("leaves the scene towards", vertex.direction);
         }
         for (const LightSample& light : vertex.light_samples) {
-            text_vector(light.is_visible ? "light sample, visible," : "light sample, hidden,", light.point);
-            if (light.is_visible) text_vector("  adds", light.radiance);
+            text_point("light sample at", light.point);
+            if (light.is_visible)
+                text_colour("  visible: adds", light.radiance);
+            else
+                ImGui::TextUnformatted("  hidden: adds nothing");
         }
-        if (vertex.radiance != vec3(0)) text_vector("radiance found", vertex.radiance);
+        if (vertex.radiance != vec3(0)) text_colour("radiance found", vertex.radiance);
         for (const float probability : vertex.lost_roulettes)
             ImGui::Text("Russian roulette: ended, survival %.3g", probability);
         ImGui::PopID();
     }
-    ImGui::EndChild();
 }
 
 void InsidePanel::draw_hemisphere() {
@@ -167,16 +211,17 @@ void InsidePanel::draw_hemisphere() {
     double mean = 0;
     for (const float value : pictures_.incoming_radiance.pixels) mean += value;
     mean /= static_cast<double>(pictures_.incoming_radiance.pixels.size());
-    ImGui::Text("what x%zu sees: incoming radiance, BRDF, cosine", vertex);
-    const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+    ImGui::TextWrapped("what x%zu sees: incoming radiance, BRDF, cosine", vertex);
+    const ImVec2 free = ImGui::GetContentRegionAvail();
+    const float width = std::min((free.x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3,
+                                 std::max(free.y - 3 * ImGui::GetTextLineHeightWithSpacing(), 1.0f));
     draw_disc(pictures_.incoming_radiance, mean > 0 ? static_cast<float>(0.25 / mean) : 1, width);
     ImGui::SameLine();
     draw_disc(pictures_.brdf, 1 / largest(pictures_.brdf), width);
     ImGui::SameLine();
     draw_disc(pictures_.cosine, 1, width);
-    const vec3 reflected = pictures_.reflected_radiance();
-    ImGui::Text("product reflects %.3g %.3g %.3g, %.0f samples", reflected.x, reflected.y, reflected.z,
-                pictures_samples_);
+    text_colour("their product reflects radiance", pictures_.reflected_radiance());
+    ImGui::Text("mean of %.0f samples", pictures_samples_);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
             "The hemisphere seen from above, in equal areas: the normal in the middle, the horizon at the "

@@ -9,19 +9,23 @@ class InsidePanel {
   public:
     explicit InsidePanel(const Device& device) : inspection_(device) {}
 
-    // Over the picture, and a window of its own where a pixel has been clicked. Between Screen::begin_frame()
-    // and Screen::show(); renders hemispheres for about so many seconds.
-    void draw(const Session& session, const Rectangle& picture, double seconds);
+    // Over the picture, and where a pixel has been clicked a panel for its path. Between
+    // Screen::begin_frame() and Screen::show(); renders hemispheres for about so many seconds.
+    void draw(const Session& session, const Rectangle& picture, const Rectangle& panel, double seconds);
+    int height() const;  // of the panel, in pixels of the framebuffer
     // A section of the controls.
     void draw_controls(const Session& session);
     const Inspection& inspection() const { return inspection_; }
     void show_next_overlay() { overlay_.show_next(); }
+    vec2 next_sample_button() const { return next_sample_button_; }  // where it was drawn last, for tests
 
   private:
     void select_clicked_pixel(const Session& session, const Rectangle& picture);
     void draw_verdict(const Session& session);
     void draw_pixel(const Session& session);
-    void draw_path_list();
+    void draw_panel(const Rectangle& panel);
+    void draw_sample();
+    void draw_vertices();
     void draw_hemisphere();
 
     Inspection inspection_;
@@ -30,6 +34,7 @@ class InsidePanel {
     bool was_dragged_ = false;           // the mouse, since its button went down
     HemisphereView::Pictures pictures_;
     double pictures_samples_ = -1;
+    vec2 next_sample_button_{0};
 };
 
 }  // namespace lab

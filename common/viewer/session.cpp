@@ -32,6 +32,7 @@ Session::Session(const Device& device, Chapter chapter, std::unique_ptr<WindowBu
     : device_(device),
       chapter_(std::move(chapter)),
       options_(first_build->job.options),
+      first_options_(options_),
       build_(std::move(first_build)),
       needs_restart_(!build_->job.resumed) {
     watched_shaders_ = build_->shader_files;
@@ -50,6 +51,17 @@ void Session::change(const Options& options) {
 void Session::set_camera(const CameraPose& pose) {
     Options options = options_;
     options.camera = {pose.position, pose.target, pose.up, pose.vertical_fov};
+    change(options);
+}
+
+// Flags are for the scene of the command line.
+CameraOptions Session::first_camera() const {
+    return options_.scene.file == first_options_.scene.file ? first_options_.camera : CameraOptions{};
+}
+
+void Session::reset_camera() {
+    Options options = options_;
+    options.camera = first_camera();
     change(options);
 }
 
@@ -163,6 +175,17 @@ std::variant<LiveVerdict, std::string> Session::find_verdict() const {
     } catch (const UserError& error) {
         return shortened(error.what());
     }
+}
+
+VerdictState Session::verdict_state() const {
+    if (!latest_verdict()) return VerdictState::none;
+    if (failed_shader_hash_ != 0) return VerdictState::outdated;
+    return latest_verdict()->is_biased ? VerdictState::biased : VerdictState::agrees;
+}
+
+std::string Session::verdict_text() const {
+    if (!verdict()) return "no verdict: " + std::get<std::string>(verdict_);
+    return (verdict_state() == VerdictState::outdated ? "before the mistake: " : "") + verdict()->text();
 }
 
 uint32_t Session::find_reduction(double seconds) const {

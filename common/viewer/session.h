@@ -9,6 +9,9 @@
 
 namespace lab {
 
+// What the live verdict is worth. Outdated: the shader has a mistake, and what is rendered is the one before.
+enum class VerdictState { none, agrees, biased, outdated };
+
 class Session {
   public:
     // The device must outlive the session.
@@ -26,6 +29,8 @@ class Session {
     // taken back, and message() says why.
     void change(const Options& options);
     void set_camera(const CameraPose& pose);
+    void reset_camera();  // to the one it began with
+    bool has_moved() const { return options_.camera != first_camera(); }
     void open_scene(const std::filesystem::path& file);  // with its own camera and background
     void restart() { needs_restart_ = true; }
 
@@ -61,9 +66,8 @@ class Session {
     const Verdict* latest_verdict() const {
         return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr;
     }
-    std::string verdict_text() const {
-        return verdict() ? verdict()->text() : "no verdict: " + std::get<std::string>(verdict_);
-    }
+    VerdictState verdict_state() const;
+    std::string verdict_text() const;
 
     // Writes what there is so far, each file in the format of its ending, as a run without a window does.
     void save(const std::vector<std::filesystem::path>& files);
@@ -76,6 +80,7 @@ class Session {
                                           const std::vector<std::filesystem::path>& files) const;
 
   private:
+    CameraOptions first_camera() const;
     void look_for_changed_shaders();
     void start_build_if_needed();
     void adopt_finished_build();
@@ -92,6 +97,7 @@ class Session {
     const Device& device_;
     const Chapter chapter_;
     Options options_;
+    const Options first_options_;
     std::unique_ptr<WindowBuild> build_;
     BackgroundWork<std::unique_ptr<WindowBuild>> work_;
     BuildStage work_stage_ = BuildStage::nothing;  // that the build in progress begins at, but for shaders

@@ -55,7 +55,7 @@ bool Viewer::frame() {
     screen_.begin_frame();
     for (const auto& file : window_.dropped_files()) session_.open_scene(file);
     if (shows_controls_) {
-        inside_panel_.draw(session_, picture_rectangle(), 0.15 * budget);
+        inside_panel_.draw(session_, picture_rectangle(), path_rectangle(), 0.15 * budget);
         draw_split(comparison_, picture_rectangle());
         controls_.draw(session_, camera_control_, frames_per_second_, [&] {
             inside_panel_.draw_controls(session_);
@@ -76,15 +76,21 @@ bool Viewer::frame() {
     return true;
 }
 
-Rectangle Viewer::picture_rectangle() const {
+Rectangle Viewer::path_rectangle() const {
     const glm::ivec2 window(screen_.size());
     const int left = shows_controls_ ? std::min(controls_.width(), window.x / 2) : 0;
-    const glm::dvec2 free(std::max(window.x - left, 1), std::max(window.y, 1));
+    const int height = shows_controls_ ? std::min(inside_panel_.height(), window.y * 2 / 5) : 0;
+    return {{left, window.y - height}, {window.x - left, height}};
+}
+
+Rectangle Viewer::picture_rectangle() const {
+    const Rectangle path = path_rectangle();
+    const glm::dvec2 free(std::max(path.size.x, 1), std::max(path.corner.y, 1));
     const glm::dvec2 size(session_.build().job.parameters.image_size);
     const double scale = std::min(free.x / size.x, free.y / size.y);
     Rectangle picture;
     picture.size = glm::ivec2(scale * size);
-    picture.corner = glm::ivec2(left, 0) + (glm::ivec2(free) - picture.size) / 2;
+    picture.corner = glm::ivec2(path.corner.x, 0) + (glm::ivec2(free) - picture.size) / 2;
     return picture;
 }
 
@@ -127,6 +133,7 @@ void Viewer::handle_keys() {
     if (window_.was_key_pressed(GLFW_KEY_TAB)) shows_controls_ = !shows_controls_;
     if (window_.was_key_pressed(GLFW_KEY_SPACE)) session_.is_paused = !session_.is_paused;
     if (window_.was_key_pressed(GLFW_KEY_R)) session_.restart();
+    if (window_.was_key_pressed(GLFW_KEY_F)) session_.reset_camera();
     if (window_.was_key_pressed(GLFW_KEY_T)) inside_panel_.show_next_overlay();
 }
 

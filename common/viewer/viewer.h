@@ -26,6 +26,7 @@ class Viewer {
     const InsidePanel& inside_panel() const { return inside_panel_; }
     Comparison& comparison() { return comparison_; }
     Rectangle picture_rectangle() const;  // where the window shows the picture
+    Rectangle path_rectangle() const;     // below it: the path that is looked into; of no height without one
 
   private:
     void move_camera(double seconds);

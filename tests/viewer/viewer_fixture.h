@@ -53,8 +53,16 @@ class ViewerTest : public testing::Test {
         return options;
     }
 
-    void open(const Options& options) {
-        window_ = std::make_unique<Window>("test", uvec2(900, 640));
+    // Of the same size and path length as a reference.
+    Options options_with_reference() const {
+        Options options = make_options();
+        options.image.width = options.image.height = 128;
+        options.light.max_path_length = 6;
+        return options;
+    }
+
+    void open(const Options& options, uvec2 window_size = {900, 640}) {
+        window_ = std::make_unique<Window>("test", window_size);
         // A virtual display may be out of a GPU's reach, but not of the CPU's.
         for (const char* choice : {"", "llvmpipe"}) {
             device_ = std::make_unique<Device>(DeviceOptions{
@@ -128,6 +136,14 @@ class ViewerTest : public testing::Test {
     void point_at(float x, float y) {
         move_pointer(x, y);
         wait_until("pointed at", [&] { return std::abs(ImGui::GetIO().MousePos.x - x) < 1.5f; });
+    }
+
+    void click(float x, float y) {
+        point_at(x, y);
+        press_mouse(true);
+        run_frames(2);
+        press_mouse(false);
+        run_frames(2);
     }
 
     // Moves the pointer with the button held down. GLFW reports a button once, but Dear ImGui before 1.87
