@@ -2,6 +2,8 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "rendering/numbers_text.h"
 #include "viewer/inside_drawing.h"
 
@@ -31,11 +33,11 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
     const Session& second = comparison.second();
     const auto row = [](const char* side, const Session& session) {
         const auto error = session.relative_error();
-        ImGui::Text("%s %.6g samples, %s, error %s", side, session.samples(),
-                    duration_text(session.seconds()).c_str(),
-                    error ? (short_number(100 * *error) + " %").c_str() : "not known yet");
+        ImGui::TextWrapped("%s %.6g samples per pixel in %s, relative error %s", side, session.samples(),
+                           duration_text(session.seconds()).c_str(),
+                           error ? (short_number(100 * *error) + " %").c_str() : "not known yet");
     };
-    row("left: ", first);
+    row("left:", first);
     row("right:", second);
     if (const auto difference = comparison.difference(first))
         ImGui::Text("left - right: %+.2f %% ± %.2f %%", 100 * difference->value,
@@ -51,12 +53,39 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
 
 }  // namespace
 
-void draw_split(const Comparison& comparison, const Rectangle& picture) {
+std::string half_label(const Session& session, const Session& other) {
+    std::string label = std::filesystem::path(session.chapter().name).filename().string();
+    std::replace(label.begin(), label.end(), '_', ' ');  // where lines may break
+    if (session.chapter().name != other.chapter().name) return label;
+    const std::string flags = session.build().job.record.settings + " --",
+                      others = other.build().job.record.settings + " --";
+    for (size_t from = 0, to; (to = flags.find(" --", from)) != std::string::npos; from = to + 1)
+        if (others.find(flags.substr(from, to - from) + " --") == std::string::npos)
+            label += "\n" + flags.substr(from, to - from);
+    return label;
+}
+
+void draw_halves(const Comparison& comparison, const Session& first, const Rectangle& picture) {
     if (!comparison.is_active()) return;
     const Placement placement(picture);
-    ImGui::GetBackgroundDrawList()->AddLine(placement.at({comparison.split, 0}),
-                                            placement.at({comparison.split, 1}),
-                                            IM_COL32(255, 255, 255, 200));
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddLine(placement.at({comparison.split, 0}), placement.at({comparison.split, 1}),
+                 IM_COL32(255, 255, 255, 200));
+    const auto draw_label = [&](const std::string& label, float from, float to) {
+        const ImVec2 corner = placement.at({from, 0}), end = placement.at({to, 1});
+        const float margin = 0.3f * ImGui::GetFontSize(), width = end.x - corner.x - 2 * margin;
+        if (width < ImGui::GetFontSize()) return;  // hardly anything is seen of this half
+        const ImVec2 size = ImGui::CalcTextSize(label.c_str(), nullptr, false, width);
+        list.PushClipRect(corner, end, true);
+        list.AddRectFilled(corner, {corner.x + size.x + 2 * margin, corner.y + size.y + 2 * margin},
+                           IM_COL32(0, 0, 0, 160));
+        list.AddText(nullptr, 0, {corner.x + margin, corner.y + margin}, IM_COL32_WHITE, label.c_str(),
+                     nullptr, width);
+        list.PopClipRect();
+    };
+    const Session& second = comparison.second();
+    draw_label(half_label(first, second), 0, comparison.split);
+    draw_label(half_label(second, first), comparison.split, 1);
 }
 
 void draw_controls(Comparison& comparison, const Session& first) {

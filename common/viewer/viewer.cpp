@@ -56,7 +56,7 @@ bool Viewer::frame() {
     for (const auto& file : window_.dropped_files()) session_.open_scene(file);
     if (shows_controls_) {
         inside_panel_.draw(session_, picture_rectangle(), path_rectangle(), 0.15 * budget);
-        draw_split(comparison_, picture_rectangle());
+        draw_halves(comparison_, session_, picture_rectangle());
         controls_.draw(session_, camera_control_, frames_per_second_, [&] {
             inside_panel_.draw_controls(session_);
             draw_controls(comparison_, session_);

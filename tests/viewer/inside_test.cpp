@@ -2,6 +2,7 @@
 #include <thread>
 
 #include "files/project_folder.h"
+#include "viewer/comparison_panel.h"
 #include "viewer_fixture.h"
 
 namespace lab {
@@ -253,6 +254,8 @@ TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
     comparison.equal = Equal::samples;
     wait_until("both", [&] { return comparison.is_active(); });
     EXPECT_EQ(comparison.message(), "");
+    EXPECT_EQ(half_label(session(), comparison.second()), "05 russian roulette");
+    EXPECT_EQ(half_label(comparison.second(), session()), "03 next event estimation");
     wait_until("samples", [&] { return comparison.second().samples() >= 32 && session().samples() >= 32; });
     EXPECT_NEAR(session().samples(), comparison.second().samples(), 4);
     const auto difference = comparison.difference(session());
@@ -291,6 +294,8 @@ TEST_F(InsideTest, TwoSettingsBesideEachOtherFollowTheView) {
     EXPECT_EQ(parameters(session()).splitting_factor, 16u);
     EXPECT_EQ(parameters(comparison.second()).splitting_factor, 4u);
     EXPECT_NE(parameters(comparison.second()).seed_key, parameters(session()).seed_key);
+    EXPECT_EQ(half_label(session(), comparison.second()), "05 russian roulette\n--splitting-factor 16");
+    EXPECT_EQ(half_label(comparison.second(), session()), "05 russian roulette\n--splitting-factor 4");
 }
 
 TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
