@@ -72,12 +72,13 @@ void draw_progress(const Session& session, double frames_per_second) {
                     duration_text(seconds).c_str());
     else
         ImGui::Text("%.6g samples per pixel in %s", samples, duration_text(seconds).c_str());
-    ImGui::Text("per second: %s samples, %s rays, %.0f frames", short_number(samples / seconds).c_str(),
-                short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
+    ImGui::TextWrapped(
+        "per second: %s samples, %s rays, %.0f frames", short_number(samples / seconds).c_str(),
+        short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
     constexpr double wanted = 0.01;
     if (const auto error = session.relative_error(); error && *error > wanted)
-        ImGui::Text("relative error %.3g %%, 1 %% in %s", 100 * *error,
-                    duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
+        ImGui::TextWrapped("relative error %.3g %%, 1 %% in %s", 100 * *error,
+                           duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
     else if (error)
         ImGui::Text("relative error %.2g %%", 100 * *error);
     else
@@ -141,7 +142,7 @@ void Controls::draw(Session& session, CameraControl& camera_control, double fram
     ImGui::Begin("Controls", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus);
-    ImGui::PushItemWidth(0.5f * panel_width());
+    ImGui::PushItemWidth(0.45f * panel_width());
     draw_progress(session, frames_per_second);
     draw_actions(session);
     further();

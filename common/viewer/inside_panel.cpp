@@ -213,8 +213,9 @@ void InsidePanel::draw_hemisphere() {
     mean /= static_cast<double>(pictures_.incoming_radiance.pixels.size());
     ImGui::TextWrapped("what x%zu sees: incoming radiance, BRDF, cosine", vertex);
     const ImVec2 free = ImGui::GetContentRegionAvail();
-    const float width = std::min((free.x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3,
-                                 std::max(free.y - 3 * ImGui::GetTextLineHeightWithSpacing(), 1.0f));
+    const float width = std::max(std::min((free.x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3,
+                                          free.y - 3 * ImGui::GetTextLineHeightWithSpacing()),
+                                 1.0f);
     draw_disc(pictures_.incoming_radiance, mean > 0 ? static_cast<float>(0.25 / mean) : 1, width);
     ImGui::SameLine();
     draw_disc(pictures_.brdf, 1 / largest(pictures_.brdf), width);

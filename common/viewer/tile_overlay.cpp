@@ -117,6 +117,7 @@ void TileOverlay::explain(const Session& session, const glm::uvec2& pixel) const
     const Verdict* verdict = session.latest_verdict();
     if (!shows_bias() || !verdict || colours_.empty()) return;
     const glm::uvec2 at = pixel / verdict->map_tile_size;
+    if (at.x >= verdict->map.width || at.y >= verdict->map.height) return;  // of another image, soon replaced
     const size_t i = size_t{at.y} * verdict->map.width + at.x;
     ImGui::SetTooltip("this tile: %s of the reference,\n%+.1f standard errors",
                       interval_text(verdict->map_differences[i]).c_str(), verdict->map.values[i]);
