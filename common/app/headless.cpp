@@ -201,7 +201,7 @@ class HeadlessRender {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = record_.seconds - job_.record.seconds;
         // Pixels are independent of each other.
-        const std::optional<ErrorMetrics> error = rows_.empty() ? std::nullopt : rows_.back().error;
+        const ErrorMetrics* error = rows_.empty() || !rows_.back().error ? nullptr : &*rows_.back().error;
         const double pixels = static_cast<double>(snapshot_.pixels.size());
         std::printf("mean radiance  %.5g %.5g %.5g", mean[0], mean[1], mean[2]);
         if (error) std::printf(" ± %.2g", std::sqrt(error->mse / pixels));

@@ -66,7 +66,9 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
         run_frames(1);
         press(GLFW_KEY_T, false);
         take_screenshot(std::string("viewer_tiles_") + tiles);
-        if (std::string(tiles) == "percent") EXPECT_GT(blue_pixels(), 1000u);
+        if (std::string(tiles) == "percent") {
+            EXPECT_GT(blue_pixels(), 1000u);
+        }
     }
     EXPECT_LT(blue_pixels(), 10u);
 
