@@ -46,8 +46,8 @@ uint choose_probe_cell(inout uvec2 seed, out vec2 u) {
 #ifdef LOW_DISCREPANCY
     uvec2 words = get_random_words(seed);
     u = to_numbers(words);
-    uint count = uint(probe_cells.length()), index = get_random_index(count, words.x);
-    return gives_way(words, count, probe_cells[index].threshold, u.x) ? probe_cells[index].alias : index;
+    uint digits, index = get_random_index(uint(probe_cells.length()), words, digits);
+    return gives_way(digits, probe_cells[index].threshold, u.x) ? probe_cells[index].alias : index;
 #else
     uint index = choose_probe_cell(seed);
     u = get_random_numbers(seed);

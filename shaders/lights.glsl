@@ -25,8 +25,8 @@ LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
 #ifdef LOW_DISCREPANCY
     uvec2 words = get_random_words(seed);
     u = to_numbers(words);
-    uint count = uint(light_triangles.length()), index = get_random_index(count, words.x);
-    if (gives_way(words, count, light_triangles[index].threshold, u.x)) index = light_triangles[index].alias;
+    uint digits, index = get_random_index(uint(light_triangles.length()), words, digits);
+    if (gives_way(digits, light_triangles[index].threshold, u.x)) index = light_triangles[index].alias;
     return light_triangles[index];
 #else
     LightTriangle light = choose_light_triangle(seed);

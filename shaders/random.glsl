@@ -50,25 +50,26 @@ uint get_random_index(uint count, uint word) {
     return index;
 }
 
-// Whether an entry of an alias table that get_random_index() has chosen with words.x gives way to its alias, with exactly
-// the probability 1 - threshold/2^32: by which of the words that choose this entry it is. In large tables these are few,
-// so a hash of both words carries on from there. What is left makes another number, uniform in [0,1). Of points that are
-// evenly spread it leaves points that are evenly spread on each entry, while a second word would draw lots.
-bool gives_way(uvec2 words, uint count, uint threshold, out float rest) {
-    uint remainder = words.x * count, before = remainder / count;  // of the entry's words, those below this one
-    uint total = before + 1u + ~remainder / count;                 // and all of them
+// The same from a point with two words of its digits, which go on in a hash of both: 64 digits, since in a table of 2^23
+// entries 32 would leave each of them 9. `digits` are those that the index has not used up, 32 random bits. (The table's
+// probabilities count words. Entries differ from that by a part of 2^-32 count at most, and for 2^k entries not at all.)
+uint get_random_index(uint count, uvec2 words, out uint digits) {
+    uint index, first, more, unused, carry;
+    umulExtended(words.x, count, index, first);
     advance_random_state(words);
-    uint digits = words.x, kept, kept_digits;
-    umulExtended(total, threshold, kept, kept_digits);
-    // Counted in words, is (before, digits) below (kept, kept_digits)? Digits are those after the binary point.
-    bool is_kept = before < kept || (before == kept && digits < kept_digits);
-    const float digit = 1.0 / 4294967296.0;
-    float position = is_kept ? float(before) + digit * float(digits)
-                             : float(before - kept) + digit * (float(digits) - float(kept_digits));
-    float width = is_kept ? float(kept) + digit * float(kept_digits)
-                          : float(total - kept - 1u) + digit * (float(~kept_digits) + 1.0);
-    rest = clamp(position / width, 0.0, 1.0 - 1.0 / 16777216.0);
-    return !is_kept;
+    umulExtended(words.x, count, more, unused);
+    digits = uaddCarry(first, more, carry);
+    return index + carry;
+}
+
+// Whether an entry of an alias table gives way to its alias, by these digits. They lie on one side of the threshold and
+// make another number, uniform in [0,1). Of points that are evenly spread it leaves points that are evenly spread on each
+// entry, while a second word would draw lots.
+bool gives_way(uint digits, uint threshold, out float rest) {
+    bool is_above = digits >= threshold;
+    float width = is_above ? 4294967296.0 - float(threshold) : float(threshold);
+    rest = min(float(is_above ? digits - threshold : digits) / width, 1.0 - 1.0 / 16777216.0);
+    return is_above;
 }
 
 // Whether something of this probability happens: whether a random number of 64 bits is below it, exactly from 2^-40 on.
