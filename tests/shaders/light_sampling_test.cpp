@@ -155,7 +155,7 @@ struct LightAnswer {
 };
 
 std::vector<LightAnswer> sample_light(const std::string& chapter, const std::array<vec3, 3>& corners,
-                                      size_t count) {
+                                      size_t count, bool only_light_samples = false) {
     struct Inputs {
         Surface surface;
         uint32_t max_path_length;
@@ -174,7 +174,8 @@ std::vector<LightAnswer> sample_light(const std::string& chapter, const std::arr
     inputs.light_material.light_density = 1 / inverse_density;
     inputs.light = {
         .instance = 0, .triangle = 1, .threshold = 0, .alias = 0, .inverse_density = inverse_density};
-    const Estimator estimator = chapter_estimator(chapter);
+    Estimator estimator = chapter_estimator(chapter);
+    if (only_light_samples) estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
     const TestShader shader{.name = "direct_light.comp",
                             .defines = estimator.defines,
                             .named_includes = {{"path_trace.glsl", estimator.file}}};
@@ -229,23 +230,29 @@ TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
 }
 
 TEST_P(LightPoints, WeightIsThatOfTheArea) {
-    // L_e ρ cos θ cos θ' / r² A/P, for every sample. From chapter 7 on times p_l / (p_l + p_b), the balance
-    // heuristic with the densities p_l = r² / cos θ' P/A of this sample and p_b = cos θ / π of the bounce.
-    const bool is_weighted = chapter_number(GetParam()) >= 7;
+    // L_e ρ cos θ cos θ' / r² A/P, for every sample. With multiple importance sampling times p_l / (p_l +
+    // p_b), the balance heuristic with the densities p_l = r² / cos θ' P/A of this sample and p_b = cos θ / π
+    // of the bounce; with --strategy light there is no such bounce.
+    const bool has_strategies = load_chapter(GetParam()).strategies;
     const dvec3 normal = glm::normalize(glm::cross(dvec3(light_corners[1]) - dvec3(light_corners[0]),
                                                    dvec3(light_corners[2]) - dvec3(light_corners[0])));
-    double worst = 0;
-    for (const LightAnswer& sample : sample_light(GetParam(), light_corners, 100'000)) {
-        const dvec3 to_light(sample.to_light), omega = glm::normalize(to_light);
-        const double cos_theta = glm::dot(dvec3(surface_normal), omega);
-        const double inverse_light_density =
-            glm::dot(normal, -omega) / glm::dot(to_light, to_light) * inverse_density;
-        const double weight = is_weighted ? 1 / (1 + cos_theta / pi * inverse_light_density) : 1.0;
-        const double expected = emission * albedo / pi * cos_theta * inverse_light_density * weight;
-        worst = std::max(worst, std::abs(sample.radiance / expected - 1));
+    for (const bool only_light_samples : {false, true}) {
+        if (only_light_samples && !has_strategies) continue;
+        const bool is_weighted = has_strategies && !only_light_samples;
+        double worst = 0;
+        for (const LightAnswer& sample :
+             sample_light(GetParam(), light_corners, 100'000, only_light_samples)) {
+            const dvec3 to_light(sample.to_light), omega = glm::normalize(to_light);
+            const double cos_theta = glm::dot(dvec3(surface_normal), omega);
+            const double inverse_light_density =
+                glm::dot(normal, -omega) / glm::dot(to_light, to_light) * inverse_density;
+            const double weight = is_weighted ? 1 / (1 + cos_theta / pi * inverse_light_density) : 1.0;
+            const double expected = emission * albedo / pi * cos_theta * inverse_light_density * weight;
+            worst = std::max(worst, std::abs(sample.radiance / expected - 1));
+        }
+        std::printf("  largest relative error of a weight %.2g\n", worst);
+        EXPECT_LT(worst, 1e-5) << (only_light_samples ? "with --strategy light" : "");
     }
-    std::printf("  largest relative error of a weight %.2g\n", worst);
-    EXPECT_LT(worst, 1e-5);
 }
 
 TEST_P(LightPoints, BacksAndLightsBelowTheHorizonGiveNothing) {
