@@ -1,6 +1,7 @@
 """The command lab as a checkout has it: its line ends, and what it builds for a tool."""
 
 import os
+import re
 import shutil
 import subprocess
 import unittest
@@ -8,7 +9,7 @@ import unittest
 from program import PROJECT, ProgramTest
 
 INSTALLED = "#!/bin/sh\nfor name; do printf '%s:installed ' \"$name\"; done\n"
-NOTING = "#!/bin/sh\necho \"${{0##*/}} $@\" >>'{notes}'\n"
+NOTING = "#!/bin/sh\necho \"${{0##*/}}${{LAB_TEST_COPY:+, copy $LAB_TEST_COPY:}} $@\" >>'{notes}'\n"
 
 
 class LineEnds(ProgramTest):
@@ -24,26 +25,55 @@ class LineEnds(ProgramTest):
             self.assertEqual((self.folder / "tree" / file).read_bytes(), recorded, file)
 
 
-class BuildForACheck(ProgramTest):
-    """lab in a tree of its own, where everything is installed and nothing is built."""
+class WhatIsBuilt(ProgramTest):
+    """lab in a tree of its own, where everything is installed and nothing is built. Chapter 20 is a copy of chapter 3."""
 
-    def test_the_chapter_is_built_wherever_its_number_stands(self):
-        for folder in ("tree/build", "tree/bin", "tree/chapters/03_three", "tree/chapters/12_twelve"):
-            (self.folder / folder).mkdir(parents=True)
-        for name in ("CMakeLists.txt", "build/build.ninja"):
-            (self.folder / "tree" / name).touch()
+    def setUp(self):
+        super().setUp()
+        for folder in ("build", "bin", "tests/shaders", "tests/cli"):
+            (self.folder / "tree" / folder).mkdir(parents=True)
+        for name, title in (("03_three", "Three"), ("12_twelve", "Twelve"), ("20_mine", "Three")):
+            page = f"# {title}\nDone\n   when all tests named `{title}Things` and `More` pass.\n"
+            for file, text in (("chapter.json", f'{{\n    "title": "{title}"\n}}\n'), ("README.md", page)):
+                (self.folder / "tree/chapters" / name).mkdir(parents=True, exist_ok=True)
+                self.write(f"tree/chapters/{name}/{file}", text)
+        self.write("tree/tests/shaders/three_test.cpp", "TEST_P(ThreeThings, AreThree) {\nTEST(Other, IsOther) {\n")
+        self.write("tree/tests/cli/four_test.py", "class FourTest(TestCase):\n")
+        self.write("tree/CMakeLists.txt", "")
         shutil.copy(PROJECT / "lab", self.folder / "tree")
-        notes = self.folder / "notes"
-        for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", NOTING)):
-            self.write(f"tree/bin/{name}", script.format(notes=notes)).chmod(0o755)
+        for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", NOTING), ("ctest", NOTING)):
+            self.write(f"tree/bin/{name}", script.format(notes=self.folder / "notes")).chmod(0o755)
+
+    def noted(self, *arguments, code=0):
+        """What a command of lab calls, a line each."""
         path = f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"
+        actual, _, err = self.run_program(*arguments, program=self.folder / "tree/lab", environment={"PATH": path})
+        self.assertEqual(actual, code, err)
+        text = (self.folder / "notes").read_text()
+        (self.folder / "notes").unlink()
+        return text
+
+    def test_the_chapter_to_be_checked_is_built_wherever_its_number_stands(self):
         for arguments in (["3", "--all", "work"], ["--all", "work", "3"], ["--teacher", "03", "mine.glsl"], ["--all", "12/work", "3"]):
-            code, _, err = self.run_program("check", *arguments, program=self.folder / "tree/lab", environment={"PATH": path})
-            self.assertEqual(code, 0, err)
-            noted = notes.read_text()
-            notes.unlink()
+            noted = self.noted("check", *arguments)
             self.assertRegex(noted, r"(?m)^cmake --build .* --target 03_three$", arguments)
             self.assertRegex(noted, rf"(?m)^python3 .*/tools check {' '.join(arguments)}$")
+
+    def test_a_copy_is_checked_by_the_program_of_its_original(self):
+        self.assertRegex(self.noted("check", 20), r"(?m)^cmake --build .* --target 03_three 20_mine$")
+
+    def test_tests_that_are_chosen_are_built_alone(self):
+        for regex, targets in (("ThreeThings", "shaders_tests"), ("shaders.*IsOther", "shaders_tests"), ("FourTest", "all"),
+                               ("mistakes", "all"), ("Nothing", "all")):
+            noted = self.noted("test", "-R", regex, code=1)
+            self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$", regex)
+            self.assertRegex(noted, rf"(?m)^ctest .* -R {re.escape(regex)}$")
+
+    def test_the_tests_of_a_copy_are_those_of_its_originals_exercise(self):
+        noted = self.noted("test", 20, code=1)
+        self.assertRegex(noted, r"(?m) --target shaders_tests$")
+        self.assertIn(r" -E /chapter_(12_twelve|20_mine)$ -R [./](ThreeThings|More)\." + "\n", noted)
+        self.assertIn("\nctest, copy 20_mine: ", "\n" + noted)
 
 
 if __name__ == "__main__":
