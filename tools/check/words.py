@@ -13,8 +13,8 @@ def tell_early(cases):
     if scene:
         words = f"{scene} is too {'bright' if value > 0 else 'dark'} ({percent(value)})"
     else:
-        words = f"no picture is wrong by {100 * value:.2g} % or more" if value < 1 else "nothing is sure yet"
-    print(f"{'so far':14} {words}; the rest is finer", flush=True)
+        words = f"no picture is wrong by {100 * value:.2g} % or more in its mean" if value < 1 else "nothing is sure yet"
+    print(f"{'so far':14} {words}; smaller differences take all renders", flush=True)
 
 
 def scene_words(scene):
@@ -32,9 +32,10 @@ def scene_words(scene):
         least = max(test["detectable"] for test in scene["image"])
         words.append(f"a bias from {100 * least:.2g} % would have shown")
         if scene["noise"][0] is not None:
-            limit = f", at most {scene['most_noise']:.2f} is right" if scene["verdict"] == "noisy" else ""
-            words.append(f"noise x {scene['noise'][0]:.2f} [{scene['noise'][1]:.2f}, {scene['noise'][2]:.2f}]{limit}")
-        words.append(f"rays x {scene['rays']:.2f}")
+            limit = f", where {scene['most_noise']:.2f} is the limit" if scene["verdict"] == "noisy" else ""
+            words.append(f"{scene['noise'][0]:.2f} times the noise of the chapter's own shader (95 % interval "
+                         f"{scene['noise'][1]:.2f} to {scene['noise'][2]:.2f}{limit})")
+        words.append(f"{scene['rays']:.2f} times its rays")
     return words
 
 

@@ -14,6 +14,7 @@ from report.numbers import CONFIDENCE, two_sided
 
 PROGRAM = program_file("sample_points")
 BINS = 16
+CHANCE = 4.5  # standard errors that the largest of BINS deviations hardly ever exceeds
 
 
 @dataclass
@@ -116,7 +117,8 @@ def report(playground, points, dimensions):
     for low, high, count, mean in zip(edges, edges[1:], counts, expected):
         lines.append(f"{low:5.3f}–{high:5.3f} {count:8d} {mean:9.1f}  {'#' * round(scale * count)}")
     deviation = (np.abs(counts - expected) / np.sqrt(expected * (1 - expected / expected.sum()))).max()
-    lines.append(f"largest deviation: {deviation:.1f} standard errors" + (" - too large for chance" if deviation > 4.5 else ""))
+    lines.append(f"largest deviation of a count: {deviation:.1f} standard errors, " +
+                 ("too large for chance" if deviation > CHANCE else f"which is chance: below {CHANCE}"))
     for integral in playground.integrals:
         exact = integral.value(dimensions)
         lines += ["", f"{integral.formula} = {exact:.6f}", f"{'N':>9}   estimate   95 % interval        error"]
