@@ -60,6 +60,15 @@ def chapters(folder, images, reports):
                      pil_kwargs={"optimize": True})
 
 
+def noise_and_bias(folder, images, reports):
+    """A row for each shader, from few samples to many."""
+    rows = {}
+    for name, radiance in images.items():
+        which, samples = name.split("_")
+        rows.setdefault(which, []).append((f"{which}, {samples} samples per pixel", encode_srgb(radiance)))
+    sheet(folder / "noise_and_bias.jpg", list(rows.values()))
+
+
 def thumbnails(folder, images, reports):
     for name, radiance in images.items():
         image.imsave(folder / f"thumbnail_{name}.jpg", encode_srgb(radiance), pil_kwargs=QUALITY)

@@ -17,6 +17,7 @@ from docs.bug_blocks import bug_block
 from docs.code_blocks import fill
 from docs.confusion_table import confusion_table
 from docs.cost_tables import feature_table, growth_tables, seconds_text
+from docs.examples import bounce_table, light_sample_table
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from project import ROOT, Parser, UserError, load_records, scene_of, table
@@ -155,7 +156,7 @@ OWN_TABLES = {
     "best chapters": best_table, "chapters": of_records("chapters", chapter_tables), "backends": of_records("backends", backend_table),
     "differences": lambda: "".join(f"- {text}\n" for text in DIFFERENCES), "peers": of_records("peers", peer_table),
     "features": of_records("cost", feature_table), "growth": of_records("cost", growth_tables),
-    "check": of_records("check", confusion_table),
+    "check": of_records("check", confusion_table), "one bounce": bounce_table, "one light sample": light_sample_table,
 }
 
 
