@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <random>
 
-#include "files/project_folder.h"
 #include "shaders/interface.h"
 #include "support/device_arithmetic.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
 #include "support/pcg2d.h"
+#include "support/render.h"
 
 namespace lab {
 namespace {
@@ -36,8 +36,7 @@ struct DielectricResult {
 
 std::vector<DielectricResult> evaluate(const std::vector<DielectricInput>& inputs) {
     TestShader shader{.name = "fresnel.comp"};
-    shader.named_includes = {
-        {"path_trace.glsl", project_folder() / "chapters/06_dielectrics/path_trace.glsl"}};
+    shader.named_includes = {{"path_trace.glsl", chapter_estimator("06_dielectrics").file}};
     return run_shader<DielectricResult>(shader, inputs);
 }
 
