@@ -67,7 +67,7 @@ uint get_random_index(uint count, uvec2 words, out uint digits) {
 // entry, while a second word would draw lots.
 bool gives_way(uint digits, uint threshold, out float rest) {
     bool is_above = digits >= threshold;
-    float width = is_above ? 4294967296.0 - float(threshold) : float(threshold);
+    float width = is_above ? float(~threshold) + 1.0 : float(threshold);
     rest = min(float(is_above ? digits - threshold : digits) / width, 1.0 - 1.0 / 16777216.0);
     return is_above;
 }

@@ -200,12 +200,13 @@ class HeadlessRender {
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = record_.seconds - job_.record.seconds;
-        // Pixels are independent of each other.
         const ErrorMetrics* error = rows_.empty() || !rows_.back().error ? nullptr : &*rows_.back().error;
+        // Pixels are independent of each other. Against a reference the error holds a bias, too.
         const double pixels = static_cast<double>(snapshot_.pixels.size());
+        const bool is_of_this_film = error && !reference_ && rows_.back().samples * pixels == paths();
         std::printf("mean radiance  %.5g %.5g %.5g", mean[0], mean[1], mean[2]);
-        if (error) std::printf(" ± %.2g", std::sqrt(error->mse / pixels));
-        std::printf(" (red, green, blue%s)\n", error ? "; standard error" : "");
+        if (is_of_this_film) std::printf(" ± %.2g", std::sqrt(error->mse / pixels));
+        std::printf(" (red, green, blue%s)\n", is_of_this_film ? "; standard error, on average" : "");
         std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(),
                     short_number(paths()).c_str(),
                     snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");

@@ -47,6 +47,7 @@ void check_scene(const Chapter& chapter, const Scene& scene) {
 std::optional<ErrorMetrics> RenderJob::error_from(const FilmImage& half, const FilmImage& whole) const {
     const uint32_t before = half.min_samples();
     if (!has_independent_halves() || before == 0 || whole.min_samples() != 2 * before) return std::nullopt;
+    if (low_discrepancy && !std::has_single_bit(before)) return std::nullopt;  // they share a scramble
     if (whole.mean_radiance() == std::array<double, 3>{})
         return std::nullopt;  // black halves agree by chance
     return estimate_error(half.mean(), samples_after(half, whole).mean());

@@ -9,7 +9,7 @@ import statistics
 import unittest
 
 from image_files import Exr, relative_mse
-from program import PROJECT, QUAD_JSON, RenderTest
+from program import BINARIES, PROJECT, QUAD_JSON, RenderTest
 
 FIELDS = ["samples", "seconds", "device_seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
 
@@ -88,6 +88,17 @@ class Report(RenderTest):
         again = self.render(*self.command("--samples=32"), "--output=b.exr")
         lines = [line for line in out.splitlines() if line.startswith(("mean", "error"))]
         self.assertEqual([line for line in again.splitlines() if line.startswith(("mean", "error"))], lines)
+        # An error against a reference holds a bias, too, and is no standard error.
+        again = self.render(*self.command("--samples=32"), "--output=b.exr", "--reference=a.exr")
+        self.assertNotRegex(again, "±")
+
+    def test_halves_of_points_that_share_a_scramble_tell_no_error(self):
+        """After 100 samples 100 more are no independent half: both have some of samples 64 to 127."""
+        chapter = BINARIES / "09_low_discrepancy_points"
+        self.render(*self.command("--samples=100"), "--output=a.exr", program=chapter)
+        for end, has_error in ((200, False), (128, True)):
+            out = self.render(*self.command(f"--samples={end}"), "--output=b.exr", *(["--resume=a.exr"] if end == 200 else []), program=chapter)
+            self.assertEqual(bool(re.search("^error", out, re.MULTILINE)), has_error, out)
 
     def test_the_mean_is_as_exact_as_its_error_says(self):
         """Over many renders of different seeds, each with the ± that it prints."""

@@ -141,6 +141,17 @@ TEST(LightChoice, LeavesUniformNumbers) {
     }
 }
 
+// The share of some of 49 equal lights is rounded to just below 1: the largest digits alone give way.
+TEST(LightChoice, LeavesANumberWhereOnlyTheLargestDigitsGiveWay) {
+    const auto lights = make_table(std::vector<double>(49, 1.0));
+    ASSERT_TRUE(
+        std::ranges::any_of(lights, [](const LightTriangle& l) { return l.threshold == 0xffffffffu; }));
+    for (const Choice& choice : choose(lights, {{1, 2}}, 1000, 5, {"LOW_DISCREPANCY", "LARGEST_DIGITS"})) {
+        ASSERT_GE(choice.u.x, 0);
+        ASSERT_LT(choice.u.x, 1);
+    }
+}
+
 // A triangle above a surface at the origin, with its front towards it: no symmetry, nothing below the
 // horizon.
 const std::array<vec3, 3> light_corners{vec3(-0.7f, 0.4f, 1.1f), vec3(0.3f, 0.9f, 0.8f),
