@@ -11,7 +11,6 @@ from pathlib import Path
 
 from check.grading import OPTIONS, SCENES, program_with
 from course.bug import new_render
-from course.mistakes import bugs_of
 from docs import figure_plots, first_steps, tables
 from docs.bug_blocks import GALLERY, find_bug
 from project import (BINARIES, CHAPTERS, ROOT, Parser, UserError, chapter_named, description, failure_text, load_records, read_json,
@@ -125,9 +124,9 @@ def renders_of_bugs():
 
 def renders_of_noise_and_bias():
     """The right shader and one with a mistake, each with few and with many samples."""
-    mistake = next(bug for bug in bugs_of(1) if bug.mistake["name"] == "missing-cosine")
-    return [Render(f"{which}_{samples}", CHAPTERS[1], "cornell_box", 224, ("--samples", samples, "--max-path-length", 6), shader=text)
-            for which, text in (("right", ""), ("wrong", mistake.text)) for samples in (16, 2048)]
+    bug, _ = find_bug("missing-cosine")
+    return [Render(f"{which}_{samples}", CHAPTERS[bug.chapter], "cornell_box", 224, ("--samples", samples, "--max-path-length", 6),
+                   shader=text) for which, text in (("right", ""), ("wrong", bug.text)) for samples in (16, 2048)]
 
 
 def renders_of_path_lengths():
@@ -196,7 +195,8 @@ FIGURES = {
     "chapters": renders_of_chapters, "thumbnails": renders_of_thumbnails, "strategies": renders_of_strategies,
     "light_probes": renders_of_light_probes, "low_discrepancy": renders_of_low_discrepancy, "idle_lanes": renders_of_idle_lanes,
     "path_lengths": renders_of_path_lengths, "effects": renders_of_effects, "bugs": renders_of_bugs, "bvh_steps": renders_of_bvh_steps,
-    "noise_and_bias": renders_of_noise_and_bias, "hero": renders_of_hero, "noise": partial(renders_at_equal_time, ("cornell_box",), 256), "equal_time": renders_at_equal_time,
+    "noise_and_bias": renders_of_noise_and_bias, "hero": renders_of_hero,
+    "noise": partial(renders_at_equal_time, ("cornell_box",), 256), "equal_time": renders_at_equal_time,
     "convergence": renders_of_convergence, "first_steps": renders_of_first_steps, "sampler_points": list, "point_sets": list,
     "one_over_root_n": list, "grid_and_random": list, "random_numbers": list, "window": list,
 }

@@ -150,8 +150,8 @@ def run_case(case, settings, arguments):
         try:
             process = run_program(command, timeout=limit)
         except subprocess.TimeoutExpired:
-            raise UserError(f"{case['scene']}, {case['case']}: ended after {limit:g} s"
-                            ": does each loop of the shader end, and each path? On a slow machine allow more by --time-limit") from None
+            raise UserError(f"{case['scene']}, {case['case']}: ended after {limit:g} s: does each loop of the shader end, and each path? "
+                            "On a slow machine allow more by --time-limit") from None
         seconds = time.perf_counter() - started
         if process.returncode != 0:
             error = failure_text(process)

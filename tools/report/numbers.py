@@ -200,9 +200,9 @@ def biases(runs, reference, comparisons):
     """The test for bias of each channel's mean over the image: difference from the reference as part of it.
 
     The batches' variance is that of one sample over their sizes, or they all have equally many: then it may differ between first
-    and second halves. The reference's own counts as well. `comparisons` such tests
-    together raise a false alarm in FALSE_ALARMS of all reports. `detectable` is the smallest bias that is found with the
-    probability POWER, by the noncentral t-distribution, where noise is what it was estimated to be.
+    and second halves. The reference's own counts as well. `comparisons` such tests together raise a false alarm in FALSE_ALARMS
+    of all reports. `detectable` is the smallest bias that is found with the probability POWER, by the noncentral t-distribution,
+    where noise is what it was estimated to be.
     """
     counts, means = batches(runs)
     samples, expected = counts.sum(), np.array(reference["mean"])
