@@ -58,8 +58,10 @@ SHARED_CONSTANT BLOCK_SIZE = BLOCK_WIDTH * BLOCK_HEIGHT;  // pixels
 // Rays are counted into this many counters, so that pixels rarely wait for each other.
 SHARED_CONSTANT RAY_COUNTER_COUNT = 64u;
 
-// Longest path that may split at every hit: each hit on it waits on a stack of this size.
-SHARED_CONSTANT MAX_SPLIT_PATH_LENGTH = 8u;
+// How an estimator finds light: by light samples and bounces with weights, by light samples alone, or by bounces alone.
+SHARED_CONSTANT STRATEGY_BOTH = 0u;
+SHARED_CONSTANT STRATEGY_LIGHT = 1u;
+SHARED_CONSTANT STRATEGY_BOUNCES = 2u;
 
 // What a triangle is made of, from MTL. Reflectances are linear, in [0,1]; diffuse + specular is at most 1.
 struct Material {

@@ -2,7 +2,7 @@
 //
 // On the slides path_trace(x_{k-1}, ω_{k-1}, k-1) calls itself to estimate the radiance L_k that arrives at x_k:
 //     L_{k-1} = L_{e,k} + π² L_k ρ(x_k, ω_k, -ω_{k-1}) n(x_k)·ω_k sin(π/2 u_y)
-// A shader runs faster as a loop. Instead of multiplying L_k on the way back, it carries the product of the factors
+// A shader runs faster as a loop. Instead of multiplying L_k on the way back, it keeps the product of the factors
 // π² ρ n·ω sin(π/2 u_y) of all bounces so far, called throughput, and adds throughput · L_{e,k} at every hit.
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     vec3 radiance = vec3(0.0);
@@ -27,11 +27,10 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         float cos_theta = cos(theta);
         float sin_theta = sin(theta);
         vec3 omega = get_shading_space(s.normal) * vec3(cos(phi) * sin_theta, sin(phi) * sin_theta, cos_theta);
-        vec3 out_direction = -ray.direction;
-        if (!is_above_surface(s, out_direction) || !is_above_surface(s, omega)) break;
+        if (!is_above_surface(s, s.out_direction) || !is_above_surface(s, omega)) break;
 
-        // The weight π² ρ n·ω_k sin(π/2 u_y). As a product without a division by the density it is finite everywhere.
-        throughput *= PI * get_pi_brdf(s, omega, out_direction) * cos_theta * sin_theta;
+        // The weight π² ρ n·ω_k sin(π/2 u_y). As a product, without a division by the density, it is finite everywhere.
+        throughput *= PI * PI * get_brdf(s, omega) * cos_theta * sin_theta;
         ray = get_ray_from_surface(s, omega);
     }
     return radiance;

@@ -3,30 +3,29 @@
 // Since q · (1/q) X + (1 - q) · 0 = X the expectation stays the same, and paths of any length end after a finite
 // number of bounces. q follows the throughput: dim paths cost as much as bright ones and bring less. As it already
 // holds the factors 1/q of earlier bounces, all that survive carry about the survival weight β_s, however long they are.
-#include "sampling.glsl"
-#include "direct_light.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "03_next_event_estimation/direct_light.glsl"
 
-// The light that arrives at the first hit x_1 and that it reflects to the camera, by one path with random numbers of
-// its own.
-vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
+// Estimates the light that the first hit x_1 reflects to the camera, by one path.
+vec3 trace_branch(ShadingData s, inout uvec2 seed) {
     vec3 radiance = vec3(0.0);
     vec3 throughput = vec3(1.0);
     for (uint path_length = 1u; path_length <= parameters.max_path_length; ++path_length) {
         // At x_k with k = path_length: the direct light, which arrives after k bounces.
-        if (!is_above_surface(s, out_direction)) break;
-        if (LIGHT_SAMPLING) {
-            vec3 direct_light = sample_direct_light(s, out_direction, seed);
+        if (!is_above_surface(s, s.out_direction)) break;
+        if (STRATEGY != STRATEGY_BOUNCES) {
+            vec3 direct_light = sample_direct_light(s, seed);
             if (is_counted(path_length)) radiance += throughput * direct_light;
         }
-        // The last ray could only find lights that have been sampled, or the background.
-        if (LIGHT_SAMPLING && !HAS_BACKGROUND && path_length == parameters.max_path_length) break;
+        // The last ray could only find the background, or lights that have been sampled.
+        if (STRATEGY != STRATEGY_BOUNCES && !HAS_BACKGROUND && path_length == parameters.max_path_length) break;
 
         // Sample ω_k = Q ω(u) with density n·ω_k / π with respect to solid angle. The weight is π ρ.
         vec3 omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
         if (!is_above_surface(s, omega)) break;
-        throughput *= get_pi_brdf(s, omega, out_direction);
+        throughput *= PI * get_brdf(s, omega);
 
-        // Russian roulette with the survival probability q = min(max throughput / β_s, cap). The split's 1/s plays no part.
+        // Russian roulette with the survival probability q = min(max throughput / β_s, cap), without the split's 1/s.
         if (path_length >= parameters.roulette_start) {
             float survival_probability =
                 min(max_component(throughput) / parameters.survival_weight, parameters.survival_cap);
@@ -41,8 +40,7 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
             break;
         }
         s = get_shading_data(hit, omega);
-        out_direction = -omega;
-        if (!LIGHT_SAMPLING && is_counted(path_length)) radiance += throughput * s.emission;
+        if (STRATEGY == STRATEGY_BOUNCES && is_counted(path_length)) radiance += throughput * s.emission;
     }
     return radiance;
 }
@@ -54,9 +52,9 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     ShadingData s = get_shading_data(hit, ray.direction);
     vec3 radiance = is_counted(0u) ? s.emission : vec3(0.0);
 
-    // Split: all branches start at x_1, and `seed` runs on so that none repeats another's random numbers.
+    // Split: all branches start at x_1. The generator's state runs on, so their random numbers differ.
     float branch_weight = 1.0 / float(parameters.splitting_factor);
     for (uint branch = 0u; branch < parameters.splitting_factor; ++branch)
-        radiance += branch_weight * trace_branch(s, -ray.direction, seed);
+        radiance += branch_weight * trace_branch(s, seed);
     return radiance;
 }

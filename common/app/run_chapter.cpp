@@ -107,8 +107,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
     std::cout << chapter.name << ", " << job.record.scene << ", " << size_text(job.parameters.image_size)
               << ", " << job.samples << " samples, " << device.description().name << ", backend "
               << to_string(build.backend) << std::endl;
-    if (chapter.unlimited_path_length && !job.options.light.max_path_length &&
-        !job.options.estimator.split_every_hit)
+    if (chapter.unlimited_path_length && !job.options.light.max_path_length)
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }
 

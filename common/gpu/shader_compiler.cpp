@@ -78,7 +78,8 @@ class Includer {
 
     fs::path find(const std::string& name, const fs::path& includer, const std::string& place) const {
         if (const auto named = named_.find(name); named != named_.end()) return named->second;
-        for (const fs::path& folder : {includer.parent_path(), project_folder() / "shaders"}) {
+        for (const fs::path& folder :
+             {includer.parent_path(), project_folder() / "shaders", project_folder() / "chapters"}) {
             std::error_code error;
             const fs::path file = folder / name;
             if (!fs::exists(file, error)) continue;

@@ -14,9 +14,9 @@ constexpr uint64_t max_shader_bytes = 1 << 20;  // of each file
 struct ShaderSource {
     std::filesystem::path file;             // its ending names the stage: .comp, .rgen, .rmiss or .rchit
     std::vector<std::string> defines = {};  // "NAME" or "NAME value"
-    // What #include "name" stands for. Other names are looked up beside the includer and in shaders/; files
-    // there may not lead out of these files' folders, shaders/ and chapters/. A file's text is included once,
-    // even where an #if skips it.
+    // What #include "name" stands for. Other names are looked up beside the includer, in shaders/ and in
+    // chapters/, and may not lead out of these files' folders, shaders/ and chapters/. A file is included
+    // once, even where an #if skips it.
     std::map<std::string, std::filesystem::path> named_includes = {};
     // Changes the whole text before it is compiled, if there is anything to change; line by line the same.
     std::function<std::string(const std::string&)> edit = {};

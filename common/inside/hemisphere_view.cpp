@@ -1,7 +1,7 @@
 #include "inside/hemisphere_view.h"
 
 #include "files/project_folder.h"
-#include "shaders/inside/shading_point.h"
+#include "shaders/observation/shading_point.h"
 
 namespace lab {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 constexpr uvec2 image_size(3 * HemisphereView::extent, HemisphereView::extent);
 
 Estimator hemisphere_estimator(const Estimator& estimator) {
-    return {.file = project_folder() / "shaders" / "inside" / "view_hemisphere.glsl",
+    return {.file = project_folder() / "shaders" / "observation" / "view_hemisphere.glsl",
             .defines = estimator.defines,
             .observed = estimator.file,
             .edit = {}};

@@ -6,7 +6,7 @@
 
 #include "files/project_folder.h"
 #include "inside/recording_calls.h"
-#include "shaders/inside/recorded_path.h"
+#include "shaders/observation/recorded_path.h"
 
 namespace lab {
 namespace {
@@ -148,7 +148,7 @@ class PathBuilder {
 }  // namespace
 
 Estimator recording(const Estimator& estimator) {
-    return {.file = project_folder() / "shaders" / "inside" / "record_path.glsl",
+    return {.file = project_folder() / "shaders" / "observation" / "record_path.glsl",
             .defines = estimator.defines,
             .observed = estimator.file,
             .edit = add_recording_calls};

@@ -16,7 +16,7 @@ void record_device(RenderJob& job, const std::string& device, const std::string&
 
 BuildStage first_difference(const Options& before, const Options& options) {
     if (before.scene != options.scene) return BuildStage::scene;
-    const auto samples_lights = [](const Options& o) { return o.estimator.strategy != Strategy::brdf; };
+    const auto samples_lights = [](const Options& o) { return o.estimator.strategy != Strategy::bounces; };
     if (samples_lights(before) != samples_lights(options)) return BuildStage::gpu_scene;
     if (before.estimator != options.estimator || before.image != options.image ||
         asks_for_sky(before) != asks_for_sky(options))
@@ -39,10 +39,9 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     // Before the scene takes time and memory.
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
-        LightSampling light_sampling = LightSampling::off;
-        if (chapter.light_sampling && wanted.options.estimator.strategy != Strategy::brdf)
-            light_sampling = chapter.light_probe_sampling ? LightSampling::with_probe : LightSampling::on;
-        build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene, light_sampling);
+        build.gpu_scene =
+            std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options),
+                                       chapter.light_probe_sampling);
         build.backend = choose_backend(wanted, device, *build.gpu_scene);
         build.acceleration_structure = build_acceleration_structure(build.backend, device, *build.gpu_scene);
     } else {

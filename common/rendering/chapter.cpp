@@ -44,6 +44,20 @@ std::vector<ChapterOption> read_options(const JsonObject& chapter) {
     return options;
 }
 
+std::vector<Strategy> read_strategies(const JsonObject& chapter) {
+    std::vector<Strategy> strategies;
+    if (!chapter.has("strategies")) return strategies;
+    for (const nlohmann::json& name : chapter.array("strategies")) {
+        const auto found =
+            std::find_if(all_strategies.begin(), all_strategies.end(),
+                         [&](Strategy strategy) { return name == to_string(strategy); });
+        if (found == all_strategies.end())
+            chapter.fail("strategies", "has " + name.dump() + ": use both, light, bounces");
+        strategies.push_back(*found);
+    }
+    return strategies;
+}
+
 }  // namespace
 
 std::vector<std::string> chapter_folders() {
@@ -69,18 +83,16 @@ Chapter load_chapter(const std::string& name) {
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(
         content, file.string(), "the chapter",
-        {"title", "default_scene", "light_sampling", "light_probe_sampling", "strategies", "split_every_hit",
-         "unlimited_path_length", "dielectrics", "low_discrepancy", "options", "check"});
+        {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length",
+         "dielectrics", "low_discrepancy", "options", "check"});
     // What ./lab check renders: tools/check/grading.py reads it.
     if (root.has("check")) root.object("check", {"samples", "references", "gains_over"});
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),
             .default_scene = root.text("default_scene").value_or(defaults.default_scene),
-            .light_sampling = root.boolean("light_sampling").value_or(false),
+            .strategies = read_strategies(root),
             .light_probe_sampling = root.boolean("light_probe_sampling").value_or(false),
-            .strategies = root.boolean("strategies").value_or(false),
-            .split_every_hit = root.boolean("split_every_hit").value_or(false),
             .unlimited_path_length = root.boolean("unlimited_path_length").value_or(false),
             .dielectrics = root.boolean("dielectrics").value_or(false),
             .low_discrepancy = root.boolean("low_discrepancy").value_or(false),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shaders/interface.h"
+#include "tracing/gpu_scene.h"
 
 namespace lab {
 
@@ -25,13 +26,11 @@ struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help
     std::string default_scene = "cornell_box";  // in assets/scenes
-    bool light_sampling = false;                // has --light-sampling
+    std::vector<Strategy> strategies = {};      // of --strategy, the default first; if none, bounces find light
     bool light_probe_sampling = false;          // light samples go to a probe, too
-    bool strategies = false;                    // has --strategy, with light_sampling
-    bool split_every_hit = false;               // has --split-every-hit
     bool unlimited_path_length = false;         // whatever the scene says; --max-path-length still limits it
     bool dielectrics = false;                   // whether its estimator handles them
-    bool low_discrepancy = false;  // its shader makes its random numbers, see shaders/random.glsl
+    bool low_discrepancy = false;  // has points of its own, random_words.glsl, that depend on each other
     std::vector<ChapterOption> options = {};
 };
 

@@ -116,30 +116,14 @@ void add_device_options(CLI::App& app, Options& options) {
 
 // What only some chapters have.
 void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options) {
-    CLI::Option* light_sampling = nullptr;
-    if (chapter.light_sampling)
-        light_sampling = app.add_option_function<std::string>(
-                                "--light-sampling",
-                                [&](const std::string& value) {
-                                    options.estimator.strategy =
-                                        value == "on" ? Strategy::both : Strategy::brdf;
-                                },
-                                "on: sample points on lights; off: count emission where paths find it")
-                             ->check(CLI::IsMember({"on", "off"}));
-    if (chapter.strategies)
+    std::map<std::string, Strategy> strategies;
+    for (const Strategy strategy : chapter.strategies) strategies[to_string(strategy)] = strategy;
+    if (!strategies.empty())
         app.add_option_function<std::string>(
-               "--strategy",
-               [&](const std::string& value) {
-                   options.estimator.strategy = value == "light"  ? Strategy::light
-                                                : value == "brdf" ? Strategy::brdf
-                                                                  : Strategy::both;
-               },
-               "What finds light: light samples, bounces (as with --light-sampling off) or both")
-            ->check(CLI::IsMember({"both", "light", "brdf"}))
-            ->excludes(light_sampling);
-    if (chapter.split_every_hit)
-        app.add_flag("--split-every-hit", options.estimator.split_every_hit,
-                     "Split at every hit, not only at the first");
+               "--strategy", [=, &options](const auto& name) { options.estimator.strategy = strategies.at(name); },
+               "How light is found: by light samples, by bounces or by both")
+            ->default_str(to_string(chapter.strategies.front()))
+            ->check(CLI::IsMember(strategies));
     options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i) {
         const ChapterOption& option = chapter.options[i];
@@ -181,7 +165,7 @@ const std::vector<View>& views() {
         {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
         {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
         {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum},
-        {"idle-lanes", "", DisplayTransform::as_is, "inside/view_idle_lanes.glsl"}};
+        {"idle-lanes", "", DisplayTransform::as_is, "observation/idle_lanes/path_trace.glsl"}};
     return all;
 }
 

@@ -30,14 +30,9 @@ struct SceneOptions {
     bool operator==(const SceneOptions&) const = default;
 };
 
-// What finds light on emissive triangles: light samples and bounces as the chapter has them, or one of the
-// two.
-enum class Strategy { both, light, brdf };
-
 // What the chapter's estimator is compiled as.
 struct EstimatorOptions {
-    Strategy strategy = Strategy::both;  // brdf is --light-sampling off
-    bool split_every_hit = false;
+    std::optional<Strategy> strategy;  // one of the chapter's
     bool operator==(const EstimatorOptions&) const = default;
 };
 

@@ -76,7 +76,7 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
-        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "add_samples.comp"},
+        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "engine/add_samples.comp"},
                        bindings, sizeof(DispatchParameters));
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());

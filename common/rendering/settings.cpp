@@ -15,13 +15,6 @@ namespace {
 // Where paths have no limit they still end here: a sample must end in bounded time.
 constexpr uint32_t safety_limit = 10000;
 
-// With --split-every-hit, whose work is a power: the blog's length and factor. Others would take hours.
-constexpr uint32_t split_every_hit_length = 5;
-constexpr double split_every_hit_factor = 2;
-
-// More branches would keep a device busy with one sample for longer than drivers allow.
-constexpr double max_branches = 1 << 20;
-
 uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Options& options) {
     const uint32_t only = options.light.only_path_length.value_or(0);
     if (options.light.max_path_length && only > *options.light.max_path_length)
@@ -29,27 +22,12 @@ uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Optio
                         std::to_string(*options.light.max_path_length) + ": the picture would be black");
     uint32_t length = scene.defaults.max_path_length;
     if (chapter.unlimited_path_length) length = safety_limit;
-    if (options.estimator.split_every_hit) length = split_every_hit_length;
     return std::max(options.light.max_path_length.value_or(length), only);
 }
 
 // The value of the chapter's option number i: as given, or its default.
 double value_of(const Chapter& chapter, size_t i, const Options& options) {
-    const ChapterOption& option = chapter.options[i];
-    const bool splits_every_hit = options.estimator.split_every_hit && option.name == "--splitting-factor";
-    return options.samples.chapter_values[i].value_or(splits_every_hit ? split_every_hit_factor
-                                                                       : option.default_value);
-}
-
-void check_split_every_hit(const RenderParameters& parameters) {
-    if (parameters.max_path_length > MAX_SPLIT_PATH_LENGTH)
-        throw UserError("--split-every-hit keeps each hit of a path: use --max-path-length " +
-                        std::to_string(MAX_SPLIT_PATH_LENGTH) + " or less");
-    if (std::pow(parameters.splitting_factor, parameters.max_path_length) > max_branches)
-        throw UserError("--splitting-factor " + std::to_string(parameters.splitting_factor) +
-                        " at every hit of paths of length " + std::to_string(parameters.max_path_length) +
-                        " makes more than 2^20 branches a sample: lower --splitting-factor or "
-                        "--max-path-length");
+    return options.samples.chapter_values[i].value_or(chapter.options[i].default_value);
 }
 
 // Of an opaque material: no direction loses less light.
@@ -77,6 +55,11 @@ vec3 background_of(const Scene& scene, const Options& options) {
     return options.light.background.value_or(scene.background);
 }
 
+Strategy strategy_of(const Chapter& chapter, const Options& options) {
+    if (chapter.strategies.empty()) return Strategy::bounces;
+    return options.estimator.strategy.value_or(chapter.strategies.front());
+}
+
 bool asks_for_sky(const Options& options) { return options.light.background.value_or(vec3(0)) != vec3(0); }
 
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
@@ -96,7 +79,6 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
                 parameters.*member = static_cast<Number>(value_of(chapter, i, options));
             },
             chapter.options[i].parameter);
-    if (options.estimator.split_every_hit) check_split_every_hit(parameters);
     return parameters;
 }
 
@@ -114,9 +96,9 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     if (parameters.only_path_length >= 0) text << " --only-path-length " << parameters.only_path_length;
     for (size_t i = 0; i < chapter.options.size(); ++i)
         text << ' ' << chapter.options[i].name << ' ' << value_of(chapter, i, options);
-    if (options.estimator.strategy == Strategy::brdf) text << " --light-sampling off";
-    if (options.estimator.strategy == Strategy::light) text << " --strategy light";
-    if (options.estimator.split_every_hit) text << " --split-every-hit";
+    const Strategy strategy = strategy_of(chapter, options);
+    if (!chapter.strategies.empty() && strategy != chapter.strategies.front())
+        text << " --strategy " << to_string(strategy);
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
     text << ' ' << camera_flags(camera_of(scene, options), ' ') << " --background "
@@ -125,24 +107,20 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
 }
 
 Estimator estimator_of(const Chapter& chapter) {
-    Estimator estimator{project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
-    if (chapter.low_discrepancy) estimator.defines.emplace_back("LOW_DISCREPANCY");
-    return estimator;
+    return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
 }
 
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
     Estimator estimator = estimator_of(chapter);
     if (const auto& view = options.image.view) {
-        if (view->observer.empty()) return {shared / "view.glsl", {view->define}};
+        if (view->observer.empty()) return {shared / "observation/view.glsl", {view->define}};
         estimator.observed = estimator.file;
         estimator.file = shared / view->observer;
         return estimator;
     }
-    if (options.estimator.split_every_hit)
-        estimator = {shared / "path_trace_every_hit.glsl"};
-    else if (options.estimator.strategy == Strategy::light)
-        estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    if (strategy_of(chapter, options) == Strategy::light)
+        estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
     if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
     return estimator;
 }

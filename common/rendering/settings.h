@@ -27,6 +27,9 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
 // The chapter's shader and what it is compiled with.
 Estimator estimator_of(const Chapter& chapter);
 
+// How the chapter's estimator finds light with these options.
+Strategy strategy_of(const Chapter& chapter, const Options& options);
+
 // The chapter's estimator, or what --view and --split-every-hit put in its place.
 Estimator make_estimator(const Chapter& chapter, const Options& options);
 

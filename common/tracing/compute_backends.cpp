@@ -27,7 +27,7 @@ class ComputeBackend : public SceneTree<GpuBvh, ComputeTracer> {
     using SceneTree::SceneTree;
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
-        ShaderSource source = shader_source("render.comp", scene_, estimator);
+        ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
         for (const auto& define : tree_.defines()) source.defines.push_back(define);
         return {source};
     }
@@ -38,7 +38,7 @@ class QueryBackend : public SceneTree<HardwareBvh, ComputeTracer> {
     using SceneTree::SceneTree;
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
-        ShaderSource source = shader_source("render.comp", scene_, estimator);
+        ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
         source.defines.emplace_back("BACKEND_QUERY");
         return {source};
     }

@@ -33,7 +33,12 @@ size_t bytes_of(const Image& probe) { return probe.pixels.size() / 3 * 4 * sizeo
 
 }  // namespace
 
-GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling) : scene_(&scene) {
+std::string to_string(Strategy strategy) {
+    return strategy == Strategy::both ? "both" : strategy == Strategy::light ? "light" : "bounces";
+}
+
+GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe)
+    : scene_(&scene) {
     const SceneFeatures features = features_of(scene);
     defines_ = features.defines();
     std::vector<Array> arrays;
@@ -52,19 +57,19 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, LightSampling light
     add("triangles", BINDING_TRIANGLES, scene.triangles, build_input);
     add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
     LightTable lights{.triangles = {}, .materials = scene.materials};
-    const bool samples_probe = features.light_probe && light_sampling == LightSampling::with_probe;
-    const bool samples_triangles = features.area_lights && light_sampling != LightSampling::off;
+    samples_probe = samples_probe && features.light_probe && strategy != Strategy::bounces;
+    const bool samples_triangles = features.area_lights && strategy != Strategy::bounces;
     const float probe_probability = !samples_probe ? 0 : !samples_triangles ? 1 : LIGHT_PROBE_PROBABILITY;
     if (samples_triangles) {
         lights = build_light_table(scene, 1 - probe_probability);
         add("light triangles", BINDING_LIGHT_TRIANGLES, lights.triangles);
-        defines_.emplace_back("FEATURE_LIGHT_SAMPLING");
+        defines_.emplace_back("FEATURE_LIGHT_TRIANGLES");
     }
     std::vector<ProbeCell> probe_cells;
     if (samples_probe) {
         probe_cells = build_probe_table(*scene.light_probe, probe_probability);
         add("cells of the light probe", BINDING_PROBE_CELLS, probe_cells);
-        defines_.emplace_back("FEATURE_LIGHT_PROBE_SAMPLING");
+        defines_.emplace_back("FEATURE_LIGHT_PROBE_CELLS");
     }
     add("materials", BINDING_MATERIALS, lights.materials);
     if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);

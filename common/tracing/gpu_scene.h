@@ -1,5 +1,7 @@
-// A scene's arrays on the device. What the scene has not got is not allocated.
+// A scene's arrays on the device. Arrays that the scene does not need are not allocated.
 #pragma once
+#include <array>
+#include <string>
 #include <vector>
 
 #include "gpu/compute_kernel.h"
@@ -8,20 +10,24 @@
 
 namespace lab {
 
-// What estimators choose light samples from: nothing, emissive triangles, or these and the light probe.
-// Triangles and probe have a table each.
-enum class LightSampling { off, on, with_probe };
+// How an estimator finds light: by light samples and bounces, weighted, or by one of the two alone.
+enum class Strategy { both, light, bounces };
+inline constexpr std::array all_strategies{Strategy::both, Strategy::light, Strategy::bounces};
+std::string to_string(Strategy strategy);
 
 class GpuScene {
   public:
-    // Throws DeviceFailure before it allocates anything if the device cannot hold the scene.
-    GpuScene(const Device& device, const Scene& scene, LightSampling light_sampling = LightSampling::on);
+    // The lights get tables to sample from, unless bounces alone find them; a light probe gets one if the
+    // estimator samples it. Throws DeviceFailure before it allocates anything if the device cannot hold the
+    // scene.
+    GpuScene(const Device& device, const Scene& scene, Strategy strategy = Strategy::both,
+             bool samples_probe = false);
 
     const Scene& scene() const { return *scene_; }
     const Buffer& positions() const { return buffers_[0]; }
     const Buffer& triangles() const { return buffers_[1]; }
 
-    // Bindings of the arrays, and the defines that make shaders/scene.glsl declare exactly these.
+    // Bindings of the arrays, and the defines that make shaders/world/scene.glsl declare exactly these.
     const std::vector<Binding>& bindings() const { return bindings_; }
     const std::vector<std::string>& defines() const { return defines_; }
 

@@ -15,10 +15,10 @@ vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) {
     return (size + alignment - 1) / alignment * alignment;
 }
 
-// The shaders in the order of their records: ray generation, two miss shaders, a hit group for each material
+// The shaders in the order of their records: ray generation, the miss shader, a hit group for each material
 // class.
 constexpr uint32_t first_miss_group = 1;
-constexpr uint32_t first_hit_group = 3;
+constexpr uint32_t first_hit_group = 2;
 
 class PipelineTracer : public Tracer {
   public:
@@ -110,10 +110,10 @@ class PipelineBackend : public SceneTree<HardwareBvh, PipelineTracer> {
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
         std::vector<ShaderSource> sources;
-        for (const char* name : {"render.rgen", "trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"})
+        for (const char* name : {"engine/render.rgen", "engine/trace_ray/miss.rmiss"})
             sources.push_back(shader_source(name, scene_, estimator));
         for (const uint32_t material_class : material_classes(scene_.scene())) {
-            sources.push_back(shader_source("trace_ray/closest_hit.rchit", scene_, estimator));
+            sources.push_back(shader_source("engine/trace_ray/closest_hit.rchit", scene_, estimator));
             sources.back().defines.push_back("MATERIAL_CLASS " + std::to_string(material_class) + "u");
         }
         return sources;

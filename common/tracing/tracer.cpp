@@ -18,13 +18,6 @@ void require_support(Backend backend, const DeviceDescription& device) {
                       " for the backend '" + to_string(backend) + "'; these work on it: " + working);
 }
 
-// What #include stands for in the shaders that run the estimator.
-std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator) {
-    std::map<std::string, std::filesystem::path> names{{"path_trace.glsl", estimator.file}};
-    if (!estimator.observed.empty()) names["observed.glsl"] = estimator.observed;
-    return names;
-}
-
 // These shaders of shaders/ and all that they include.
 std::set<std::filesystem::path> files_of(std::initializer_list<const char*> names,
                                          const Estimator& estimator) {
@@ -38,6 +31,23 @@ std::set<std::filesystem::path> files_of(std::initializer_list<const char*> name
 
 }  // namespace
 
+std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator) {
+    const auto own_or_default = [](const std::filesystem::path& own, const char* room) {
+        return std::filesystem::exists(own) ? own : project_folder() / "shaders" / room / own.filename();
+    };
+    const bool is_observed = !estimator.observed.empty();
+    const auto chapter = (is_observed ? estimator.observed : estimator.file).parent_path();
+    std::map<std::string, std::filesystem::path> names{
+        {"path_trace.glsl", estimator.file},
+        {"random_words.glsl", own_or_default(chapter / "random_words.glsl", "world")},
+        {"sample_loop.glsl", own_or_default(estimator.file.parent_path() / "sample_loop.glsl", "engine")}};
+    if (is_observed) {
+        names["observed.glsl"] = estimator.observed;
+        names["observed_sample_loop.glsl"] = own_or_default(chapter / "sample_loop.glsl", "engine");
+    }
+    return names;
+}
+
 ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator) {
     ShaderSource source{.file = project_folder() / "shaders" / name,
                         .defines = scene.defines(),
@@ -48,8 +58,8 @@ ShaderSource shader_source(const std::string& name, const GpuScene& scene, const
 }
 
 std::set<std::filesystem::path> shader_files(const Estimator& estimator) {
-    return files_of({"render.comp", "render.rgen", "add_samples.comp", "trace_ray/closest_hit.rchit",
-                     "trace_ray/miss.rmiss", "trace_ray/shadow_miss.rmiss"},
+    return files_of({"engine/render.comp", "engine/render.rgen", "engine/add_samples.comp",
+                     "engine/trace_ray/closest_hit.rchit", "engine/trace_ray/miss.rmiss"},
                     estimator);
 }
 
@@ -58,7 +68,7 @@ uint64_t estimator_hash(const Estimator& estimator) {
     for (const auto& define : estimator.defines) hash = hash_text(define + "\n", hash);
     // What render.comp and render.rgen have in common.
     for (const auto& file :
-         files_of({"interface.h", "scene.glsl", "ray.glsl", "render_samples.glsl"}, estimator))
+         files_of({"interface.h", "world/scene.glsl", "world/ray.glsl", "engine/render_samples.glsl"}, estimator))
         hash = hash_text(read_file(file, max_shader_bytes), hash);
     return hash;
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <span>
@@ -23,6 +24,10 @@ struct Estimator {
     std::filesystem::path observed = {};
     std::function<std::string(const std::string&)> edit = {};
 };
+
+// What #include stands for in shaders that run an estimator: "path_trace.glsl" is its file. A file of the same name
+// in a chapter's folder replaces the default "random_words.glsl" and "sample_loop.glsl" of shaders/.
+std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator);
 
 // The files that an estimator is compiled from, with whatever backend: the shared shaders and its own.
 std::set<std::filesystem::path> shader_files(const Estimator& estimator);

@@ -35,9 +35,10 @@ void Comparison::start(const Session& first, const std::string& chapter) {
             return;
         }
         options.samples.chapter_values.assign(chapter_.options.size(), std::nullopt);
-        options.estimator.split_every_hit = false;
-        if (!chapter_.strategies && options.estimator.strategy == Strategy::light)
-            options.estimator.strategy = Strategy::both;
+        const auto& strategies = chapter_.strategies;
+        if (options.estimator.strategy &&
+            std::find(strategies.begin(), strategies.end(), *options.estimator.strategy) == strategies.end())
+            options.estimator.strategy.reset();
     }
     // Other random numbers: equal ones would make differences look smaller than they are.
     ++options.samples.seed;

@@ -91,15 +91,12 @@ void draw_progress(const Session& session, double frames_per_second) {
 }
 
 void draw_strategy(const Chapter& chapter, EstimatorOptions& estimator) {
-    int strategy = static_cast<int>(estimator.strategy);
-    if (chapter.strategies) {
-        ImGui::Combo("light is found by", &strategy, "both\0light samples\0bounces\0");
-        estimator.strategy = static_cast<Strategy>(strategy);
-    } else if (chapter.light_sampling) {
-        bool light_sampling = estimator.strategy == Strategy::both;
-        if (ImGui::Checkbox("light sampling", &light_sampling))
-            estimator.strategy = light_sampling ? Strategy::both : Strategy::brdf;
-    }
+    if (chapter.strategies.empty()) return;
+    const Strategy current = estimator.strategy.value_or(chapter.strategies.front());
+    if (!ImGui::BeginCombo("light is found by", to_string(current).c_str())) return;
+    for (const Strategy strategy : chapter.strategies)
+        if (ImGui::Selectable(to_string(strategy).c_str(), strategy == current)) estimator.strategy = strategy;
+    ImGui::EndCombo();
 }
 
 void draw_picture(const Session& session, Options& options) {
@@ -208,7 +205,6 @@ void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parame
         options.light.max_path_length =
             std::max(*options.light.max_path_length, *options.light.only_path_length);
     draw_strategy(chapter, options.estimator);
-    if (chapter.split_every_hit) ImGui::Checkbox("split at every hit", &options.estimator.split_every_hit);
     options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i)
         draw_chapter_option(chapter.options[i], parameters, options.samples.chapter_values[i]);

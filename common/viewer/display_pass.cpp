@@ -12,7 +12,7 @@ DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr
       film_(&film),
       picture_(std::move(picture)),
       largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
-      kernel_(device, {.file = project_folder() / "shaders" / "display.comp"},
+      kernel_(device, {.file = project_folder() / "shaders" / "engine/display.comp"},
               std::vector<Binding>{film.binding(),
                                    {.index = BINDING_PICTURE,
                                     .type = vk::DescriptorType::eStorageImage,

@@ -44,7 +44,7 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
     const auto by_light_samples = [&](size_t number) {
         Subject subject = chapter(number, 1);
         subject.name += " by light samples";
-        subject.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+        subject.estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
         return subject;
     };
     pairs.push_back({by_light_samples(8), chapter(9, 1)});

@@ -92,7 +92,7 @@ TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
 // By a renderer that was made for a large image: it has one thread for each pixel, also if it goes on with a
 // small one.
 FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSettings& settings) {
-    const GpuScene gpu_scene(test_device(), scene, light_sampling_of(settings));
+    const GpuScene gpu_scene = make_gpu_scene(scene, settings);
     const auto acceleration_structure =
         build_acceleration_structure(settings.backend, test_device(), gpu_scene);
     RenderSettings large = settings;

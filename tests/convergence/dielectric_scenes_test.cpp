@@ -43,7 +43,7 @@ TEST(DielectricScene, LightSamplingKeepsTheMean) {
         {"glass box", &clear}, {"emissive glass box", &emissive}, {"lamp in glass", &filled}};
     for (const auto& [name, scene] : scenes) {
         RenderSettings off = room_settings(20, 4);
-        off.light_sampling = LightSampling::off;
+        off.strategy = Strategy::bounces;
         expect_agreement(name, render_batches(*scene, room_settings(14, 3), scene_batches),
                          render_batches(*scene, off, scene_batches), {0.02, 0.3});
     }
@@ -65,9 +65,9 @@ TEST(DielectricScene, EmissiveGlassAddsItsEmissionOnce) {
     glass.emission = {3, 2, 1};
     Scene scene = make_sphere(glass, Facing::outwards);
     scene.background = vec3(1);
-    for (const LightSampling light_sampling : {LightSampling::on, LightSampling::off}) {
+    for (const Strategy strategy : {Strategy::both, Strategy::bounces}) {
         RenderSettings settings = room_settings(50, 8);
-        settings.light_sampling = light_sampling;
+        settings.strategy = strategy;
         settings.roulette_start = 1000;
         const FilmImage film = render(scene, settings);
         for (int channel = 0; channel < 3; ++channel)

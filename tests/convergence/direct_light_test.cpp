@@ -374,7 +374,7 @@ TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {
         Scene scene = receiver.scene();
         add_triangle(scene, receiver.place(light), 1);
         RenderSettings settings = settings_of(GetParam(), 450, ++seed);
-        settings.light_sampling = LightSampling::off;
+        settings.strategy = Strategy::bounces;
         expect_direct_light(name, render_batches(scene, settings, light_batches),
                             receiver.irradiance(receiver.place(light)), {0.05, 2}, 3);
     }

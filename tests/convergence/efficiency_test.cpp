@@ -64,8 +64,8 @@ Cost measure_strategy(const std::string& scene_name, Strategy strategy, uint32_t
     settings.roulette_start = 2;
     settings.seed = 7100;
     settings.estimator = chapter_estimator(all_chapters.at(6));
-    if (strategy == Strategy::light) settings.estimator.defines = {"ONLY_LIGHT_SAMPLES"};
-    if (strategy == Strategy::brdf) settings.light_sampling = LightSampling::off;
+    if (strategy == Strategy::light) settings.estimator.defines = {"STRATEGY STRATEGY_LIGHT"};
+    if (strategy == Strategy::bounces) settings.strategy = Strategy::bounces;
     return measure(load_shipped_scene(scene_name + ".json"), settings);
 }
 
@@ -97,7 +97,7 @@ TEST(Efficiency, MultipleImportanceSamplingPays) {
     const Cost both = measure_chapter("plates", 7, 8, 2);
     expect_gain("both strategies against light samples", measure_strategy("plates", Strategy::light, 32, 2),
                 both);
-    expect_gain("both strategies against bounces", measure_strategy("plates", Strategy::brdf, 32, 2), both);
+    expect_gain("both strategies against bounces", measure_strategy("plates", Strategy::bounces, 32, 2), both);
 }
 
 TEST(Efficiency, SamplingTheLightProbePays) {

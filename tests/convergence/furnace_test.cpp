@@ -33,7 +33,7 @@ void expect_furnace(const std::string& chapter, Scene (*make_furnace)(const Mate
                     const vec3& emission, const Samples& samples) {
     const Scene scene = make_furnace(diffuse_material(albedo, emission));
     // In a room whose walls all emit, samples of the lights have infinite variance at the edges.
-    RenderSettings settings{.light_sampling = LightSampling::off, .estimator = chapter_estimator(chapter)};
+    RenderSettings settings{.strategy = Strategy::bounces, .estimator = chapter_estimator(chapter)};
     SceneRenderer renderer(scene, settings);
     for (const uint32_t m : {0u, 1u, 2u, 4u, 8u}) {
         settings.samples = samples.of(chapter, m);

@@ -53,20 +53,20 @@ Estimator repetition_estimator(const Repetition& repetition) {
 }
 
 // Rooms to be rendered, and whether light samples find the light in them.
-std::vector<std::pair<Scene, LightSampling>> scenes_of(const Repetition& repetition) {
+std::vector<std::pair<Scene, Strategy>> scenes_of(const Repetition& repetition) {
     const Scene room = empty_room();
     Scene glossy = room, open = room, furnace = room;
     glossy.materials[0].specular_albedo = vec3(0.2f);
     glossy.materials[0].specular_exponent = 20;
     open.background = {0.2f, 0.3f, 0.5f};
     for (Material& material : furnace.materials) material.emission = vec3(1);
-    std::vector<std::pair<Scene, LightSampling>> scenes{{room, LightSampling::on},
-                                                        {glossy, LightSampling::on},
-                                                        {open, LightSampling::on},
-                                                        {furnace, LightSampling::off}};
+    std::vector<std::pair<Scene, Strategy>> scenes{{room, Strategy::both},
+                                                        {glossy, Strategy::both},
+                                                        {open, Strategy::both},
+                                                        {furnace, Strategy::bounces}};
     if (repetition.has_glass)
-        scenes.emplace_back(room_with_box(dielectric_material(1.5f, vec3(0.3f))), LightSampling::on);
-    if (repetition.has_probe) scenes.emplace_back(load_shipped_scene("textured.json"), LightSampling::on);
+        scenes.emplace_back(room_with_box(dielectric_material(1.5f, vec3(0.3f))), Strategy::both);
+    if (repetition.has_probe) scenes.emplace_back(load_shipped_scene("textured.json"), Strategy::both);
     return scenes;
 }
 
@@ -98,13 +98,13 @@ TEST_P(RepeatedChapter, IsTheChapterBeforeIt) {
                   {8, 1, 0.95f, 0.25f},
                   {endless, 3, 0.95f, 0.5f},
                   {endless, 1, 0.5f, 1.0f}};
-    for (const auto& [scene, light_sampling] : scenes_of(repetition)) {
+    for (const auto& [scene, strategy] : scenes_of(repetition)) {
         RenderSettings settings{.width = 48,
                                 .height = 48,
                                 .samples = 8,
                                 .seed = 7,
                                 .splitting_factor = repetition.splitting_factor,
-                                .light_sampling = light_sampling,
+                                .strategy = strategy,
                                 .estimator = repetition_estimator(repetition)};
         SceneRenderer chapter(scene, settings);
         settings.estimator = chapter_estimator(all_chapters.at(repetition.before - 1));

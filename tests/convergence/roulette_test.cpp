@@ -14,7 +14,7 @@ constexpr uint32_t endless = 100'000;
 // Inside a box whose walls emit 1 and reflect `albedo`; emission is found by bounces.
 Batches render_furnace(const std::string& chapter, const vec3& albedo, RenderSettings settings,
                        uint32_t count) {
-    settings.light_sampling = LightSampling::off;
+    settings.strategy = Strategy::bounces;
     settings.estimator = chapter_estimator(chapter);
     return render_batches(closed_box(diffuse_material(albedo, vec3(1))), settings, count);
 }

@@ -129,7 +129,7 @@ Scene lamp_above_floor() {
 RenderSettings light_samples_only() {
     RenderSettings settings{.width = 48, .height = 48, .max_path_length = 1};
     settings.estimator = chapter_estimator(all_chapters.at(8));
-    settings.estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    settings.estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
     return settings;
 }
 

@@ -149,7 +149,7 @@ TEST_P(Intersection, NothingLeaksThroughPlanesCloseToEachOther) {
         for (const bool is_turned : {false, true}) {
             const Scene scene = two_planes(gap, is_turned);
             RenderSettings furnace = settings("", 128, 1);
-            furnace.light_sampling = LightSampling::off;
+            furnace.strategy = Strategy::bounces;
             furnace.estimator = chapter_estimator("02_cosine_sampling");
             for (const FilmPixel& pixel : render(scene, furnace).pixels) {
                 leaks += pixel.sum.r != 2 - 1.0f / 256;

@@ -17,7 +17,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, PathCases, testing::ValuesIn(all_backends), b
 RenderSettings make_settings(Backend backend, const std::string& chapter, uint32_t max_path_length) {
     RenderSettings settings{.width = 16, .height = 16, .samples = 4, .max_path_length = max_path_length};
     settings.survival_cap = 1;
-    settings.light_sampling = LightSampling::off;
+    settings.strategy = Strategy::bounces;
     settings.estimator = chapter_estimator(chapter);
     settings.backend = backend;
     return settings;
@@ -27,9 +27,9 @@ TEST_P(PathCases, LengthZeroShowsTheEmission) {
     const vec3 emission(0.1f, 3, 1e6f);
     const Scene scene = closed_box(diffuse_material(vec3(1), emission));
     for (const std::string& chapter : chapters_for(GetParam(), all_chapters))
-        for (const LightSampling light_sampling : {LightSampling::on, LightSampling::off}) {
+        for (const Strategy strategy : {Strategy::both, Strategy::bounces}) {
             RenderSettings settings = make_settings(GetParam(), chapter, 0);
-            settings.light_sampling = light_sampling;
+            settings.strategy = strategy;
             settings.samples = 1;
             for (const FilmPixel& pixel : render(scene, settings).pixels)
                 ASSERT_EQ(pixel.sum, emission) << chapter;

@@ -72,7 +72,7 @@ TEST_P(ShadingNormals, OfAFurnaceNeverAddEnergy) {
         for (const std::string& chapter : chapters()) {
             RenderSettings furnace = settings(chapter, GetParam(), 6);
             furnace.samples = 16;
-            furnace.light_sampling = LightSampling::off;
+            furnace.strategy = Strategy::bounces;
             const double most = 2 - 1.0 / 64;
             const MeanEstimate radiance = estimate_mean(pixel_means(render(scene, furnace), 0));
             const double energy = radiance.mean / most;

@@ -107,7 +107,7 @@ TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
                                     .seed = ++seed,
                                     .backend = GetParam()};
             settings.estimator = chapter_estimator("08_light_probes");
-            if (only_light_samples) settings.estimator.defines = {"ONLY_LIGHT_SAMPLES"};
+            if (only_light_samples) settings.estimator.defines = {"STRATEGY STRATEGY_LIGHT"};
             Scene scene = sunny_floor(sun, sky);
             scene.probe_rotation = rotation;
             const MeanEstimate mean = estimate_mean(pixel_means(render(scene, settings), 1));
@@ -149,7 +149,7 @@ TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable) {
     for (const char* chapter : {"08_light_probes", "09_low_discrepancy_points"}) {
         RenderSettings settings{.samples = 1024, .max_path_length = 1, .seed = 31};
         settings.estimator = chapter_estimator(chapter);
-        settings.estimator.defines.push_back("ONLY_LIGHT_SAMPLES");
+        settings.estimator.defines.push_back("STRATEGY STRATEGY_LIGHT");
         expect_mean(chapter, estimate_mean(pixel_means(render(scene, settings), 1)), 1, 0.25, 2);
     }
 }

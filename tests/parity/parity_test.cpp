@@ -24,8 +24,8 @@ struct TracedImage {
 // A scene with the acceleration structure of a backend.
 class BackendScene {
   public:
-    BackendScene(Backend backend, const Scene& scene, LightSampling light_sampling = LightSampling::on)
-        : gpu_scene_(test_device(), scene, light_sampling),
+    BackendScene(Backend backend, const Scene& scene, bool samples_probe = false)
+        : gpu_scene_(test_device(), scene, Strategy::both, samples_probe),
           structure_(build_acceleration_structure(backend, test_device(), gpu_scene_)) {}
 
     // One sample a pixel.
@@ -145,13 +145,13 @@ TEST_P(Parity, EveryChapterOnEveryScene) {
     for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes")) {
         const Scene scene = load_scene(file);
         const auto estimators = chapter_estimators(file.stem().string(), GetParam());
-        for (const LightSampling light_sampling : {LightSampling::on, LightSampling::with_probe}) {
+        for (const bool samples_probe : {false, true}) {
             const auto samples_so = [&](const auto& e) {
-                return light_sampling_of(e.second) == light_sampling;
+                return lab::samples_probe(e.second.estimator) == samples_probe;
             };
             if (std::none_of(estimators.begin(), estimators.end(), samples_so)) continue;
-            const BackendScene expected(Backend::compute, scene, light_sampling),
-                actual(GetParam(), scene, light_sampling);
+            const BackendScene expected(Backend::compute, scene, samples_probe),
+                actual(GetParam(), scene, samples_probe);
             for (const auto& [name, settings] : estimators)
                 if (samples_so(std::pair(name, settings)))
                     expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings),

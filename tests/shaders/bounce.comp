@@ -1,7 +1,7 @@
 #version 460
 // Runs an estimator at a surface: which direction it samples, and with which weight.
-#include "inside/estimator_stub.glsl"
-#include "lights.glsl"
+#include "observation/estimator_stub.glsl"
+#include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 #include "path_trace.glsl"
 

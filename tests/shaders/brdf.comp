@@ -1,7 +1,7 @@
 #version 460
-// get_pi_brdf() and is_above_surface() for each pair of directions at a surface.
+// get_brdf() and is_above_surface() for each pair of directions at a surface.
 #define FEATURE_SPECULAR
-#include "inside/estimator_stub.glsl"
+#include "observation/estimator_stub.glsl"
 
 struct Input {
     vec3 normal;
@@ -10,7 +10,7 @@ struct Input {
     Material material;
 };
 struct Result {
-    vec3 pi_brdf;
+    vec3 brdf;
     uint is_above;  // the in-direction
 };
 
@@ -26,6 +26,6 @@ void main() {
     Hit hit;
     trace_ray(Ray(inputs[i].out_direction, -inputs[i].out_direction), NO_LIMIT, hit);
     ShadingData s = get_shading_data(hit, -inputs[i].out_direction);
-    results[i].pi_brdf = get_pi_brdf(s, inputs[i].in_direction, inputs[i].out_direction);
+    results[i].brdf = get_brdf(s, inputs[i].in_direction);
     results[i].is_above = is_above_surface(s, inputs[i].in_direction) ? 1u : 0u;
 }

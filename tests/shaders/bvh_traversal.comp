@@ -2,9 +2,9 @@
 // Traces given rays, or with AIM_AT_TRIANGLES rays of its own from inside a closed mesh to its vertices and edges.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
-#include "random.glsl"
-#include "ray.glsl"
-#include "trace_ray/compute.glsl"
+#include "world/random.glsl"
+#include "world/ray.glsl"
+#include "engine/trace_ray/compute.glsl"
 
 layout(local_size_x = 128) in;
 

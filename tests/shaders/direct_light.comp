@@ -1,7 +1,7 @@
 #version 460
 // Runs an estimator at a surface that sees a triangular light, with nothing between them and no other light.
-#define FEATURE_LIGHT_SAMPLING
-#include "inside/estimator_stub.glsl"
+#define FEATURE_LIGHT_TRIANGLES
+#include "observation/estimator_stub.glsl"
 
 struct Result {
     vec3 origin;     // of the shadow ray
@@ -21,7 +21,7 @@ layout(scalar, binding = 1) readonly buffer Inputs {
     Material light_material;
     LightTriangle light_triangles[];
 };
-#include "lights.glsl"
+#include "world/lights.glsl"
 
 // In place of a backend.
 Ray shadow_ray = Ray(vec3(0.0), vec3(0.0));

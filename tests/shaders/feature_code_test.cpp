@@ -63,9 +63,9 @@ class FeatureCode : public testing::TestWithParam<std::string> {
 
     Footprint footprint(const Scene& scene, Backend backend) const {
         const RenderSettings settings{
-            .light_sampling = samples_lights() ? LightSampling::on : LightSampling::off,
+            .strategy = samples_lights() ? Strategy::both : Strategy::bounces,
             .estimator = chapter_estimator(GetParam())};
-        const GpuScene gpu_scene(test_device(), scene, light_sampling_of(settings));
+        const GpuScene gpu_scene = make_gpu_scene(scene, settings);
         const auto structure = build_acceleration_structure(backend, test_device(), gpu_scene);
         std::set<std::string> functions;
         for (const auto& [name, needs] : needs_of_features())

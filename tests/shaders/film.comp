@@ -2,8 +2,8 @@
 // add_sample() on streams of samples that the CPU can add exactly; or is_invalid() of given bits.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
-#include "random.glsl"
-#include "film.glsl"
+#include "world/random.glsl"
+#include "engine/film.glsl"
 
 #ifdef INVALID_BITS
 #define Result uint

@@ -1,7 +1,7 @@
 #version 460
 // get_shading_space() for each normal.
 #extension GL_EXT_scalar_block_layout : require
-#include "frame.glsl"
+#include "world/frame.glsl"
 
 layout(scalar, binding = 0) writeonly buffer Results { mat3 results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs { vec3 inputs[]; };

@@ -1,7 +1,7 @@
 #version 460
 // get_fresnel_reflectance() and sample_dielectric() of chapter 6 for each surface and direction.
-#include "inside/estimator_stub.glsl"
-#include "lights.glsl"
+#include "observation/estimator_stub.glsl"
+#include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 #include "path_trace.glsl"
 
@@ -26,10 +26,11 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= inputs.length()) return;
     ShadingData s;
-    s.normal = inputs[i].normal;
+    s.normal = s.geometric_normal = inputs[i].normal;
+    s.out_direction = inputs[i].out_direction;
     s.relative_index = inputs[i].eta;
     uvec2 seed = inputs[i].seed;
-    float cos_theta = dot(s.normal, inputs[i].out_direction);
+    float cos_theta = dot(s.normal, s.out_direction);
     results[i].reflectance = get_fresnel_reflectance(cos_theta, inputs[i].eta, inputs[i].eta_cos_theta_t);
-    results[i].direction = sample_dielectric(s, inputs[i].out_direction, seed);
+    results[i].direction = sample_dielectric(s, seed).direction;
 }

@@ -1,8 +1,8 @@
 #version 460
-// choose_light_triangle() for given random states, and for those of different samples. With LOW_DISCREPANCY it chooses with
-// one pair of words as in chapter 9, but the words are random.
-#define FEATURE_LIGHT_SAMPLING
-#include "inside/estimator_stub.glsl"
+// choose_light_triangle() for given random states, and for those of different samples. With ONE_PAIR a
+// single pair of words chooses the triangle and the point on it.
+#define FEATURE_LIGHT_TRIANGLES
+#include "observation/estimator_stub.glsl"
 
 struct Choice {
     uint triangle;
@@ -15,16 +15,7 @@ layout(scalar, binding = 1) readonly buffer Inputs {
     uvec2 states[STATE_COUNT];
     LightTriangle light_triangles[];
 };
-#ifdef LOW_DISCREPANCY
-uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
-    return get_state(pixel_index, sample_index, key);
-}
-uvec2 get_random_words(inout uvec2 seed) {
-    advance_random_state(seed);
-    return seed;
-}
-#endif
-#include "lights.glsl"
+#include "world/lights.glsl"
 
 layout(local_size_x = 128) in;
 
@@ -38,5 +29,10 @@ void main() {
     results[i].triangle = uint(gives_way(0xffffffffu, light_triangles[entry].threshold, results[i].u.x));
     return;
 #endif
+#ifdef ONE_PAIR
     results[i].triangle = choose_light_triangle(seed, results[i].u).triangle;
+#else
+    results[i].triangle = choose_light_triangle(seed).triangle;
+    results[i].u = get_random_numbers(seed);
+#endif
 }

@@ -1,14 +1,14 @@
 #version 460
 // The barycentric coordinates of the point of a light that an estimator chooses, for each state of the random numbers.
-#define FEATURE_LIGHT_SAMPLING
-#include "inside/estimator_stub.glsl"
+#define FEATURE_LIGHT_TRIANGLES
+#include "observation/estimator_stub.glsl"
 
 layout(scalar, binding = 0) writeonly buffer Results { vec2 results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {
     LightTriangle light_triangles[1];
     uvec2 seeds[];
 };
-#include "lights.glsl"
+#include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 
 vec2 chosen_barycentrics;
@@ -33,6 +33,6 @@ void main() {
     trace_ray(Ray(vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, -1.0)), NO_LIMIT, hit);
     ShadingData s = get_shading_data(hit, vec3(0.0, 0.0, -1.0));
     uvec2 seed = seeds[i];
-    sample_direct_light(s, vec3(0.0, 0.0, 1.0), seed);
+    sample_direct_light(s, seed);
     results[i] = chosen_barycentrics;
 }

@@ -117,7 +117,7 @@ TEST(LightChoice, ByOnePairOfWordsHasTheProbabilitiesOfDimLights) {
         for (size_t i = 0; i < n; i += 4096) weights[i] = 4096;
         double sum = 0;
         for (const double weight : weights) sum += weight;
-        const auto choices = choose(make_table(weights), {{1, 2}}, 8'000'000, 3, {"LOW_DISCREPANCY"});
+        const auto choices = choose(make_table(weights), {{1, 2}}, 8'000'000, 3, {"ONE_PAIR"});
         const auto dim =
             std::ranges::count_if(choices, [](const Choice& c) { return c.triangle % 4096 != 0; });
         const double bright = std::ceil(static_cast<double>(n) / 4096) * 4096 / sum;
@@ -132,7 +132,7 @@ TEST(LightChoice, LeavesUniformNumbers) {
         for (size_t i = 0; i < n; i += 2) weights[i] = 1;
         std::vector<double> numbers[2][2];
         for (const auto& [triangle, u] :
-             choose(make_table(weights), {{1, 2}}, 1'000'000, 4, {"LOW_DISCREPANCY"}))
+             choose(make_table(weights), {{1, 2}}, 1'000'000, 4, {"ONE_PAIR"}))
             for (int axis = 0; axis < 2; ++axis) numbers[triangle % 2][axis].push_back(u[axis]);
         for (const char* parity : {"even", "odd"})
             for (int axis = 0; axis < 2; ++axis)
@@ -144,7 +144,7 @@ TEST(LightChoice, LeavesUniformNumbers) {
 // The share of some of 49 equal lights is rounded to just below 1: the largest digits alone give way.
 TEST(LightChoice, LeavesANumberWhereOnlyTheLargestDigitsGiveWay) {
     const auto lights = make_table(std::vector<double>(49, 1.0));
-    const auto choices = choose(lights, {{1, 2}}, lights.size(), 5, {"LOW_DISCREPANCY", "LARGEST_DIGITS"});
+    const auto choices = choose(lights, {{1, 2}}, lights.size(), 5, {"ONE_PAIR", "LARGEST_DIGITS"});
     size_t rounded = 0;
     for (size_t i = 0; i < lights.size(); ++i)
         if (lights[i].threshold == 0xffffffffu) {
@@ -188,10 +188,10 @@ std::vector<LightAnswer> sample_light(const std::string& chapter, const std::arr
     inputs.light = {
         .instance = 0, .triangle = 1, .threshold = 0, .alias = 0, .inverse_density = inverse_density};
     Estimator estimator = chapter_estimator(chapter);
-    if (only_light_samples) estimator.defines.emplace_back("ONLY_LIGHT_SAMPLES");
+    if (only_light_samples) estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
     const TestShader shader{.name = "direct_light.comp",
                             .defines = estimator.defines,
-                            .named_includes = {{"path_trace.glsl", estimator.file}}};
+                            .named_includes = named_includes(estimator)};
     std::vector<LightAnswer> samples(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(samples)),
                std::as_bytes(std::span(&inputs, 1)));
@@ -246,7 +246,7 @@ TEST_P(LightPoints, WeightIsThatOfTheArea) {
     // L_e ρ cos θ cos θ' / r² A/P, for every sample. With multiple importance sampling times p_l / (p_l +
     // p_b), the balance heuristic with the densities p_l = r² / cos θ' P/A of this sample and p_b = cos θ / π
     // of the bounce; with --strategy light there is no such bounce.
-    const bool has_strategies = load_chapter(GetParam()).strategies;
+    const bool has_strategies = load_chapter(GetParam()).strategies.front() == Strategy::both;
     const dvec3 normal = glm::normalize(glm::cross(dvec3(light_corners[1]) - dvec3(light_corners[0]),
                                                    dvec3(light_corners[2]) - dvec3(light_corners[0])));
     for (const bool only_light_samples : {false, true}) {

@@ -1,7 +1,7 @@
 #version 460
 // Points of an estimator's own random numbers: pairs of random words that follow each other in a sample.
-#include "inside/estimator_stub.glsl"
-#include "lights.glsl"
+#include "observation/estimator_stub.glsl"
+#include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 #include "path_trace.glsl"
 

@@ -24,7 +24,7 @@ std::vector<Words> words_of(const std::vector<SampleId>& samples) {
     const Estimator estimator = chapter_estimator(all_chapters.at(8));
     TestShader shader{.name = "low_discrepancy.comp",
                       .defines = estimator.defines,
-                      .named_includes = {{"path_trace.glsl", estimator.file}}};
+                      .named_includes = named_includes(estimator)};
     shader.defines.push_back("PAIRS " + std::to_string(pairs));
     return run_shader<Words>(shader, samples);
 }

@@ -27,7 +27,7 @@ struct Recorded {
 
 // Paths of `count` pixels all over the image, each of another sample.
 std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
-    const GpuScene gpu_scene(test_device(), scene, settings.light_sampling);
+    const GpuScene gpu_scene(test_device(), scene, settings.strategy);
     const auto acceleration_structure =
         build_acceleration_structure(settings.backend, test_device(), gpu_scene);
     PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator,
@@ -243,7 +243,7 @@ TEST(PathRecorder, LeavesNoTraceInShadersThatRender) {
     const GpuScene gpu_scene(test_device(), scene);
     const Estimator estimator = chapter_estimator("05_russian_roulette");
     const auto compile = [&](const Estimator& e) {
-        ShaderSource source = shader_source("render.comp", gpu_scene, e);
+        ShaderSource source = shader_source("engine/render.comp", gpu_scene, e);
         source.defines.push_back("BVH_STACK_SIZE 32");
         return compile_shader(source);
     };

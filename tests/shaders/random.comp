@@ -1,7 +1,7 @@
 #version 460
 // One function of random.glsl for each input, chosen by a define.
 #extension GL_EXT_scalar_block_layout : require
-#include "random.glsl"
+#include "world/random.glsl"
 
 #ifdef START_STATES
 struct Input { uint pixel_index; uint sample_index; uvec2 key; };

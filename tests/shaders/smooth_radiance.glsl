@@ -1,6 +1,6 @@
 // Smooth functions of random numbers, whose integrals are 1: of the first pair behind the pixel's, of the second pair, and
 // of one number of both.
-#include "inside/observed_estimator.glsl"
+#include "observation/observed_estimator.glsl"
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     vec2 u = get_random_numbers(seed), v = get_random_numbers(seed);

@@ -25,7 +25,7 @@ std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surfa
     defines.insert(defines.end(), estimator.defines.begin(), estimator.defines.end());
     TestShader shader{.name = "bounce.comp",
                       .defines = std::move(defines),
-                      .named_includes = {{"path_trace.glsl", estimator.file}}};
+                      .named_includes = named_includes(estimator)};
     if (surface.material.specular_albedo != vec3(0)) shader.defines.emplace_back("FEATURE_SPECULAR");
     std::vector<Bounce> bounces(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs, device);

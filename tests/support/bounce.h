@@ -1,4 +1,4 @@
-// Runs an estimator at a single surface point, see shaders/inside/estimator_stub.glsl.
+// Runs an estimator at a single surface point, see shaders/observation/estimator_stub.glsl.
 #pragma once
 #include <array>
 #include <string>

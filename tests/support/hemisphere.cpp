@@ -10,7 +10,7 @@ std::vector<HemisphereAnswer> evaluate_hemisphere(const std::string& chapter,
     const Estimator estimator = chapter_estimator(chapter);
     TestShader shader{.name = "hemisphere.comp",
                       .defines = estimator.defines,
-                      .named_includes = {{"path_trace.glsl", estimator.file}}};
+                      .named_includes = named_includes(estimator)};
     if (chapter == "02_cosine_sampling") shader.defines.emplace_back("DENSITY");
     return run_shader<HemisphereAnswer>(shader, queries, device);
 }

@@ -15,7 +15,7 @@ Scene load_shipped_scene(const std::string& file) {
 
 std::vector<std::string> light_sampling_chapters() {
     std::vector<std::string> chapters = all_chapters;
-    std::erase_if(chapters, [](const std::string& chapter) { return !load_chapter(chapter).light_sampling; });
+    std::erase_if(chapters, [](const std::string& chapter) { return load_chapter(chapter).strategies.empty(); });
     return chapters;
 }
 
@@ -26,7 +26,7 @@ Estimator chapter_estimator(const std::string& chapter) {
     return estimator_of(tested.title == own.title ? tested : own);
 }
 
-Estimator every_hit_estimator() { return {project_folder() / "shaders" / "path_trace_every_hit.glsl"}; }
+Estimator every_hit_estimator() { return {project_folder() / "chapters/04_splitting/solutions/split_every_hit.glsl"}; }
 
 Estimator view_estimator(const std::string& view, const std::string& chapter) {
     Options options;
@@ -48,17 +48,18 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
     return parameters;
 }
 
-LightSampling light_sampling_of(const RenderSettings& settings) {
-    const Estimator& estimator = settings.estimator;
+bool samples_probe(const Estimator& estimator) {
     const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
-    const bool samples_probe = std::filesystem::exists(folder / "chapter.json") &&
-                               load_chapter(folder.filename().string()).light_probe_sampling;
-    return samples_probe && settings.light_sampling == LightSampling::on ? LightSampling::with_probe
-                                                                         : settings.light_sampling;
+    return std::filesystem::exists(folder / "chapter.json") &&
+           load_chapter(folder.filename().string()).light_probe_sampling;
+}
+
+GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings) {
+    return {test_device(), scene, settings.strategy, samples_probe(settings.estimator)};
 }
 
 SceneRenderer::SceneRenderer(const Scene& scene, const RenderSettings& settings)
-    : gpu_scene_(test_device(), scene, light_sampling_of(settings)),
+    : gpu_scene_(make_gpu_scene(scene, settings)),
       acceleration_structure_(build_acceleration_structure(settings.backend, test_device(), gpu_scene_)),
       renderer_(test_device(), *acceleration_structure_, settings.estimator, make_parameters(scene, settings),
                 {}, settings.max_film_window) {}

@@ -28,7 +28,7 @@ bool splits_paths(const std::string& chapter);
 
 // Where the environment's LAB_TEST_COPY names the folder of a copy of this chapter, that of the copy.
 Estimator chapter_estimator(const std::string& chapter);
-Estimator every_hit_estimator();  // --split-every-hit
+Estimator every_hit_estimator();  // splits at every hit
 Estimator view_estimator(const std::string& view, const std::string& chapter = all_chapters.front());
 
 // For messages.
@@ -49,7 +49,7 @@ struct RenderSettings {
     uint32_t roulette_start = 1;
     float survival_cap = 0.95f;
     float survival_weight = 1;
-    LightSampling light_sampling = LightSampling::on;  // of the probe, too, where the chapter does that
+    Strategy strategy = Strategy::both;
     Estimator estimator = chapter_estimator(all_chapters.front());
     Backend backend = Backend::compute;
     double dispatch_seconds = 0.1;
@@ -57,7 +57,9 @@ struct RenderSettings {
 };
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings);
-LightSampling light_sampling_of(const RenderSettings& settings);
+// Whether an estimator is that of a chapter that samples light probes.
+bool samples_probe(const Estimator& estimator);
+GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings);
 
 struct Rendering {
     FilmImage film;

@@ -2,31 +2,45 @@
 #include "rendering/chapter.h"
 
 #include <algorithm>
+#include <map>
 
-#include "files/project_folder.h"
+#include "rendering/settings.h"
 #include "test_files.h"
 
 namespace lab {
 namespace {
 
+// Text of a chapter's shaders and of those of other chapters that it includes.
+std::string shader_text(const Chapter& chapter) {
+    std::string text;
+    for (const auto& file : shader_files(estimator_of(chapter)))
+        if (file.string().find("/chapters/") != std::string::npos) text += file_bytes(file);
+    return text;
+}
+
 TEST(Chapter, SaysWhatItsShaderDoes) {
     const auto names = course_chapters();
     EXPECT_GE(names.size(), 6u);
-    const Chapter all = load_chapter("05_russian_roulette");
+    std::map<std::string, ChapterOption> options;
+    for (const auto& name : names)
+        for (const ChapterOption& option : load_chapter(name).options) options.emplace(option.name, option);
     for (const auto& name : names) {
         const Chapter chapter = load_chapter(name);
-        const std::string shader = file_bytes(project_folder() / "chapters" / name / "path_trace.glsl");
-        const auto mentions = [&](const std::string& word) { return shader.find(word) != std::string::npos; };
-        EXPECT_EQ(chapter.light_sampling, mentions("LIGHT_SAMPLING")) << name;
-        EXPECT_EQ(chapter.light_probe_sampling, mentions("LIGHT_PROBE_SAMPLING")) << name;
-        EXPECT_EQ(chapter.strategies, mentions("BOUNCES_FIND_LIGHTS")) << name;
+        const std::string text = shader_text(chapter);
+        const auto mentions = [&](const std::string& word) { return text.find(word) != std::string::npos; };
+        const auto has_strategy = [&](Strategy strategy) {
+            return std::ranges::count(chapter.strategies, strategy) > 0;
+        };
+        EXPECT_EQ(has_strategy(Strategy::light), mentions("STRATEGY_BOUNCES")) << name;
+        EXPECT_EQ(has_strategy(Strategy::both), mentions("STRATEGY_LIGHT")) << name;
+        EXPECT_EQ(chapter.light_probe_sampling, mentions("choose_probe_cell")) << name;
         EXPECT_EQ(chapter.dielectrics, mentions("is_dielectric")) << name;
-        for (const ChapterOption& option : all.options) {
-            std::string parameter = option.name.substr(2);
-            std::replace(parameter.begin(), parameter.end(), '-', '_');
-            const bool has_it = std::any_of(chapter.options.begin(), chapter.options.end(),
-                                            [&](const auto& o) { return o.name == option.name; });
-            EXPECT_EQ(has_it, mentions("parameters." + parameter)) << name << " " << option.name;
+        EXPECT_EQ(chapter.low_discrepancy, mentions("get_random_words(inout uvec2 seed) {")) << name;
+        for (const auto& [option_name, option] : options) {
+            std::string parameter = option_name.substr(2);
+            std::ranges::replace(parameter, '-', '_');
+            const bool has_it = std::ranges::count(chapter.options, option_name, &ChapterOption::name) > 0;
+            EXPECT_EQ(has_it, mentions("parameters." + parameter)) << name << " " << option_name;
         }
     }
 }
@@ -38,9 +52,8 @@ TEST(Chapter, HasDefaults) {
     EXPECT_EQ(chapter.name, folder.path().string());
     EXPECT_EQ(chapter.title, "A title");
     EXPECT_EQ(chapter.default_scene, "cornell_box");
-    EXPECT_FALSE(chapter.light_sampling || chapter.split_every_hit || chapter.unlimited_path_length ||
-                 chapter.dielectrics);
-    EXPECT_TRUE(chapter.options.empty());
+    EXPECT_FALSE(chapter.unlimited_path_length || chapter.dielectrics);
+    EXPECT_TRUE(chapter.options.empty() && chapter.strategies.empty());
 }
 
 TEST(Chapter, MistakesAreNamed) {
@@ -55,6 +68,7 @@ TEST(Chapter, MistakesAreNamed) {
         {"{\"title\": \"A\", \"tilte\": \"B\"}", "unknown key \"tilte\""},
         {"{\"title\": \"A\", \"dielectrics\": 1}", "must be true or false"},
         {"{\"title\": \"A\", \"check\": {\"scenes\": []}}", "unknown key \"scenes\" in \"check\""},
+        {"{\"title\": \"A\", \"strategies\": [\"brdf\"]}", "has \"brdf\": use both, light, bounces"},
         {"{\"title\": \"A\", \"options\": \"--survival-cap\"}", "must be a list"},
         {"{\"title\": \"A\", \"options\": [7]}", "has 7: use"},
         {"{\"title\": \"A\", \"options\": [\"--cap\"]}", "has \"--cap\": use --splitting-factor, "}};

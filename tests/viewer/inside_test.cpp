@@ -25,7 +25,6 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     ASSERT_NE(at, std::string::npos);
     write(shader, good);
     chapter_.name = folder_.path().string();
-    chapter_.split_every_hit = false;
     open(options_with_reference());
     wait_for_verdict();
     EXPECT_FALSE(session().latest_verdict()->is_biased) << session().verdict_text();

@@ -132,7 +132,7 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     EXPECT_EQ(parameters().only_path_length, 2);
     EXPECT_LT(one, all);
     change([](Options& options) { options.light.only_path_length.reset(); });
-    change([](Options& options) { options.estimator.strategy = Strategy::brdf; });
+    change([](Options& options) { options.estimator.strategy = Strategy::bounces; });
     EXPECT_NE(session().build().job.record.settings.find("--light-sampling off"), std::string::npos);
     change([](Options& options) {
         options.estimator.strategy = Strategy::both, options.estimator.split_every_hit = true;

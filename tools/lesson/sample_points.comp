@@ -1,9 +1,9 @@
 #version 460
 // One point of a sampler an invocation, as COLUMNS numbers. A define says which sampler.
 #ifdef LIGHT_POINTS
-#define FEATURE_LIGHT_SAMPLING
+#define FEATURE_LIGHT_TRIANGLES
 #endif
-#include "inside/estimator_stub.glsl"
+#include "observation/estimator_stub.glsl"
 
 layout(scalar, binding = 0) writeonly buffer Results { float results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {
@@ -14,7 +14,7 @@ layout(scalar, binding = 1) readonly buffer Inputs {
 };
 
 #if defined(DIRECTIONS) || defined(LIGHT_POINTS) || defined(LOW_DISCREPANCY)
-#include "lights.glsl"
+#include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 
 // Notes where on the light the estimator chooses its point.

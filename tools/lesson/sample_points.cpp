@@ -44,7 +44,7 @@ std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t cou
     const Estimator estimator = estimator_of(load_chapter(sampler.chapter));
     ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
                         .defines = {sampler.define, "COLUMNS " + std::to_string(columns)},
-                        .named_includes = {{"path_trace.glsl", estimator.file}}};
+                        .named_includes = named_includes(estimator)};
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     const Device device({device_name, false});
     // Of low-discrepancy points samples 2^k to 2^(k+1) - 1 belong together.

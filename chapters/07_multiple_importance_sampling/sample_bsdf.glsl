@@ -1,0 +1,25 @@
+// Bounces that follow the whole BRDF: a mixture of the cosine and the Phong lobe, chosen by their shares of the albedo.
+
+// The density of sample_bsdf() with respect to solid angle, for a direction above an opaque surface.
+float get_bsdf_density(ShadingData s, vec3 in_direction) {
+    float density = dot(s.normal, in_direction) / PI;
+#ifdef FEATURE_SPECULAR
+    density = mix(density, get_phong_density(s, in_direction), get_phong_probability(s));
+#endif
+    return density;
+}
+
+BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
+    if (s.is_dielectric) return sample_dielectric(s, seed);
+    bool is_from_lobe = false;
+    vec3 omega;
+#ifdef FEATURE_SPECULAR
+    is_from_lobe = happens(get_phong_probability(s), seed);
+    if (is_from_lobe) omega = sample_phong(s, get_random_numbers(seed));
+#endif
+    if (!is_from_lobe) omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
+    // The weight ρ n·ω / p_b.
+    float density = get_bsdf_density(s, omega);
+    vec3 weight = get_brdf(s, omega) * (dot(s.normal, omega) / density);
+    return BsdfSample(omega, is_above_surface(s, omega) ? weight : vec3(0.0), density, false, 1.0);
+}

@@ -1,0 +1,18 @@
+#version 460
+// A path tracer in a compute shader: a workgroup renders samples of a block of pixels.
+#include "interface.h"
+#include "world/scene.glsl"
+
+layout(scalar, push_constant) uniform DispatchParametersBlock { DispatchParameters dispatch; };
+
+#include "world/ray.glsl"
+#ifdef BACKEND_QUERY
+#include "engine/trace_ray/query.glsl"
+#else
+#include "engine/trace_ray/compute.glsl"
+#endif
+#include "render_samples.glsl"
+
+layout(local_size_x = BLOCK_SIZE) in;
+
+void main() { render_pixel(gl_WorkGroupID.x * BLOCK_SIZE + gl_LocalInvocationIndex); }

@@ -1,0 +1,91 @@
+// Takes the place of a chapter's estimator, calls it, and writes down what it does for one sample of one pixel.
+//
+// trace_ray() and is_occluded() are replaced here. After the estimator's assignments to `throughput`, `radiance` and
+// `survival_probability` common/inside/recording_calls.cpp has put calls of the functions record_…() below.
+#include "observation/recorded_path.h"
+
+layout(scalar, set = 0, binding = BINDING_RECORDED_PATH) buffer RecordedPath {
+    uint recorded_pixel;   // index, row by row
+    uint recorded_sample;  // index
+    uint event_count;      // of all, also those for which there is no room
+    RecordedEvent events[];
+};
+
+bool is_recording = false;
+
+// Whether to write an event, and where.
+bool add_event(uint kind, out uint index) {
+    index = event_count;
+    if (!is_recording) return false;
+    ++event_count;
+    if (index >= events.length()) return false;
+    events[index].kind = kind;
+    return true;
+}
+
+void record_ray(uint kind, Ray ray, bool is_hit, float end, Hit hit) {
+    uint i;
+    if (!add_event(kind, i)) return;
+    events[i].origin = ray.origin;
+    events[i].direction = ray.direction;
+    events[i].is_hit = is_hit ? 1u : 0u;
+    events[i].end = end;
+    if (kind == EVENT_SHADOW_RAY || !is_hit) return;
+    events[i].instance = hit.instance;
+    events[i].triangle = hit.triangle;
+    events[i].barycentrics = hit.barycentrics;
+}
+
+bool record_and_trace_ray(Ray ray, float t_max, out Hit hit) {
+    bool is_hit = trace_ray(ray, t_max, hit);
+    record_ray(EVENT_RAY, ray, is_hit, t_max, hit);
+    return is_hit;
+}
+
+bool record_and_ask_is_occluded(Ray ray, float t_max) {
+    bool is_hit = is_occluded(ray, t_max);
+    Hit unused;
+    record_ray(EVENT_SHADOW_RAY, ray, is_hit, t_max, unused);
+    return is_hit;
+}
+
+void record_value(uint kind, vec3 value, uint variable) {
+    uint i;
+    if (!add_event(kind, i)) return;
+    events[i].value = value;
+    events[i].variable = variable;
+}
+void record_throughput(uint kind, vec3 throughput) { record_value(kind, throughput, 0u); }
+void record_throughput(uint kind, float throughput) { record_value(kind, vec3(throughput), 0u); }
+void record_radiance(uint kind, vec3 radiance, uint variable) { record_value(kind, radiance, variable); }
+void record_survival(float probability) { record_value(EVENT_SURVIVAL, vec3(probability), 0u); }
+
+// Once for all hits, since drivers compile a function anew wherever it is called.
+void add_shading_data() {
+    for (uint i = 0u; i < min(event_count, events.length()); ++i) {
+        if (events[i].kind != EVENT_RAY || events[i].is_hit == 0u) continue;
+        Hit hit;
+        hit.instance = events[i].instance;
+        hit.triangle = events[i].triangle;
+        hit.barycentrics = events[i].barycentrics;
+        ShadingData s = get_shading_data(hit, events[i].direction);
+        events[i].position = s.position;
+        events[i].normal = s.normal;
+    }
+}
+
+#define trace_ray record_and_trace_ray
+#define is_occluded record_and_ask_is_occluded
+#include "observation/observed_estimator.glsl"
+
+vec3 path_trace(Ray ray, inout uvec2 seed) {
+    // All samples of all pixels have different random numbers, so these tell which one it is.
+    uvec2 recorded_seed = random_start_state(recorded_pixel, recorded_sample, parameters.seed_key);
+    get_random_numbers(recorded_seed);
+    is_recording = seed == recorded_seed;
+    vec3 result = observed_path_trace(ray, seed);
+    record_value(EVENT_RESULT, result, 0u);
+    if (is_recording) add_shading_data();
+    is_recording = false;
+    return result;
+}

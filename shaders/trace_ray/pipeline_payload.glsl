@@ -1,8 +1,0 @@
-// What the shaders of the ray tracing pipeline agree on.
-#extension GL_EXT_ray_tracing : require
-
-// Of all rays: a second payload for shadow rays alone costs up to 15 % of the rays per second, see docs/backends.md.
-const int HIT_PAYLOAD = 0;
-const uint MISS_RECORD = 0u;
-const uint SHADOW_MISS_RECORD = 1u;
-const uint NO_TRIANGLE = 0xffffffffu;

@@ -1,0 +1,62 @@
+// The scene's emissive triangles, for next event estimation.
+
+// How estimators find light: --strategy. Where no light has a table to sample from, bounces find all of it.
+#if !defined(FEATURE_LIGHT_TRIANGLES) && !defined(FEATURE_LIGHT_PROBE_CELLS)
+#undef STRATEGY
+#define STRATEGY STRATEGY_BOUNCES
+#elif !defined(STRATEGY)
+#define STRATEGY STRATEGY_BOTH
+#endif
+
+struct LightPoint {
+    vec3 position;           // y
+    vec3 position_in_front;  // y, moved to the front of the light by a bound on the rounding errors
+    vec3 normal;             // of the triangle, unit length, on the front
+    vec3 emission;           // L_e towards the front
+    float light_density;     // of y with respect to area, as ShadingData has it
+};
+
+#ifdef FEATURE_LIGHT_TRIANGLES
+const bool HAS_LIGHT_TRIANGLES = true;
+
+// Chooses an emissive triangle with probability proportional to its area times its luminance: in constant time, by an
+// alias table.
+LightTriangle choose_light_triangle(inout uvec2 seed) {
+    uvec2 words = get_random_words(seed);
+    uint index = get_random_index(uint(light_triangles.length()), words.x);
+    if (words.y >= light_triangles[index].threshold) index = light_triangles[index].alias;
+    return light_triangles[index];
+}
+
+// The same. One pair of words serves for the choice and for `u`, two numbers for a point on the triangle.
+LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
+    uvec2 words = get_random_words(seed);
+    u = to_numbers(words);
+    uint digits, index = get_random_index(uint(light_triangles.length()), words, digits);
+    if (gives_way(digits, light_triangles[index].threshold, u.x)) index = light_triangles[index].alias;
+    return light_triangles[index];
+}
+
+// The point of a light with the barycentric coordinates w_1 and w_2.
+LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
+    Hit hit;
+    hit.instance = light.instance;
+    hit.triangle = light.triangle;
+    hit.barycentrics = barycentrics;
+    SurfacePoint point = get_surface_point(hit);
+    Material material = materials[triangle_materials[light.triangle]];
+    return LightPoint(point.position, point.position + point.offset * point.geometric_normal, point.geometric_normal,
+                      material.emission, material.light_density);
+}
+#else
+// Nothing emits, or --strategy bounces: estimators compile, but never call these.
+const bool HAS_LIGHT_TRIANGLES = false;
+LightTriangle choose_light_triangle(inout uvec2 seed) { return LightTriangle(0u, 0u, 0u, 0u, 0.0); }
+LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
+    u = vec2(0.0);
+    return choose_light_triangle(seed);
+}
+LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
+    return LightPoint(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+}
+#endif

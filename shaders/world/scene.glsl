@@ -1,0 +1,50 @@
+// The scene's arrays on the device. Arrays that a scene does not need are not declared.
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(scalar, set = 0, binding = BINDING_RENDER_PARAMETERS) uniform RenderParametersBlock {
+    RenderParameters parameters;
+};
+layout(scalar, set = 0, binding = BINDING_POSITIONS) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, set = 0, binding = BINDING_TRIANGLES) readonly buffer Triangles { uvec3 triangles[]; };
+layout(scalar, set = 0, binding = BINDING_TRIANGLE_MATERIALS) readonly buffer TriangleMaterials {
+    uint triangle_materials[];
+};
+layout(scalar, set = 0, binding = BINDING_MATERIALS) readonly buffer Materials { Material materials[]; };
+#ifdef FEATURE_VERTEX_NORMALS
+layout(scalar, set = 0, binding = BINDING_NORMALS) readonly buffer Normals { vec3 normals[]; };
+#endif
+#ifdef FEATURE_TEXTURES
+layout(scalar, set = 0, binding = BINDING_TEXTURE_COORDINATES) readonly buffer TextureCoordinates {
+    vec2 texture_coordinates[];
+};
+layout(set = 0, binding = BINDING_TEXTURES) uniform texture2D textures[TEXTURE_COUNT];
+layout(scalar, set = 0, binding = BINDING_TEXTURE_SIZES) readonly buffer TextureSizes { uvec2 texture_sizes[]; };
+#endif
+#ifdef FEATURE_DOUBLE_SIDED
+layout(scalar, set = 0, binding = BINDING_OTHER_SIDES) readonly buffer OtherSides {
+    uint other_sides[];  // of each triangle: the one that is its back, or itself
+};
+#endif
+#ifdef FEATURE_TRANSFORMS
+layout(scalar, set = 0, binding = BINDING_INSTANCES) readonly buffer Instances { Instance instances[]; };
+#endif
+#ifdef FEATURE_LIGHT_TRIANGLES
+layout(scalar, set = 0, binding = BINDING_LIGHT_TRIANGLES) readonly buffer LightTriangles {
+    LightTriangle light_triangles[];
+};
+#endif
+#ifdef FEATURE_LIGHT_PROBE_CELLS
+layout(scalar, set = 0, binding = BINDING_PROBE_CELLS) readonly buffer ProbeCells { ProbeCell probe_cells[]; };
+#endif
+#ifdef FEATURE_LIGHT_PROBE
+layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform texture2D light_probe;
+#endif
+
+#ifdef FEATURE_DIELECTRICS
+uint get_material_class(uint triangle) {
+    bool is_dielectric = materials[triangle_materials[triangle]].refractive_index > 0.0;
+    return is_dielectric ? MATERIAL_CLASS_DIELECTRIC : MATERIAL_CLASS_DIFFUSE;
+}
+#endif

@@ -1,0 +1,173 @@
+// Shading data: what an estimator needs to know about the point that a ray has hit.
+
+struct ShadingData {
+    vec3 position;          // x_k
+    vec3 out_direction;     // ω_o = -ω_{k-1}, unit length: from x_k back along the ray
+    vec3 normal;            // n(x_k), interpolated, unit length, on the same side as the geometric normal
+    vec3 geometric_normal;  // of the triangle, unit length, on the side of out_direction
+    float offset;           // distance by which rays must start off the surface so that they miss it, in world units
+    vec3 emission;          // L_e(x_k, ω_o)
+    float light_density;    // with which light samples choose x_k, with respect to area; 0 where it does not emit
+    vec3 diffuse_albedo;    // in [0,1]
+#ifdef FEATURE_SPECULAR
+    vec3 specular_albedo;  // in [0,1]
+    float specular_exponent;
+#endif
+    vec2 texture_coordinates;  // (0,0) on scenes without textures
+    bool is_dielectric;
+    float relative_index;  // η of a dielectric: refractive index beyond the surface over that on the ray's side
+    vec3 transmittance;    // of the medium between the ray's origin and x_k, for each colour
+};
+
+// A point on a triangle, on a ray or on a light.
+struct SurfacePoint {
+    vec3 position;
+    vec3 geometric_normal;  // unit length
+    float offset;           // as in ShadingData
+};
+
+vec3 interpolate(vec3 a, vec3 b, vec3 c, vec3 weights) { return weights.x * a + weights.y * b + weights.z * c; }
+
+float max_component(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
+// The unit vector along v. Scales v first, since the squared length of a tiny or huge vector is not a float.
+vec3 normalize_scaled(vec3 v) { return normalize(v / max_component(v)); }
+
+// The barycentric coordinates w_0, w_1, w_2 of a hit.
+vec3 get_vertex_weights(Hit hit) { return vec3(1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics); }
+
+// The cross product of a triangle's edges, scaled to unit size: its length is about the triangle's height over its length.
+vec3 get_scaled_normal(vec3 edge_1, vec3 edge_2) {
+    float size = max(max_component(edge_1), max_component(edge_2));
+    return cross(edge_1 / size, edge_2 / size);
+}
+
+// The distance by which a ray must start off a triangle so that it misses it: a bound on rounding errors of relative size
+// 2^-24 in the position, whose coordinates have the given magnitudes, and in the intersection with the same triangle.
+// Measured: without self-intersections from a factor of 4 on; we use 8. Intersections with slender triangles are less
+// exact. The limit of the slenderness keeps rays from skipping what is close to a very slender triangle.
+float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
+    float slenderness = 1.0 / max(max_component(scaled_normal), 1.0 / 256.0);  // about length over height
+    return 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
+}
+
+// Interpolates the vertices of the hit triangle. The normal points to the front.
+SurfacePoint get_surface_point(Hit hit) {
+    SurfacePoint point;
+    vec3 w = get_vertex_weights(hit);
+    uvec3 corners = triangles[hit.triangle];
+    vec3 x_0 = positions[corners.x], x_1 = positions[corners.y], x_2 = positions[corners.z];
+    point.position = interpolate(x_0, x_1, x_2, w);
+    vec3 magnitude = interpolate(abs(x_0), abs(x_1), abs(x_2), w);
+    // Counter-clockwise seen from the front: the loader makes sure of that.
+    vec3 edge_1 = x_1 - x_0, edge_2 = x_2 - x_0;
+    vec3 normal = get_scaled_normal(edge_1, edge_2);
+    point.offset = get_error_bound(magnitude, normal);
+    // A triangle so narrow that its area underflows: any normal of its longer edge will do.
+    if (normal == vec3(0.0))
+        normal = get_shading_space(
+            normalize_scaled(max_component(edge_1) > max_component(edge_2) ? edge_1 : edge_2))[0];
+    point.geometric_normal = normalize_scaled(normal);
+#ifdef FEATURE_TRANSFORMS
+    Instance instance = instances[hit.instance];
+    mat3 linear = mat3(instance.object_to_world);
+    point.position = linear * point.position + instance.object_to_world[3];
+    magnitude = mat3(abs(linear[0]), abs(linear[1]), abs(linear[2])) * magnitude + abs(instance.object_to_world[3]);
+    // Some backends intersect in the space of the mesh and others in the world, so the bound covers both. A distance
+    // from the triangle grows on its way into the world as the length of the normal shrinks.
+    normal = instance.normal_to_world * point.geometric_normal;
+    point.geometric_normal = normalize_scaled(normal);
+    point.offset = max(point.offset / dot(normal, point.geometric_normal),
+                       get_error_bound(magnitude, get_scaled_normal(linear * edge_1, linear * edge_2)));
+#endif
+    return point;
+}
+
+// The shading data where a ray of the given unit direction hits.
+ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
+    SurfacePoint point = get_surface_point(hit);
+    bool is_front = dot(point.geometric_normal, ray_direction) < 0.0;
+#ifdef FEATURE_DOUBLE_SIDED
+    // Of two triangles in the same place that face opposite ways, a ray may find either. It sees the one that faces it.
+    if (!is_front && other_sides[hit.triangle] != hit.triangle) {
+        is_front = true;
+        hit.triangle = other_sides[hit.triangle];
+        hit.barycentrics = hit.barycentrics.yx;
+        point.geometric_normal = -point.geometric_normal;
+    }
+#endif
+    ShadingData s;
+    s.position = point.position;
+    s.out_direction = -ray_direction;
+    s.geometric_normal = point.geometric_normal;
+    s.offset = point.offset;
+    s.normal = s.geometric_normal;
+#if defined(FEATURE_VERTEX_NORMALS) || defined(FEATURE_TEXTURES)
+    vec3 w = get_vertex_weights(hit);
+    uvec3 corners = triangles[hit.triangle];
+#endif
+#ifdef FEATURE_VERTEX_NORMALS
+    vec3 normal = interpolate(normals[corners.x], normals[corners.y], normals[corners.z], w);
+#ifdef FEATURE_TRANSFORMS
+    normal = instances[hit.instance].normal_to_world * normal;
+#endif
+    // Vertex normals may cancel each other: then the triangle has only its own.
+    if (normal != vec3(0.0)) s.normal = normalize_scaled(normal);
+#endif
+
+    Material material = materials[triangle_materials[hit.triangle]];
+    s.diffuse_albedo = material.diffuse_albedo;
+    s.texture_coordinates = vec2(0.0);
+#ifdef FEATURE_TEXTURES
+    // Textures repeat. Without their integer part, coordinates far from 0 are as exact as others.
+    vec2 uv = texture_coordinates[corners.x];
+    s.texture_coordinates = fract(uv) + w.y * (texture_coordinates[corners.y] - uv) +
+                            w.z * (texture_coordinates[corners.z] - uv);
+    if (material.albedo_texture >= 0)
+        s.diffuse_albedo *= get_texture_colour(material.albedo_texture, s.texture_coordinates);
+#endif
+#ifdef FEATURE_SPECULAR
+    s.specular_albedo = material.specular_albedo;
+    s.specular_exponent = material.specular_exponent;
+#endif
+    // Emitters emit from the front. Surfaces reflect on both sides, so from here on both normals face the ray's origin.
+    s.emission = is_front ? material.emission : vec3(0.0);
+    s.light_density = 0.0;
+#ifdef FEATURE_LIGHT_TRIANGLES
+    if (is_front) s.light_density = material.light_density;
+#endif
+    if (!is_front) {
+        s.geometric_normal = -s.geometric_normal;
+        s.normal = -s.normal;
+    }
+    s.is_dielectric = false;
+    s.transmittance = vec3(1.0);
+#ifdef FEATURE_DIELECTRICS
+    s.is_dielectric = hit.material_class == MATERIAL_CLASS_DIELECTRIC;
+    s.relative_index = is_front ? material.refractive_index : 1.0 / material.refractive_index;
+#endif
+#ifdef FEATURE_ABSORPTION
+    // Beer's law: a ray that arrives at the back of a dielectric has travelled inside it.
+    if (s.is_dielectric && !is_front) s.transmittance = exp(-material.absorption * hit.distance);
+#endif
+    return s;
+}
+
+// A ray from a surface point into the given direction. Its origin is moved off the surface, to the side that the direction
+// points to, by a bound on the rounding errors, so that the ray cannot hit the surface where it starts.
+Ray get_ray_from_surface(ShadingData s, vec3 direction) {
+    float side = dot(s.geometric_normal, direction) < 0.0 ? -1.0 : 1.0;
+    return Ray(s.position + side * s.offset * s.geometric_normal, direction);
+}
+
+// A ray from a surface point that reaches another point at distance 1.
+Ray get_ray_to_point(ShadingData s, vec3 point) {
+    Ray ray = get_ray_from_surface(s, point - s.position);
+    ray.direction = point - ray.origin;
+    return ray;
+}
+
+// Whether light can leave x along the unit direction: above the horizon of the shading normal and of the triangle.
+bool is_above_surface(ShadingData s, vec3 direction) {
+    return dot(s.normal, direction) > 0.0 && dot(s.geometric_normal, direction) > 0.0;
+}
