@@ -2,7 +2,10 @@
 
 import os
 import subprocess
+import tempfile
 import unittest
+from pathlib import Path
+from unittest import mock
 
 from program import PROJECT as ROOT, open_terminal  # first: it finds the tools
 from lesson import diff as show_diff
@@ -15,28 +18,47 @@ def diff(*arguments, **streams):
 
 
 class DiffTest(unittest.TestCase):
+    def lesson_of(self, chapters):
+        """What ./lab diff shows of the last of these chapters, given as folder -> file -> lines: rows of each of its files."""
+        with tempfile.TemporaryDirectory() as folder:
+            for name, files in chapters.items():
+                for file, lines in files.items():
+                    path = Path(folder) / "chapters" / name / file
+                    path.parent.mkdir(parents=True, exist_ok=True)
+                    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+            numbers = dict(enumerate(chapters, 1))
+            before = dict(zip(list(numbers)[1:], numbers))
+            with mock.patch.multiple(show_diff, ROOT=Path(folder), CHAPTERS=numbers, BEFORE=before):
+                return {files[1]: show_diff.compare(*map(show_diff.shader_lines, files))[0] for files in show_diff.lesson(len(chapters))}
+
     def test_rows_are_the_two_shaders(self):
         for number in STEPS:
-            before, after = map(show_diff.shader_lines, (STEPS[number], number))
-            rows, _, moved = show_diff.compare(before, after)
-            self.assertEqual([line for mark, line, _ in rows if mark != "-"], after)
-            kept = [line for mark, line, _ in rows if mark != "+" and line.strip()]
-            missing = len([line for line in before if line.strip()]) - len(kept)
-            self.assertEqual(missing, sum(count for count, _ in moved))
-            rest = iter(before)
-            self.assertTrue(all(line in rest for line in kept), "in another order")
+            for files in show_diff.lesson(number):
+                before, after = map(show_diff.shader_lines, files)
+                rows, _ = show_diff.compare(before, after)
+                self.assertEqual([line for mark, line, _ in rows if mark != "-"], after)
+                self.assertEqual([line for mark, line, _ in rows if mark != "+"], before)
+
+    def test_a_lesson_is_all_shaders_of_a_folder(self):
+        """A technique is shown in full. Of an estimator that includes another chapter's only its own lines are new."""
+        estimator = ["vec3 path_trace() {", "    return vec3(0.0);", "}"]
+        own = ['#include "points.glsl"', '#include "../01_first/path_trace.glsl"']
+        chapters = {"01_first": {"path_trace.glsl": estimator}, "02_second": {"path_trace.glsl": own, "points.glsl": ["float x;"]}}
+        shown = self.lesson_of(chapters)
+        self.assertEqual(list(shown), ["02_second/path_trace.glsl", "02_second/points.glsl"])
+        self.assertEqual([line for mark, line, _ in shown["02_second/path_trace.glsl"] if mark != " "], own)
+        self.assertEqual(shown["02_second/points.glsl"], [("+", "float x;", None)])
+        # The chapter after one that only includes is compared with what was included.
+        chapters["03_third"] = {"path_trace.glsl": own[:1] + ["", *estimator]}
+        rows = self.lesson_of(chapters)["03_third/path_trace.glsl"]
+        self.assertEqual([(mark, line) for mark, line, _ in rows if mark != " "], [("-", own[1]), ("+", "")])
 
     def test_counts(self):
         before = ["// One.", "float a = 1.0;", "", "float b = 2.0;", "float c;"]
         after = ["// Two.", "float a = 1.5;", "", "float b = 2.0;  // still", "float d;", "float e;"]
-        _, counts, _ = show_diff.compare(before, after)
+        _, counts = show_diff.compare(before, after)
         self.assertEqual(counts, {"code": 4, "comments": 1, "words": 4})  # 1.5; d and a line with float and e
         self.assertEqual(show_diff.compare(before, before)[1], {"code": 0, "comments": 0, "words": 0})
-
-    def test_what_later_chapters_share_counts_as_moved(self):
-        *_, moved = show_diff.compare(*map(show_diff.shader_lines, (3, 4)))
-        body = (ROOT / "shaders/direct_light.glsl").read_text(encoding="utf-8").splitlines()[2:]
-        self.assertEqual(moved, [(sum(bool(line.strip()) for line in body), "shaders/direct_light.glsl")])
 
     def test_is_plain_unless_on_a_terminal(self):
         plain = diff(5, stdout=subprocess.PIPE).stdout

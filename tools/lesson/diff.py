@@ -1,40 +1,41 @@
-"""Shows how chapter N's path_trace.glsl differs from the one before: the lesson. Counts what has changed."""
+"""Shows the lesson of chapter N: how its path_trace.glsl differs from that of the chapter before, and the other shaders that its
+folder brings in full. Counts what is new.
+"""
 import os
 import re
 import shutil
 import sys
+from collections import Counter
 from difflib import SequenceMatcher
 
 from project import CHAPTERS, ROOT, Parser
 
 CONTEXT = 3  # unchanged lines around a change
-BEFORE = dict(zip(list(CHAPTERS)[1:], CHAPTERS))  # number of a chapter: that of the one that it is compared with
-FUNCTION = 4  # so many equal lines in a row are taken for the same function, not for two that happen to be alike
+BEFORE = dict(zip(list(CHAPTERS)[1:], CHAPTERS))  # number of a chapter: that of the one before
 STYLES = {"-": "\033[31m", "+": "\033[32m", "@": "\033[36m", " ": ""}  # ANSI: red, green, cyan
 STRONG, RESET = "\033[7m", "\033[0m"
+ESTIMATOR = re.compile(r'#include "\.\./(\w+/path_trace\.glsl)"')
 
 
-def shader_lines(number):
-    return (ROOT / "chapters" / CHAPTERS[number] / "path_trace.glsl").read_text(encoding="utf-8").splitlines()
+def shader_lines(file):
+    """The lines of a shader, a path below chapters/; none if there is no such file. An estimator that only adds to another
+    chapter's includes it: the included lines follow the #include."""
+    path, lines = ROOT / "chapters" / file, []
+    for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else []:
+        included = ESTIMATOR.match(line)
+        lines += [line, *(shader_lines(included[1]) if included else [])]
+    return lines
+
+
+def lesson(number):
+    """(file before, file) below chapters/ for each shader of a chapter's folder, the estimator first."""
+    names = sorted((path.name for path in (ROOT / "chapters" / CHAPTERS[number]).glob("*.glsl")), key=lambda name: (name != "path_trace.glsl", name))
+    return [tuple(f"{CHAPTERS[n]}/{name}" for n in (BEFORE[number], number)) for name in names]
 
 
 def words_of(lines):
     """Names, keywords and numbers of code, without comments."""
     return re.findall(r"[\w.]+", re.sub(r"//.*", "", "\n".join(lines)))
-
-
-def without_moved(before, after):
-    """`before` without what `after` has by a new #include, and pairs (number of lines, file) of what that is."""
-    moved, rest = [], before
-    for name in re.findall(r'^#include "(.*)"$', "\n".join(line for line in after if line not in before), re.MULTILINE):
-        shared = (ROOT / "shaders" / name).read_text(encoding="utf-8").splitlines()
-        blocks = SequenceMatcher(None, rest, shared, autojunk=False).get_matching_blocks()
-        gone = {i for start, _, size in blocks if size >= FUNCTION for i in range(start, start + size)}
-        moved.append((sum(bool(rest[i].strip()) for i in gone), f"shaders/{name}"))
-        rest = [line for i, line in enumerate(rest) if i not in gone]
-    # Blank lines that stood between moved ones.
-    rest = [line for i, line in enumerate(rest) if line.strip() or i == 0 or rest[i - 1].strip()]
-    return rest, moved
 
 
 def is_comment(line):
@@ -46,9 +47,8 @@ def is_code(line):
 
 
 def compare(before, after):
-    """Rows (mark, line, partner), counts and moved lines. Marks: space the same, - gone, + new. The partner of a line is
-    the one that it replaces or is replaced by, if there is one."""
-    before, moved = without_moved(before, after)
+    """Rows (mark, line, partner) and counts. Marks: space for equal lines, - for removed and + for new ones. The partner of a line
+    is the line that it replaces, or that replaces it."""
     rows, counts = [], {"code": 0, "comments": 0, "words": 0}
     for kind, a, b, c, d in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
         gone, new = before[a:b], after[c:d]
@@ -62,11 +62,11 @@ def compare(before, after):
             counts[key] += max(sum(map(counted, gone)), sum(map(counted, new)))
         matcher = SequenceMatcher(None, words_of(gone), words_of(new), autojunk=False)
         counts["words"] += sum(max(j - i, n - m) for tag, i, j, m, n in matcher.get_opcodes() if tag != "equal")
-    return rows, counts, moved
+    return rows, counts
 
 
 def paint(mark, line, partner, colour):
-    """A row as text; in colour the words that differ from the partner's stand out."""
+    """A row as text; in colour, the words that differ from the partner stand out."""
     if not colour:
         return f"{mark} {line}".rstrip()
     if partner is None:
@@ -80,7 +80,7 @@ def paint(mark, line, partner, colour):
 
 
 def visible(rows):
-    """Rows near a change, with None where others are left out."""
+    """The rows near a change, with None in place of those left out."""
     near = {j for i, row in enumerate(rows) if row[0] != " " for j in range(i - CONTEXT, i + CONTEXT + 1)}
     shown = [i for i in range(len(rows)) if i in near]
     for previous, i in zip([-1, *shown], shown):
@@ -93,15 +93,9 @@ def show(names, rows):
     """Prints rows of compare() under the names of the two files."""
     colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
     rule = "." * min(shutil.get_terminal_size().columns, 120)
-    print("\n".join(paint(mark, name, None, colour) for mark, name in zip("-+", names)))
+    print("\n".join(paint(mark, f"chapters/{name}", None, colour) for mark, name in zip("-+", names) if (ROOT / "chapters" / name).is_file()))
     for row in visible(rows):
         print(paint(*row, colour) if row else paint("@", rule, None, True) if colour else "@")
-
-
-def summary(number, counts, moved):
-    text = (f"Chapter {BEFORE[number]} to {number}: {counts['code']} lines of code changed ({counts['words']} words) "
-            f"and {counts['comments']} of comments")
-    return text + "".join(f"; {count} lines moved to {file}" for count, file in moved if count)
 
 
 def main():
@@ -111,8 +105,11 @@ def main():
     if word != "all" and (not word.isdigit() or int(word) not in BEFORE):
         sys.exit(f"error: there is no chapter before '{word}' to compare with: N is one of {', '.join(map(str, BEFORE))} or all")
     for number in BEFORE if word == "all" else [int(word)]:
-        before, after = map(shader_lines, (BEFORE[number], number))
-        rows, counts, moved = compare(before, after)
-        if word != "all":
-            show([f"chapters/{CHAPTERS[n]}/path_trace.glsl" for n in (BEFORE[number], number)], rows)
-        print(summary(number, counts, moved))
+        total = Counter()
+        for files in lesson(number):
+            rows, counts = compare(*map(shader_lines, files))
+            total.update(counts)
+            if word != "all":
+                show(files, rows)
+        print(f"Chapter {BEFORE[number]} to {number}: {total['code']} lines of code changed ({total['words']} words) "
+              f"and {total['comments']} of comments")
