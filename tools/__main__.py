@@ -2,7 +2,7 @@
 
 They stand in rooms: assets makes meshes, textures and scenes; references are images of another renderer, and how to read them;
 check grades a shader; report measures speed against error; lesson shows what a chapter changes and what samplers do; book makes
-a site of the pages. What only a teacher needs is in docs (tables, figures and diagrams of the pages), course (handouts, and the
+a site of the pages. What only a teacher needs is in docs (tables and figures of the pages), course (handouts, and the
 bugs of the catalogue of mistakes) and package (archives for machines without a compiler): handouts leave these out. project.py is
 what all share. Tests import from here, never the other way.
 """
@@ -13,9 +13,9 @@ import project
 
 TOOLS = {  # name: module
     "assets": "assets.make", "benchmark": "docs.benchmark", "book": "book.build", "bug": "course.bug", "check": "check.command",
-    "diagrams": "docs.diagrams", "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout",
-    "package": "package.make", "peer": "references.peer", "reference": "references.make", "report": "report.make",
-    "sample": "lesson.sample", "tables": "docs.tables", "windows": "package.windows_programs",
+    "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout", "package": "package.make", "peer": "references.peer",
+    "reference": "references.make", "report": "report.make", "sample": "lesson.sample", "tables": "docs.tables",
+    "windows": "package.windows_programs",
 }
 
 
