@@ -9,7 +9,7 @@ from lesson import sample
 from lesson.sample_plots import save_point_sets, scatter
 from matplotlib import font_manager, image, pyplot
 from PIL import Image, ImageDraw, ImageFont
-from project import BINARIES, CHAPTERS, ROOT, UserError, run_program
+from project import BINARIES, ROOT, UserError, run_program
 from report.plots import (COLOURS, DIFFERENCE_FACTOR, MARKERS, difference_colours, encode_srgb, relative_difference, save_figure,
                           style_axis)
 
@@ -53,125 +53,94 @@ def plot(path, size, draw, **labels):
 
 
 # ---------------------------------------------------------------------------------------------- of renders
-def chapters(folder, images, reports):
-    """One picture a chapter, for about the same number of rays."""
-    for name, radiance in images.items():
-        image.imsave(folder / f"{name}.png", (255 * encode_srgb(radiance)).round().astype(np.uint8),
-                     pil_kwargs={"optimize": True})
+TONES = {"srgb": encode_srgb, "linear": lambda image: image, "relative": lambda image: encode_srgb(image / image.max())}
 
 
-def noise_and_bias(folder, images, reports):
-    """A row for each shader, from few samples to many."""
-    rows = {}
-    for name, radiance in images.items():
-        which, samples = name.split("_")
-        rows.setdefault(which, []).append((f"{which}, {samples} samples per pixel", encode_srgb(radiance)))
-    sheet(folder / "noise_and_bias.jpg", list(rows.values()))
+def labelled(render):
+    """The label and the pixels of a render's tile."""
+    facts = {"number": int(render.chapter[:2]), "scene": render.scene, "samples": render.report["rows"][-1]["samples"],
+             "mean": render.image.mean(), "largest": render.image.max()}
+    return render.label.format(**facts), TONES[render.tone](render.image)
 
 
-def thumbnails(folder, images, reports):
-    for name, radiance in images.items():
-        image.imsave(folder / f"thumbnail_{name}.jpg", encode_srgb(radiance), pil_kwargs=QUALITY)
+def sheet_of(name):
+    """A figure NAME.jpg of labelled tiles in rows."""
+    def draw(folder, renders):
+        rows = {}
+        for render in renders:
+            rows.setdefault(render.row, []).append(labelled(render))
+        sheet(folder / f"{name}.jpg", list(rows.values()))
+
+    return draw
 
 
-def path_lengths(folder, images, reports):
+def chapters(folder, renders):
+    """One picture for each chapter."""
+    for render in renders:
+        image.imsave(folder / f"{render.name}.png", bytes_of(render.image), pil_kwargs={"optimize": True})
+
+
+def thumbnails(folder, renders):
+    for render in renders:
+        image.imsave(folder / f"thumbnail_{render.name}.jpg", encode_srgb(render.image), pil_kwargs=QUALITY)
+
+
+def hero(folder, renders):
+    """The picture at the head of the README, a little darker for its glowing heart."""
+    image.imsave(folder / "hero.jpg", encode_srgb(0.66 * renders[0].image), pil_kwargs=QUALITY)
+
+
+def path_lengths(folder, renders):
     """Light after at most, and after exactly, k bounces; exact ones are brightened as much as their label says."""
-    exact, up_to = list(images.values()), []
-    for radiance in exact:
-        up_to.append(radiance + (up_to[-1] if up_to else 0))
+    exact = [render.image for render in renders]
     factors = [1, 1, 2, 4, 4, 8, 16, 16, 32, 32]
     for name, tiles in (
-        ("path_length_at_most", [(f"at most {k}", encode_srgb(radiance)) for k, radiance in enumerate(up_to)]),
+        ("path_length_at_most", [(f"at most {k}", encode_srgb(radiance)) for k, radiance in enumerate(np.cumsum(exact, axis=0))]),
         ("path_length_exactly", [(f"exactly {k}" + (f", × {factor}" if factor > 1 else ""), encode_srgb(factor * radiance))
                                  for k, (radiance, factor) in enumerate(zip(exact, factors))]),
     ):
-        sheet(folder / f"{name}.jpg", [tiles[:5], tiles[5:]])
+        sheet(folder / f"{name}.jpg", [row for row in (tiles[:5], tiles[5:]) if row])
 
 
-def effects(folder, images, reports):
-    labels = ("ambient occlusion", "soft shadows", "glossy reflections")
-    sheet(folder / "effects.jpg", [[(label, encode_srgb(radiance)) for label, radiance in zip(labels, images.values())]])
+def bytes_of(radiance):
+    return (255 * encode_srgb(radiance)).round().astype(np.uint8)
 
 
-def strategies(folder, images, reports):
-    labels = ("light samples", "bounces", "both")
-    sheet(folder / "strategies.jpg", [[(label, encode_srgb(radiance)) for label, radiance in zip(labels, images.values())]])
-
-
-def bvh_steps(folder, images, reports):
-    """White is the largest number of nodes and triangles that a ray of the picture has visited."""
-    tiles = [(f"{name.removeprefix('steps_')}: at most {steps.max():.0f} a ray", encode_srgb(steps / steps.max())) for name, steps in images.items()]
-    sheet(folder / "bvh_steps.jpg", [tiles])
-
-
-def rows_by_scene(images, tile):
-    """A row of chapters for each scene; renders are named SCENE_CHAPTER, and tile(name, image) says and shows what they are."""
-    rows = {}
-    for name, radiance in images.items():
-        scene, number = name.rsplit("_", 1)
-        label, pixels = tile(name, radiance)
-        rows.setdefault(scene, []).append((f"chapter {number}: {label}", pixels))
-    return list(rows.values())
-
-
-def hero(folder, images, reports):
-    """The picture at the head of the README, a little darker for its glowing heart."""
-    image.imsave(folder / "hero.jpg", encode_srgb(0.66 * images["hero"]), pil_kwargs=QUALITY)
-
-
-def noise(folder, images, reports):
-    """A chapter after the other for the same time: an animation with a second and a half for each."""
+def noise(folder, renders):
+    """The chapters at equal time: an animation with a second and a half for each."""
     frames = []
-    for name, radiance in images.items():
-        number = int(name.rsplit("_", 1)[1])
-        title = CHAPTERS[number][3:].replace("_", " ")
-        frame = Image.new("RGB", (2 * radiance.shape[1], 2 * radiance.shape[0] + 2 * LABEL), "white")
-        pixels = Image.fromarray((255 * encode_srgb(radiance)).round().astype(np.uint8))
-        frame.paste(pixels.resize((frame.width, frame.width), Image.NEAREST), (0, 2 * LABEL))
+    for render in renders:
+        height, width, _ = render.image.shape
+        frame = Image.new("RGB", (2 * width, 2 * height + 2 * LABEL), "white")
+        frame.paste(Image.fromarray(bytes_of(render.image)).resize((2 * width, 2 * height), Image.NEAREST), (0, 2 * LABEL))
         font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 22)
-        ImageDraw.Draw(frame).text((LABEL // 2, LABEL // 2), f"chapter {number}: {title}", "black", font)
+        title = f"chapter {int(render.chapter[:2])}: {render.chapter[3:].replace('_', ' ')}"
+        ImageDraw.Draw(frame).text((LABEL // 2, LABEL // 2), title, "black", font)
         frames.append(frame)
     frames[0].save(folder / "noise.webp", save_all=True, append_images=frames[1:], duration=1500, loop=0, quality=80)
 
 
-def samples_by_scene(name):
-    """A figure of chapters, which says how many samples each took."""
-    def compose(folder, images, reports):
-        sheet(folder / f"{name}.jpg", rows_by_scene(images, lambda name, radiance: (
-            f"{reports[name]['rows'][-1]['samples']:,} samples", encode_srgb(radiance))))
-
-    return compose
-
-
-equal_time, light_probes, low_discrepancy = map(samples_by_scene, ("equal_time", "light_probes", "low_discrepancy"))
-
-
-def idle_lanes(folder, images, reports):
-    """Black never waits, and white always does."""
-    sheet(folder / "idle_lanes.jpg", rows_by_scene(images, lambda _, parts: (f"idle {parts.mean():.0%} of the time", parts)))
-
-
-def bugs(folder, images, reports):
+def bugs(folder, renders):
     """A strip for each bug: bugs_NAME.jpg."""
-    for name in dict.fromkeys(render.rpartition("_")[0] for render in images):
-        right_and_wrong(folder / f"bugs_{name}.jpg", images[f"{name}_right"], images[f"{name}_wrong"])
+    for right, wrong in zip(renders[::2], renders[1::2]):
+        right_and_wrong(folder / f"bugs_{right.name.removesuffix('_right')}.jpg", right.image, wrong.image)
 
 
-def first_steps(folder, images, reports):
+def first_steps(folder, renders):
     """A picture of each step's tiles; renders are named step_NUMBER_WHAT."""
     steps = {}
-    for name, radiance in images.items():
-        steps.setdefault(name.split("_")[1], []).append((name.replace("_", " "), encode_srgb(radiance)))
+    for render in renders:
+        steps.setdefault(render.name.split("_")[1], []).append((render.name.replace("_", " "), encode_srgb(render.image)))
     for number, tiles in steps.items():
         sheet(folder / f"first_steps_{number}.jpg", [tiles])
 
 
-def convergence(folder, images, reports):
+def convergence(folder, renders):
     """Error against samples and against seconds; means of all runs of a chapter."""
     figure, axes = pyplot.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
     runs = {}
-    for name, report in reports.items():
-        runs.setdefault(int(name.split("_")[1]), []).append(report["rows"])
+    for render in renders:
+        runs.setdefault(int(render.chapter[:2]), []).append(render.report["rows"])
     for (number, rows), colour, marker in zip(runs.items(), COLOURS, MARKERS):
         columns = {key: np.mean([[row[key] for row in run] for run in rows], axis=0) for key in ("samples", "seconds", "rel_mse")}
         for axis, key in zip(axes, ("samples", "seconds")):
@@ -184,7 +153,7 @@ def convergence(folder, images, reports):
 
 
 # ---------------------------------------------------------------------------------------------- of points
-def sampler_points(folder, images, reports):
+def sampler_points(folder, renders):
     names = ("uniform-angles", "cosine", "light-point")
     figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.9), layout="constrained")
     for axis, name in zip(axes, names):
@@ -199,11 +168,11 @@ def mean_errors(terms, exact, sizes):
     return [np.sqrt(((terms[: len(terms) // n * n].reshape(-1, n).mean(axis=1) - exact) ** 2).mean()) for n in sizes]
 
 
-def point_sets(folder, images, reports):
+def point_sets(folder, renders):
     save_point_sets(folder / "point_sets.png", sample.draw_sets(0), sample.COMPARED)
 
 
-def one_over_root_n(folder, images, reports):
+def one_over_root_n(folder, renders):
     playground = sample.PLAYGROUNDS["1d"]
     integral, sizes = playground.integrals[0], 2 ** np.arange(15)
     terms = integral.terms(sample.draw(playground.sampler, 2**20, 0, 1))
@@ -216,7 +185,7 @@ def one_over_root_n(folder, images, reports):
     plot(folder / "one_over_root_n.png", (6, 4), draw, xlabel="N", ylabel="root mean squared error")
 
 
-def grid_and_random(folder, images, reports):
+def grid_and_random(folder, renders):
     playground = sample.PLAYGROUNDS["kd"]
     integral = playground.integrals[0]
     figure, axes = pyplot.subplots(1, 4, figsize=(13, 3.6), sharey=True, layout="constrained")
@@ -233,7 +202,7 @@ def grid_and_random(folder, images, reports):
     save_figure(figure, folder / "grid_and_random.png")
 
 
-def random_numbers(folder, images, reports):
+def random_numbers(folder, renders):
     """A small corner of the unit square, so that single values show."""
     figure, axes = pyplot.subplots(1, 2, figsize=(8, 4.2), layout="constrained")
     for axis, name, title in zip(axes, ("numbers", "blog-hash"), ("PCG2D", "frac(sin(dot(p, …)) · 43758.5)")):
@@ -246,7 +215,7 @@ def random_numbers(folder, images, reports):
     save_figure(figure, folder / "random_numbers.png")
 
 
-def window(output, images, reports):
+def window(output, renders):
     """What the test of the window has seen: a chapter in it, and the same after a mistake was made in its shader."""
     command = ["tests/support/with_display.sh", BINARIES / "viewer_tests", "--gtest_filter=ViewerTest.ShowsThePicture*"]
     process = run_program(command)

@@ -17,32 +17,31 @@ from docs.bug_blocks import bug_block
 from docs.code_blocks import fill
 from docs.confusion_table import confusion_table
 from docs.cost_tables import feature_table, growth_tables, seconds_text
-from docs.examples import bounce_table, light_sample_table
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from project import ROOT, Parser, UserError, load_records, scene_of, table
 from report.differences import DIFFERENCES
 from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
+from report.studies import examples, table_names
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 TABLE = re.compile(r"(<!-- table: ([^\n]+?) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
-KINDS = ("chapter", "splitting factor", "roulette start", "survival weight", "points, survival weight", "light sampling", "strategy",
-         "splitting at every hit")
+TABLE_NAMES = table_names()
 
 
 def kind_of(case):
-    """Cases of a kind and a scene stand in a table: those between which one thing is varied."""
-    return next((kind for kind in KINDS if case["case"].startswith(kind)), "splitting at every hit")
+    """The cases of a kind and a scene stand in a table: their names differ in the last word."""
+    return TABLE_NAMES.get(case["case"], case["case"].rpartition(" ")[0])
 
 
 def kind_tables(record):
     """The rows of each kind and scene on one device: {(kind, scene): rows}. A row begins with the name of its case."""
-    tables, base = {}, None
+    tables, bases = {}, {}
     for case in record["cases"]:
-        kind = kind_of(case)
-        rows = tables.setdefault((kind, case["scene"]), [])
+        key = kind_of(case), case["scene"]
+        rows = tables.setdefault(key, [])
         options = f"--samples {case['samples']} {case['options']}".strip()
         cost = [errors(case, key) for key in ("rays", "device_seconds")]
         rows.append([
@@ -51,10 +50,10 @@ def kind_tables(record):
             f"{per_sample(case, 'rays'):.3g}",
             seconds_text(per_sample(case, "device_seconds")),
             f"{case['samples'] * errors(case).mean:.3g}",
-            *(with_interval(paired_ratio(*both)) if rows else "1" for both in zip(cost, base or cost)),
+            *(with_interval(paired_ratio(*both)) if rows else "1" for both in zip(cost, bases.get(key, cost))),
         ])
-        if len(rows) == 1 or kind == "chapter":
-            base = cost
+        if len(rows) == 1 or key[0] == "chapter":
+            bases[key] = cost
     return tables
 
 
@@ -75,10 +74,10 @@ def chapter_tables(record):
 def page_table(name, record):
     """What a page shows of one device: a kind of cases, or of kind "chapter" one and the row before it."""
     kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
-    if kind not in KINDS:
-        raise UserError(f"there is no table '{name}': {', '.join(KINDS)}")
-    rows = []
-    for (other, scene), cases in kind_tables(record).items():
+    tables, rows = kind_tables(record), []
+    if kind not in {other for other, _ in tables}:
+        raise UserError(f"there is no table '{name}': {', '.join(dict.fromkeys(other for other, _ in tables))}")
+    for (other, scene), cases in tables.items():
         if other == kind:
             chosen = cases
             if number:
@@ -156,7 +155,7 @@ OWN_TABLES = {
     "best chapters": best_table, "chapters": of_records("chapters", chapter_tables), "backends": of_records("backends", backend_table),
     "differences": lambda: "".join(f"- {text}\n" for text in DIFFERENCES), "peers": of_records("peers", peer_table),
     "features": of_records("cost", feature_table), "growth": of_records("cost", growth_tables),
-    "check": of_records("check", confusion_table), "one bounce": bounce_table, "one light sample": light_sample_table,
+    "check": of_records("check", confusion_table), **examples(),
 }
 
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from project import CHAPTERS, GPU_VARIANT, ROOT, SAMPLERS, Parser, UserError, add_device_options, number
 from references.images import find_references
-from report.measurement import Measurement, driver_of, find_device, report_cases, study_cases, working_variants
+from report.measurement import Measurement, driver_of, find_device, report_cases, working_variants
 from report.page import write_report
+from report.studies import study_cases
 
 GOES_ON = True
 

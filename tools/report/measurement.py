@@ -13,7 +13,7 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, chapter_named, commit, duration_text, failure_text, has_low_discrepancy,
+from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, commit, duration_text, failure_text, has_low_discrepancy,
                      program_file, read_json, run_program, show_progress, write_json)
 from references.images import averaged, read_reference, read_rgb, rel_mse
 
@@ -67,50 +67,6 @@ def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
         cases += [new_case(scene, reference, f"chapter {number}", CHAPTERS[number], is_large=is_large) for number in chapters]
         cases += [new_case(scene, reference, f"Mitsuba {VARIANTS[variant]}" + (f", {sampler}" if sampler != SAMPLERS[0] else ""),
                            variant, ("--sampler", sampler), is_peer=True, is_large=is_large) for variant, sampler in peers]
-    return cases
-
-
-def study_cases():
-    """What docs/results.md shows: neighbours are compared with each other."""
-    cases = []
-    splitting, roulette, glass, weights, probes, points, regeneration = map(
-        chapter_named, ("splitting", "russian_roulette", "dielectrics", "multiple_importance_sampling", "light_probes",
-                        "low_discrepancy_points", "path_regeneration"))
-
-    def add(scene, length, name, program, *options):
-        reference = ROOT / f"assets/references/{scene}_{length}.exr" if length else None
-        cases.append(new_case(ROOT / f"assets/scenes/{scene}.json", reference, name, program, options))
-
-    def add_chapters(scene, length, programs):
-        for program in programs:
-            add(scene, length, f"chapter {int(program[:2])}", program)
-
-    for scene, length in (("cornell_box", 6), ("torus", 5), ("heart_light", 4)):
-        # Without glass or a light probe, their chapters are the ones before.
-        add_chapters(scene, length, [program for program in CHAPTERS.values() if program not in (glass, probes)])
-    for scene, length in (("glossy", 5), ("plates", 3)):
-        add_chapters(scene, length, (roulette, weights))
-        for strategy in ("light", "brdf", "both"):
-            add(scene, length, f"strategy {strategy}", weights, "--strategy", strategy)
-    for scene in ("sunny", "studio", "textured"):
-        add_chapters(scene, 4, (weights, probes, points, regeneration))
-    add_chapters("glass", 8, (weights, points, regeneration))
-    for scene, length in (("cornell_box", 6), ("heart_light", 4)):
-        for factor in (1, 2, 4, 8, 16):
-            add(scene, length, f"splitting factor {factor}", splitting, "--splitting-factor", str(factor))
-        for start in (1, 2, 3, 4):
-            add(scene, length, f"roulette start {start}", roulette, "--roulette-start", str(start))
-    for scene, length, name, program in (("cornell_box", 6, "", roulette), ("heart_light", 4, "", roulette), ("glass", 8, "", glass),
-                                         ("cornell_box", 6, "points, ", points), ("heart_light", 4, "points, ", points)):
-        for weight in ("1", "0.5", "0.25"):
-            add(scene, length, f"{name}survival weight {weight}", program, "--survival-weight", weight)
-    for switch in ("on", "off"):
-        add("glass", 8, f"light sampling {switch}", glass, "--light-sampling", switch)
-    # The blog's setting: two branches at every hit, light that is reflected up to five times. It has no reference:
-    # there the error is estimated from two halves of the samples.
-    blog = ("--split-every-hit", "--splitting-factor", "2", "--max-path-length", "5")
-    add("cornell_box", None, "splitting at every hit", splitting, *blog)
-    add("cornell_box", None, "the same with roulette", roulette, *blog, "--roulette-start", "1")
     return cases
 
 

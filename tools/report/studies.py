@@ -1,0 +1,55 @@
+"""What is measured of each chapter: measure.json in its folder.
+
+"picture", "thumbnail": the scenes of its pictures. "convergence_samples": samples of its curve in the plot of all chapters' errors.
+"compared_on": references on which the report's record compares it with the chapters before. "studies": on references, or on scenes
+without one, cases that vary an option, name -> options. "benchmark": the chapter is the benchmark's, with these options.
+"figures": tiles of pictures, see docs/figures.py. "sampler": for ./lab sample, see lesson/sample.py. "examples": tables of a worked
+example, rows of a label, a statement and what is shown of its result.
+"""
+import json
+import math
+
+from project import CHAPTERS, ROOT, original, table
+from report.measurement import new_case
+from report.numbers import short
+
+
+def measures():
+    """Folder -> content of its measure.json, of all chapters that have one and are no copy of another."""
+    files = {CHAPTERS[number]: ROOT / "chapters" / CHAPTERS[number] / "measure.json" for number in CHAPTERS if original(number) == number}
+    return {folder: json.loads(file.read_text(encoding="utf-8")) for folder, file in files.items() if file.is_file()}
+
+
+def study_cases():
+    """The cases of docs/results.md: on each reference the chapters one after the other, then what single chapters vary."""
+    def case(place, name, folder, *options):
+        reference = ROOT / f"assets/references/{place}.exr"
+        scene = place.rstrip("_0123456789") if reference.is_file() else place
+        return new_case(ROOT / f"assets/scenes/{scene}.json", reference if reference.is_file() else None, name, folder, options)
+
+    found = measures()
+    places = dict.fromkeys(place for measure in found.values() for place in measure.get("compared_on", []))
+    cases = [case(place, f"chapter {int(folder[:2])}", folder) for place in places
+             for folder, measure in found.items() if place in measure.get("compared_on", [])]
+    return cases + [case(place, name, folder, *options.split()) for folder, measure in found.items() for study in measure.get("studies", [])
+                    for place in study["on"] for name, options in study["cases"].items()]
+
+
+def table_names():
+    """Name of a case -> name of its table, where its study has one."""
+    return {name: study["table"] for measure in measures().values() for study in measure.get("studies", []) if "table" in study
+            for name in study["cases"]}
+
+
+def example_table(rows):
+    """The Markdown table of a worked example."""
+    names, cells = dict(vars(math), short=short), []
+    for label, statement, shown in rows:
+        exec(statement, names)
+        cells.append([label, eval(f'f"{shown}"', names)])
+    return table(["", "value"], cells)
+
+
+def examples():
+    """Name -> function that makes the table."""
+    return {name: lambda rows=rows: example_table(rows) for measure in measures().values() for name, rows in measure.get("examples", {}).items()}
