@@ -9,7 +9,7 @@ from program import BINARIES, TOOLS, UNOPTIMISED, ProgramTest  # first: it finds
 import mistake
 from lesson import sample, sample_plots
 
-NAMES = ["1d", "kd", "numbers", "points", "blog-hash", "uniform-angles", "cosine", "light-point"]
+NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-point", "points"]
 
 
 class SampleTest(ProgramTest):

@@ -14,15 +14,15 @@ import sys
 from pathlib import Path
 from statistics import median
 
-from project import ROOT, Parser, add_device_options, chapter_named, number, table
+from project import ROOT, Parser, add_device_options, number, table
 from references.images import find_references
 from report.measurement import Measurement, devices_text, driver_of, find_device, new_case
 from report.numbers import seconds_to_target, with_range
+from report.studies import measures
 
 GOES_ON = True
 SCENES = ["cornell_box", "heart_light", "glass"]
-CHAPTER = chapter_named("dielectrics")  # renders all of them
-OPTIONS = ["--splitting-factor", "1"]  # a sample is one path
+CHAPTER, OPTIONS = next((folder, measure["benchmark"].split()) for folder, measure in measures().items() if "benchmark" in measure)
 GPU_SIZE = 1024  # of the pictures without a reference
 RUNS = 5
 

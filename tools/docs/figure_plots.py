@@ -154,11 +154,10 @@ def convergence(folder, renders):
 
 # ---------------------------------------------------------------------------------------------- of points
 def sampler_points(folder, renders):
-    names = ("uniform-angles", "cosine", "light-point")
-    figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.9), layout="constrained")
-    for axis, name in zip(axes, names):
-        playground = sample.PLAYGROUNDS[name]
-        scatter(axis, playground.kind, sample.draw(playground.sampler, 2000, 0, playground.dimensions))
+    shown = [playground for playground in sample.OF_CHAPTERS.values() if not playground.is_pixel]
+    figure, axes = pyplot.subplots(1, len(shown), figsize=(11, 3.9), layout="constrained")
+    for axis, playground in zip(axes, shown):
+        scatter(axis, playground.kind, sample.draw(playground, 2000, 0, playground.dimensions))
         axis.set_title(playground.title.replace(", density", "\ndensity"), fontsize=9)
     save_figure(figure, folder / "sampler_points.png")
 
@@ -175,7 +174,7 @@ def point_sets(folder, renders):
 def one_over_root_n(folder, renders):
     playground = sample.PLAYGROUNDS["1d"]
     integral, sizes = playground.integrals[0], 2 ** np.arange(15)
-    terms = integral.terms(sample.draw(playground.sampler, 2**20, 0, 1))
+    terms = integral.terms(sample.draw(playground, 2**20, 0, 1))
     errors = mean_errors(terms, integral.value(1), sizes)
 
     def draw(axis):
@@ -191,7 +190,7 @@ def grid_and_random(folder, renders):
     figure, axes = pyplot.subplots(1, 4, figsize=(13, 3.6), sharey=True, layout="constrained")
     for axis, k in zip(axes, (1, 2, 4, 8)):
         sizes = 2 ** np.arange(0, 17, 2)
-        terms = integral.terms(sample.draw(playground.sampler, 2**20, 0, k))
+        terms = integral.terms(sample.draw(playground, 2**20, 0, k))
         axis.plot(sizes, mean_errors(terms, integral.value(k), sizes), "o-", color=COLOURS[0], markersize=4, label="random: N^(−1/2)")
         n, corners, midpoints = zip(*sample.grid_rows(integral, k, 2**16))
         axis.plot(n, corners, "s-", color=COLOURS[4], markersize=4, label=f"grid of corners: N^(−1/{k})")
@@ -207,7 +206,7 @@ def random_numbers(folder, renders):
     figure, axes = pyplot.subplots(1, 2, figsize=(8, 4.2), layout="constrained")
     for axis, name, title in zip(axes, ("numbers", "blog-hash"), ("PCG2D", "frac(sin(dot(p, …)) · 43758.5)")):
         playground = sample.PLAYGROUNDS[name]
-        points = sample.draw(playground.sampler, 2**20, 0, 2)
+        points = sample.draw(playground, 2**20, 0, 2)
         corner = points[(points < 1 / 32).all(axis=1)]
         axis.plot(corner[:, 0], corner[:, 1], ".", color=COLOURS[0], markersize=3, markeredgewidth=0)
         axis.set(title=f"{title}\n{len(corner):,} of {len(points):,} points", xlabel="u_x", ylabel="u_y")

@@ -4,7 +4,6 @@ import numpy as np
 
 PIXELS, SIZE = 64, 4096  # sets of a kind, and points of each
 SPECTRUM_SIZE, FREQUENCIES = 256, 40  # points of a set whose spectrum is shown, and its largest frequency
-SAMPLERS = {"random": "numbers", "Sobol": "sobol", "scrambled": "scrambled"}  # of the program sample_points
 SIZES = [4**k for k in range(7)]
 
 
@@ -12,11 +11,6 @@ def grid(side, dimensions, offset):
     """Points of a regular grid on [0,1]^k with `side` of them along each axis."""
     axis = (np.arange(side) + offset) / side
     return np.stack(np.meshgrid(*[axis] * dimensions, indexing="ij"), axis=-1).reshape(-1, dimensions)
-
-
-def draw_sets(draw):
-    """Name -> sets of points [pixel, index, axis], by a function of a sampler, the number of points and that of a pixel."""
-    return {name: draw(sampler, PIXELS * SIZE, SIZE).reshape(PIXELS, SIZE, 2) for name, sampler in SAMPLERS.items()}
 
 
 def first_points(sets, name, size):

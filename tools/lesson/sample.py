@@ -3,14 +3,15 @@ estimate, as text and as a picture. The points come from the shaders of the chap
 """
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Callable
 
 import numpy as np
 from lesson import point_sets
-from project import ROOT, Parser, UserError, number, program_file, run_program
+from project import CHAPTERS, ROOT, Parser, UserError, number, program_file, run_program
 from report.numbers import CONFIDENCE, two_sided
+from report.studies import measures
 
 PROGRAM = program_file("sample_points")
 BINS = 16
@@ -35,6 +36,7 @@ class Playground:
     dimensions: int = 2
     kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
     is_pixel: bool = False  # whether the points are samples of one pixel, and not the first ones of as many
+    chapter: str = next(iter(CHAPTERS.values()))  # whose shader samples
 
 
 def drop_lost(points):
@@ -56,22 +58,35 @@ PLAYGROUNDS = {
         "u", dimensions=1),
     "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", dimensions=4),
     "numbers": Playground("pairs of random numbers by PCG2D, shaders/random.glsl", "numbers", [DARTS], "u_x"),
-    "points": Playground("points of chapter 9: the samples of a pixel, beside other sets of points", "scrambled", [DARTS, MEAN_SQUARE],
-                         "u_x", is_pixel=True),
     "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"),
-    "uniform-angles": Playground("directions of chapter 1, density 1 / (π² sin θ)", "uniform-angles", COSINES, "cos θ",
-                                 lambda p: drop_lost(p)[:, 2], lambda c: 1 - 2 / np.pi * np.arccos(c), kind="disk"),
-    "cosine": Playground("directions of chapter 2, density cos θ / π", "cosine", COSINES, "cos θ",
-                         lambda p: drop_lost(p)[:, 2], lambda c: c ** 2, kind="disk"),
-    "light-point": Playground("points of chapter 3 on a light's triangle of area 1, density 1", "light-point", [
-        Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])],
-        "w_1", cumulative=lambda w: 1 - (1 - w) ** 2, kind="triangle"),
+}
+
+# What a chapter's measure.json calls "points": the sampler, and what else its playground needs.
+KINDS = {
+    "directions": ("directions", {
+        "integrals": COSINES, "coordinate": "cos θ", "coordinates": lambda p: drop_lost(p)[:, 2], "kind": "disk"}),
+    "light points": ("light points", {
+        "integrals": [Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])], "coordinate": "w_1", "kind": "triangle"}),
+    "pixel": ("numbers", {"integrals": [DARTS, MEAN_SQUARE], "coordinate": "u_x", "is_pixel": True}),
 }
 
 
-def draw(sampler, count, seed, dimensions, device=None, samples=1):
+def playground_of(chapter, name, points, title, cumulative):
+    """The playground of a chapter's sampler; `cumulative` is a formula of x."""
+    sampler, options = KINDS[points]
+    function = eval(f"lambda x: {cumulative}", vars(np))
+    return Playground(title.format(number=int(chapter[:2])), sampler, cumulative=function, chapter=chapter, **options)
+
+
+OF_CHAPTERS = {measure["sampler"]["name"]: playground_of(chapter, **measure["sampler"])
+               for chapter, measure in measures().items() if "sampler" in measure}
+PLAYGROUNDS |= OF_CHAPTERS
+
+
+def draw(playground, count, seed, dimensions, device=None, samples=1):
     """Array [index, column] of points: the first ones of pixels, or `samples` of each pixel."""
-    command = [PROGRAM, sampler, "--count", count, "--samples", samples, "--seed", seed, "--dimensions", dimensions]
+    command = [PROGRAM, playground.sampler, "--chapter", playground.chapter, "--count", count, "--samples", samples, "--seed", seed,
+               "--dimensions", dimensions]
     result = run_program(command + (["--device", device] if device else []), encoding=None, errors=None)
     if result.returncode != 0:
         raise UserError(result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}")
@@ -79,8 +94,11 @@ def draw(sampler, count, seed, dimensions, device=None, samples=1):
 
 
 def draw_sets(seed, device=None):
-    """The sets that point_sets compares."""
-    return point_sets.draw_sets(lambda sampler, count, samples: draw(sampler, count, seed, 2, device, samples))
+    """Name -> points [pixel, index, axis] of many pixels: random ones, a chapter's, and what that one scrambles."""
+    points = next(playground for playground in PLAYGROUNDS.values() if playground.is_pixel)
+    kinds = {"random": PLAYGROUNDS["numbers"], "Sobol": replace(points, sampler="sobol"), "scrambled": points}
+    return {name: draw(kind, point_sets.PIXELS * point_sets.SIZE, seed, 2, device, point_sets.SIZE).reshape(point_sets.PIXELS, -1, 2)
+            for name, kind in kinds.items()}
 
 
 def histogram(playground, points):
@@ -159,7 +177,7 @@ def main():
     playground = PLAYGROUNDS[options.name]
     dimensions = options.dimensions or playground.dimensions
     samples = options.count if playground.is_pixel else 1
-    points = draw(playground.sampler, options.count, options.seed, dimensions, options.device, samples)
+    points = draw(playground, options.count, options.seed, dimensions, options.device, samples)
     print(report(playground, points, dimensions))
     if playground.is_pixel:
         sets = draw_sets(options.seed, options.device)

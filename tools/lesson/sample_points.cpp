@@ -1,5 +1,4 @@
-// Writes points of a sampler as 32-bit numbers to the standard output: sample_points SAMPLER. ./lab sample
-// shows them.
+// Writes points of a sampler of a chapter as 32-bit floats to the standard output, for ./lab sample.
 #include <CLI/CLI.hpp>
 #include <bit>
 #include <iostream>
@@ -18,18 +17,14 @@ namespace {
 using namespace lab;
 
 struct Sampler {
-    std::string define;   // of sample_points.comp
-    std::string chapter;  // whose estimator is included there, unless only PCG2D is wanted
-    uint32_t columns;     // numbers a point; 0: as many as --dimensions says
+    std::string define;  // of sample_points.comp
+    uint32_t columns;    // numbers of a point; 0: as many as --dimensions says
 };
-const std::map<std::string, Sampler> samplers{
-    {"numbers", {"NUMBERS", "01_uniform_sampling", 0}},
-    {"sobol", {"SOBOL", "09_low_discrepancy_points", 2}},
-    {"scrambled", {"NUMBERS", "09_low_discrepancy_points", 2}},
-    {"blog-hash", {"BLOG_HASH", "01_uniform_sampling", 2}},
-    {"uniform-angles", {"DIRECTIONS", "01_uniform_sampling", 4}},
-    {"cosine", {"DIRECTIONS", "02_cosine_sampling", 4}},
-    {"light-point", {"LIGHT_POINTS", "03_next_event_estimation", 2}}};
+const std::map<std::string, Sampler> samplers{{"numbers", {"NUMBERS", 0}},
+                                              {"sobol", {"SOBOL", 2}},
+                                              {"blog-hash", {"BLOG_HASH", 2}},
+                                              {"directions", {"DIRECTIONS", 4}},
+                                              {"light points", {"LIGHT_POINTS", 2}}};
 
 // As in sample_points.comp.
 struct Inputs {
@@ -38,12 +33,12 @@ struct Inputs {
     LightTriangle light_triangle;
 };
 
-// `count` points: `samples` of each pixel, one after the other.
-std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t count, uint32_t samples,
-                          uint32_t seed, const std::string& device_name) {
-    const Estimator estimator = estimator_of(load_chapter(sampler.chapter));
+// `count` points: `samples` of each pixel, pixel after pixel.
+std::vector<float> sample(const std::string& define, const std::string& chapter, uint32_t columns,
+                          uint32_t count, uint32_t samples, uint32_t seed, const std::string& device_name) {
+    const Estimator estimator = estimator_of(load_chapter(chapter));
     ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
-                        .defines = {sampler.define, "COLUMNS " + std::to_string(columns)},
+                        .defines = {define, "COLUMNS " + std::to_string(columns)},
                         .named_includes = named_includes(estimator)};
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     const Device device({device_name, false});
@@ -65,9 +60,10 @@ std::vector<float> sample(const Sampler& sampler, uint32_t columns, uint32_t cou
 
 int main(int argument_count, char** arguments) {
     CLI::App app("Writes points of a sampler as 32-bit numbers", "sample_points");
-    std::string name, device;
+    std::string name, chapter, device;
     uint32_t count = 4096, samples = 1, seed = 0, dimensions = 2;
     app.add_option("sampler", name, "Which one")->required()->check(CLI::IsMember(samplers));
+    app.add_option("--chapter", chapter, "Folder of the chapter that samples")->required();
     app.add_option("--count", count, "Number of points")->check(CLI::Range(1u, 1u << 22));
     app.add_option("--samples", samples, "Points of each pixel")->check(CLI::Range(1u, 1u << 22));
     app.add_option("--seed", seed, "Chooses the random numbers");
@@ -77,8 +73,8 @@ int main(int argument_count, char** arguments) {
     try {
         app.parse(argument_count, arguments);
         const Sampler& sampler = samplers.at(name);
-        const auto points =
-            sample(sampler, sampler.columns > 0 ? sampler.columns : dimensions, count, samples, seed, device);
+        const auto points = sample(sampler.define, chapter, sampler.columns > 0 ? sampler.columns : dimensions,
+                                   count, samples, seed, device);
         make_binary(stdout);
         std::cout.write(reinterpret_cast<const char*>(points.data()),
                         static_cast<std::streamsize>(points.size() * sizeof(float)));
