@@ -37,6 +37,9 @@ def name_of(full_name):
     return f"{suite.rpartition('/')[2]}.{test.partition('/')[0]}"
 
 
+ONLY_IN_ALL = "*_all:*_all/*"  # a filter for the tests that ./lab test leaves out
+
+
 def run(binary, report, *arguments, **options):
     """Runs a test program, which writes its report to that file; returns its subprocess."""
     command = [binary, f"--gtest_output=json:{report}", *arguments]

@@ -96,10 +96,9 @@ INSTANTIATE_TEST_SUITE_P(
                     AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}, Run::with_all},
                     AgreementCase{"textured", 9, 6, {0.045, 0.45}, {0.045, 0.45}},
                     AgreementCase{"glossy", 8, 64, {0.12, 3.5}, {0.05, 1.3}, Run::with_all}),
-    [](const auto& instance) { return instance.param.scene; });
+    [](const auto& instance) { return instance_name(instance.param.scene, instance.param.run); });
 
 TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
-    if (GetParam().run == Run::with_all && !runs_all_tests()) GTEST_SKIP() << "runs with ./lab test --all";
     const auto& [name, samples, bounce_samples, of_bounces, of_light_samples, run] = GetParam();
     const Scene scene = load_test_scene(name);
     uint32_t seed = 1000;

@@ -235,8 +235,8 @@ TEST(LambertPolygon, IsTheIntegralOverTheLight) {
     }
 }
 
-class DirectLight : public OnEachOwnEstimator {};
-INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(light_sampling_chapters()), chapter_name);
+class DirectLight : public OnEachChapter {};
+INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(light_sampling_chapters()), own_estimator_name);
 
 TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
     uint32_t seed = 100;
@@ -362,8 +362,8 @@ TEST_P(DirectLight, AddsToTheLightOfTheSky) {
     expect_direct_light("light and sky", batches, receiver.irradiance(light), {0.02, 0.5}, 1, sky);
 }
 
-class AllChapters : public OnEachOwnEstimator {};
-INSTANTIATE_TEST_SUITE_P(DirectLight, AllChapters, testing::ValuesIn(all_chapters), chapter_name);
+class AllChapters : public OnEachChapter {};
+INSTANTIATE_TEST_SUITE_P(DirectLight, AllChapters, testing::ValuesIn(all_chapters), own_estimator_name);
 
 TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {
     // Lights that fill enough of the sky to be found by chance.

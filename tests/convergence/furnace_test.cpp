@@ -8,8 +8,8 @@
 namespace lab {
 namespace {
 
-class Furnace : public OnEachOwnEstimator {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Furnace, testing::ValuesIn(all_chapters), chapter_name);
+class Furnace : public OnEachChapter {};
+INSTANTIATE_TEST_SUITE_P(Chapters, Furnace, testing::ValuesIn(all_chapters), own_estimator_name);
 
 // Samples that it takes: where everything is equally bright, paths of chapters 2 to 4 all carry the same.
 // Russian roulette saves time, not variance, and low-discrepancy points need the fewest. What short paths
@@ -54,9 +54,6 @@ TEST_P(Furnace, BoxShowsTheGeometricSeries) {
 }
 
 TEST_P(Furnace, SphereShowsTheGeometricSeries) {
-    // Roulette, which needs the most samples, is held to the box; without it chapter 5 is chapter 4.
-    if (GetParam() == "05_russian_roulette" && !runs_all_tests())
-        GTEST_SKIP() << "runs with ./lab test --all";
     const auto make_furnace = [](const Material& material) { return make_sphere(material, Facing::inwards); };
     expect_furnace(GetParam(), make_furnace, {0.45f, 0.3f, 0.1f}, {0.25f, 1.5f, 4}, {270, 1800, 850});
 }

@@ -34,8 +34,8 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
     return {difference_from(numbers, expected).relative_to(expected)};
 }
 
-class Roulette : public OnEachOwnEstimator {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_from(5)), chapter_name);
+class Roulette : public OnEachChapter {};
+INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_from(5)), own_estimator_name);
 
 // With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So
 // E[X] = m = 1/(1-a), E[X²] = (1 + 2am)/(1 - a²/p), and it has 1/(1-p) rays.

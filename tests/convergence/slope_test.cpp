@@ -30,21 +30,9 @@ void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings
     EXPECT_LT(slope.standard_error, largest_slope_error) << "the test is too weak, take larger images";
 }
 
-// Every chapter but 6, which is 5 here, runs in one of the two scenes. With all tests each runs in both: what
-// makes samples depend on each other does so in either.
-class Convergence : public OnEachOwnEstimator {};
+class Convergence : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(pseudorandom_chapters_from(1)),
-                         chapter_name);
-class ConvergenceUnderASky : public OnEachChapter {
-  protected:
-    void SetUp() override {
-        OnEachChapter::SetUp();
-        if (!repeats_another(GetParam()) && !runs_all_tests()) GTEST_SKIP() << "runs with ./lab test --all";
-    }
-};
-INSTANTIATE_TEST_SUITE_P(Chapters, ConvergenceUnderASky, testing::ValuesIn(pseudorandom_chapters_from(1)),
-                         chapter_name);
-
+                         own_estimator_name);
 TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
     Scene scene = load_shipped_scene("cornell_box.json");
     // Without the lamp: a few pixels at its edge would decide the error of the whole image.
@@ -53,7 +41,8 @@ TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
     expect_slope(scene, GetParam(), {.width = 44, .height = 44, .max_path_length = 3});
 }
 
-TEST_P(ConvergenceUnderASky, ErrorFallsWithTheRootOfTheNumberOfSamples) {
+// What makes samples depend on each other does so in either scene.
+TEST_P(Convergence, ErrorUnderASkyFallsWithTheRootOfTheNumberOfSamples_all) {
     expect_slope(load_shipped_scene("textured.json"), GetParam(),
                  {.width = 48, .height = 48, .max_path_length = 2});
 }

@@ -21,6 +21,11 @@ class Intersection : public OnEachBackend {
                 .estimator = probe(name),
                 .backend = GetParam()};
     }
+
+    // `effort` times the fewest rays.
+    void expect_no_self_hits(uint32_t effort) const;
+    void expect_no_self_hits_of_stretched_instances(uint32_t effort) const;
+    void expect_no_escapes(uint32_t effort) const;
 };
 INSTANTIATE_TEST_SUITE_P(Backends, Intersection, testing::ValuesIn(all_backends), backend_name);
 
@@ -66,7 +71,7 @@ class Random {
     std::mt19937 generator_;
 };
 
-TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) {
+void Intersection::expect_no_self_hits(uint32_t effort) const {
     constexpr size_t triangle_count = 1000;
     // As pbrt's test Triangle.Reintersect: each coordinate has a magnitude of its own, so that all are
     // slivers.
@@ -75,15 +80,13 @@ TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) {
     for (size_t i = 0; i < 3 * triangle_count; ++i) slivers.push_back(random.point());
     const std::vector<vec3> sizes = random.triangles(triangle_count);
     const bool is_ours = GetParam() == Backend::compute;
-    // A driver's tree of slivers can be slow: that of lavapipe needs a second for 10^5 rays.
-    const uint32_t samples = runs_all_tests() ? (is_ours ? 16 : 4) : 1;
     // In 32 bits the distance of a ray from a sliver that it runs along may be anything: 6 of 10^6 rays hit
     // one of those again, which cover no area to speak of. Drivers have triangle tests of their own, and that
     // of an NVIDIA H200 lets 9 of 1000 do so.
     const double largest_part_of_slivers = is_ours ? 5e-5 : 0.02;
     for (const auto& [name, corners, largest_part] :
          {std::tuple{"slivers", slivers, largest_part_of_slivers}, {"all_sizes", sizes, 0.0}}) {
-        const glm::dvec3 total = probe_total(triangle_scene(corners), settings("reintersect", 320, samples));
+        const glm::dvec3 total = probe_total(triangle_scene(corners), settings("reintersect", 320, effort));
         RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
         EXPECT_GE(total.g, 1e5);
@@ -91,7 +94,13 @@ TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) {
     }
 }
 
-TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
+TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) { expect_no_self_hits(1); }
+// A driver's tree of slivers can be slow: that of lavapipe needs a second for 10^5 rays.
+TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleItLeaves_all) {
+    expect_no_self_hits(GetParam() == Backend::compute ? 16 : 4);
+}
+
+void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) const {
     const auto turn = [](float angle) {
         return mat3(glm::rotate(glm::mat4(1), angle, glm::normalize(vec3(1, 2, -0.5f))));
     };
@@ -111,7 +120,7 @@ TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
         std::vector<vec3> corners = Random(2).triangles(200);
         for (vec3& corner : corners) corner = before * corner;
         const glm::dvec3 total = probe_total(triangle_scene(corners, object_to_world),
-                                             settings("reintersect", size, runs_all_tests() ? 4 : 1));
+                                             settings("reintersect", size, effort));
         RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
         EXPECT_GE(total.g, 0.9 * size * size) << name;
@@ -119,6 +128,13 @@ TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
         // above.
         EXPECT_LE(total.r, before == mat3(1) ? 5e-6 * total.g : 0) << name;
     }
+}
+
+TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
+    expect_no_self_hits_of_stretched_instances(1);
+}
+TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleOfAStretchedInstanceThatItLeaves_all) {
+    expect_no_self_hits_of_stretched_instances(4);
 }
 
 // Two squares that face each other across a gap, with the camera between them. Every path finds exactly the
@@ -212,7 +228,7 @@ TriangleMesh grid_pyramid(uint32_t cells, float size, const vec3& corner) {
     return mesh;
 }
 
-TEST_P(Intersection, NoRayEscapesFromAClosedMesh) {
+void Intersection::expect_no_escapes(uint32_t effort) const {
     const vec3 far(148376, 1234, -223423);  // of Embree's verify
     const ClosedMesh meshes[] = {
         {"sphere", bumpy_sphere(100), vec3(0), 0.4f},
@@ -221,7 +237,7 @@ TEST_P(Intersection, NoRayEscapesFromAClosedMesh) {
         {"large_triangles", bumpy_sphere(4), vec3(0), 0.3f},
     };
     const bool is_ours = GetParam() == Backend::compute;
-    const double rays_of_all = (is_ours ? 1e6 : 2e5) * (runs_all_tests() ? 4 : 1);
+    const double rays_of_all = (is_ours ? 1e6 : 2e5) * effort;
     // Our own triangle test is watertight, what drivers do is theirs: that of an NVIDIA H200 lets through 8
     // of 10,000 rays far from the origin, lavapipe's 2 % of the rays that aim at a vertex.
     const double largest_part = is_ours ? 0 : 0.05;
@@ -240,6 +256,9 @@ TEST_P(Intersection, NoRayEscapesFromAClosedMesh) {
         EXPECT_LE(count, largest_part * rays) << closed.name;
     }
 }
+
+TEST_P(Intersection, NoRayEscapesFromAClosedMesh) { expect_no_escapes(1); }
+TEST_P(Intersection, NoneOfManyRaysEscapesFromAClosedMesh_all) { expect_no_escapes(4); }
 
 }  // namespace
 }  // namespace lab

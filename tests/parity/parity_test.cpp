@@ -106,6 +106,27 @@ Limits limits_of(const Scene& scene) {
     return limits;
 }
 
+// The estimators of chapters, with the options that bring in all of their code.
+using Estimators = std::map<std::string, RenderSettings>;
+Estimators estimators_of(const std::vector<std::string>& chapters) {
+    Estimators estimators;
+    for (const std::string& chapter : chapters)
+        estimators[chapter] = {
+            .width = 192, .height = 192, .splitting_factor = 2, .estimator = chapter_estimator(chapter)};
+    return estimators;
+}
+
+Estimators all_estimators() {
+    Estimators all = estimators_of(all_chapters);
+    // The paths are short, since they branch at every hit.
+    all["every hit"] = {.width = 192,
+                        .height = 192,
+                        .max_path_length = 3,
+                        .splitting_factor = 2,
+                        .estimator = every_hit_estimator()};
+    return all;
+}
+
 class Parity : public testing::TestWithParam<Backend> {
   protected:
     void SetUp() override {
@@ -119,45 +140,41 @@ class Parity : public testing::TestWithParam<Backend> {
         expect_parity(what, GetParam(), BackendScene(Backend::compute, scene).render(settings),
                       BackendScene(GetParam(), scene).render(settings), limits);
     }
+
+    // On a file of assets/scenes.
+    void expect_same_on(const std::filesystem::path& file, const Estimators& estimators);
 };
 
-// The estimators of all chapters, with the options that bring in all of their code. Chapters share what
-// traces rays and what scenes bring with them: a run that does not take all tests tries all of them on one
-// scene with the pipeline, which is put together in another way, and everything else with the last one.
-std::map<std::string, RenderSettings> chapter_estimators(const std::string& scene, Backend backend) {
-    const bool takes_all = (scene == "cornell_box" && backend == Backend::pipeline) || runs_all_tests();
-    std::map<std::string, RenderSettings> all;
-    for (const std::string& chapter : all_chapters)
-        if (takes_all || chapter == all_chapters.back())
-            all[chapter] = {
-                .width = 192, .height = 192, .splitting_factor = 2, .estimator = chapter_estimator(chapter)};
-    if (!takes_all) return all;
-    // The paths are short, since they branch at every hit.
-    all["every hit"] = {.width = 192,
-                        .height = 192,
-                        .max_path_length = 3,
-                        .splitting_factor = 2,
-                        .estimator = every_hit_estimator()};
-    return all;
+void Parity::expect_same_on(const std::filesystem::path& file, const Estimators& estimators) {
+    const Scene scene = load_scene(file);
+    for (const bool with_probe : {false, true}) {
+        const auto samples_so = [&](const auto& e) {
+            return samples_probe(e.second.estimator) == with_probe;
+        };
+        if (std::none_of(estimators.begin(), estimators.end(), samples_so)) continue;
+        const BackendScene expected(Backend::compute, scene, with_probe),
+            actual(GetParam(), scene, with_probe);
+        for (const auto& [name, settings] : estimators)
+            if (samples_so(std::pair(name, settings)))
+                expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings),
+                              actual.render(settings), limits_of(scene));
+    }
 }
 
-TEST_P(Parity, EveryChapterOnEveryScene) {
-    for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes")) {
-        const Scene scene = load_scene(file);
-        const auto estimators = chapter_estimators(file.stem().string(), GetParam());
-        for (const bool samples_probe : {false, true}) {
-            const auto samples_so = [&](const auto& e) {
-                return lab::samples_probe(e.second.estimator) == samples_probe;
-            };
-            if (std::none_of(estimators.begin(), estimators.end(), samples_so)) continue;
-            const BackendScene expected(Backend::compute, scene, samples_probe),
-                actual(GetParam(), scene, samples_probe);
-            for (const auto& [name, settings] : estimators)
-                if (samples_so(std::pair(name, settings)))
-                    expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings),
-                                  actual.render(settings), limits_of(scene));
-        }
-    }
+// Chapters share what traces rays and what scenes bring with them: a default run has all chapters on one
+// scene, and all scenes with the last chapter.
+TEST_P(Parity, EveryChapter) {
+    expect_same_on(project_folder() / "assets" / "scenes" / "cornell_box.json", all_estimators());
+}
+
+TEST_P(Parity, EveryScene) {
+    for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes"))
+        expect_same_on(file, estimators_of({all_chapters.back()}));
+}
+
+TEST_P(Parity, EveryChapterOnEveryScene_all) {
+    for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes"))
+        expect_same_on(file, all_estimators());
 }
 
 TEST_P(Parity, TurnedStretchedAndMirroredInstances) {

@@ -18,7 +18,9 @@ uint32_t test_seed(uint32_t seed) {
     return seed + (text ? 1000003 * static_cast<uint32_t>(std::strtoul(text, nullptr, 10)) : 0);
 }
 
-bool runs_all_tests() { return std::getenv("LAB_TEST_ALL") != nullptr; }
+std::string instance_name(const std::string& name, Run run) {
+    return name + (run == Run::with_all ? "_all" : "");
+}
 
 void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
                 std::span<const std::byte> inputs, const Device& device) {

@@ -19,9 +19,10 @@ const Device& test_device();
 // The seed that stands for this one in this run: LAB_TEST_SEED gives all tests other random numbers.
 uint32_t test_seed(uint32_t seed);
 
-// Tests that take minutes on a CPU run only with ./lab test --all, which sets LAB_TEST_ALL.
+// A test whose name, or that of its instance, ends in _all runs with ./lab test --all alone: see
+// tests/CMakeLists.txt.
 enum class Run { always, with_all };
-bool runs_all_tests();
+std::string instance_name(const std::string& name, Run run);
 
 // A shader that computes one result in each invocation.
 struct TestShader {

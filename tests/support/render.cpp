@@ -134,18 +134,6 @@ std::vector<double> pixel_means(const FilmImage& film, int channel) {
 
 void OnEachBackend::SetUp() {
     if (!test_device().description().supports(GetParam())) GTEST_SKIP() << "the device lacks this backend";
-    // Ray queries ask the structure that the pipeline traces through, and Parity compares their paths.
-    if (GetParam() == Backend::query && test_device().description().supports(Backend::pipeline) &&
-        !runs_all_tests())
-        GTEST_SKIP() << "runs with ./lab test --all";
-}
-
-bool repeats_chapter_five(const std::string& chapter) {
-    return chapter == "06_dielectrics" && !runs_all_tests();
-}
-
-void OnEachChapter::SetUp() {
-    if (repeats_chapter_five(GetParam())) GTEST_SKIP() << "runs with ./lab test --all";
 }
 
 bool repeats_another(const std::string& chapter) {
@@ -153,10 +141,6 @@ bool repeats_another(const std::string& chapter) {
     // without light probes is 7.
     constexpr std::array<uint32_t, 5> repeated{4, 6, 7, 8, 10};
     return std::ranges::count(repeated, chapter_number(chapter)) > 0;
-}
-
-void OnEachOwnEstimator::SetUp() {
-    if (repeats_another(GetParam()) && !runs_all_tests()) GTEST_SKIP() << "runs with ./lab test --all";
 }
 
 uint32_t chapter_number(const std::string& chapter) {
@@ -182,8 +166,14 @@ bool splits_paths(const std::string& chapter) {
                        [](const ChapterOption& option) { return option.name == "--splitting-factor"; });
 }
 
-std::string backend_name(const testing::TestParamInfo<Backend>& info) { return to_string(info.param); }
+std::string backend_name(const testing::TestParamInfo<Backend>& info) {
+    return instance_name(to_string(info.param), info.param == Backend::query ? Run::with_all : Run::always);
+}
 
 std::string chapter_name(const testing::TestParamInfo<std::string>& info) { return "chapter_" + info.param; }
+
+std::string own_estimator_name(const testing::TestParamInfo<std::string>& info) {
+    return instance_name(chapter_name(info), repeats_another(info.param) ? Run::with_all : Run::always);
+}
 
 }  // namespace lab

@@ -113,31 +113,20 @@ class OnEachBackend : public testing::TestWithParam<Backend> {
     void SetUp() override;
 };
 
-// Without glass chapter 6 is chapter 5 down to the random numbers, as RepeatedChapter shows pixel by pixel.
-// Scenes without glass are rendered by both only with ./lab test --all.
-bool repeats_chapter_five(const std::string& chapter);
-
-// Fixture of tests to be run with each chapter on scenes without glass.
-class OnEachChapter : public testing::TestWithParam<std::string> {
-  protected:
-    void SetUp() override;
-};
+using OnEachChapter = testing::TestWithParam<std::string>;
 
 // Whether a chapter is another one path by path, but for what it adds, as RepeatedChapter shows.
 bool repeats_another(const std::string& chapter);
-
-// Fixture of tests of expectations without splitting and glass: with those only with ./lab test --all.
-class OnEachOwnEstimator : public testing::TestWithParam<std::string> {
-  protected:
-    void SetUp() override;
-};
 
 // 1 for "01_uniform_sampling". Chapters may follow the same paths if their seeds are equal: tests that are to
 // be independent of each other make it part of the seed.
 uint32_t chapter_number(const std::string& chapter);
 
-// For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters.
+// For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters. Ray queries ask the
+// structure that the pipeline traces through, and Parity compares their paths: they are left to --all. So are
+// chapters that repeat another one where `own_estimator_name` gives the names.
 std::string backend_name(const testing::TestParamInfo<Backend>& info);
 std::string chapter_name(const testing::TestParamInfo<std::string>& info);
+std::string own_estimator_name(const testing::TestParamInfo<std::string>& info);
 
 }  // namespace lab

@@ -71,8 +71,8 @@ TEST(HostileMeshes, ReadAMaterialFileOnce) {
     EXPECT_USER_ERROR(load(lines), "more than 256 names");
 }
 
-TEST(HostileMeshes, AllocateNoMoreThanTheirSizeExplains) {
-    if (!std::getenv("LAB_TEST_ALL")) GTEST_SKIP() << "needs 1.5 GB: ./lab test --all";
+// Needs 1.5 GB.
+TEST(HostileMeshes, AllocateNoMoreThanTheirSizeExplains_all) {
     const TestFolder folder;
     EXPECT_USER_ERROR(
         load_scene(folder.write("a.obj", triangle + repeated("f" + repeated(" 1", 256) + "\n", 135000))),
