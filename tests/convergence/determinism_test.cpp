@@ -49,10 +49,6 @@ std::filesystem::path temporary_file(const std::string& name) {
     return std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + name);
 }
 
-TEST_P(Determinism, SameCommandGivesTheSameImage) {
-    EXPECT_TRUE(are_identical(render(scene, settings()), render(scene, settings())));
-}
-
 TEST_P(Determinism, DispatchesOfAnyLengthGiveTheSameImage) {
     RenderSettings cut = settings(), whole = settings();
     cut.dispatch_seconds = 1e-9;  // every dispatch has one block and one sample a pixel
@@ -113,38 +109,6 @@ TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
     shared.dispatch_seconds = 10;
     alone.dispatch_seconds = 1e-9;
     EXPECT_TRUE(are_identical(render_with_a_thread_for_each_pixel(scene, alone), render(scene, shared)));
-}
-
-TEST_P(Determinism, OtherSeedsAndSamplesGiveOtherImages) {
-    RenderSettings other_seed = settings(), later_samples = settings();
-    other_seed.seed = 2;
-    later_samples.first_sample = later_samples.samples;
-    const FilmImage film = render(scene, settings()), film_of_other_seed = render(scene, other_seed),
-                    later_film = render(scene, later_samples);
-    // A few pixels may have equal sums by chance, since few numbers occur as weights.
-    size_t equal = 0;
-    for (size_t i = 0; i < film.pixels.size(); ++i)
-        equal += (film.pixels[i].sum == film_of_other_seed.pixels[i].sum) +
-                 (film.pixels[i].sum == later_film.pixels[i].sum);
-    EXPECT_LE(equal, film.pixels.size() / 100);
-}
-
-TEST_P(Determinism, PartsMergeToTheWhole) {
-    std::vector<std::filesystem::path> files;
-    for (const auto& [first, count] : {std::pair{10u, 14u}, std::pair{0u, 10u}}) {
-        RenderSettings part = settings();
-        part.first_sample = first;
-        part.samples = count;
-        files.push_back(temporary_file("part" + std::to_string(first) + ".exr"));
-        FilmRecord record{};
-        record.first_sample = first;
-        write_film(files.back(), render(scene, part), record);
-    }
-    const FilmFile merged = merge_films(files);
-    EXPECT_EQ(merged.image.min_samples(), settings().samples);
-    EXPECT_EQ(merged.record.first_sample, 0u);
-    expect_within_2_ulp(merged.image.mean(), render(scene, settings()).mean());
-    for (const auto& file : files) std::filesystem::remove(file);
 }
 
 TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {

@@ -25,15 +25,6 @@ RenderSettings room_settings(uint32_t samples, uint32_t seed) {
 
 constexpr uint32_t scene_batches = 32;
 
-TEST(DielectricScene, BoxOfIndexOneIsInvisibleInALitRoom) {
-    // With light samples: they do not reach through the box, but paths do and count what they find.
-    const Batches with_box =
-        render_batches(room_with_box(dielectric_material(1)), room_settings(14, 1), scene_batches);
-    const Batches without = render_batches(empty_room(), room_settings(14, 2), scene_batches);
-    expect_uniform("p-values of the tiles",
-                   expect_agreement("box of index 1", with_box, without, {0.02, 0.3}), 0.7);
-}
-
 TEST(DielectricScene, LightSamplingKeepsTheMean) {
     Material glass = dielectric_material(1.5f, {0.5f, 0.2f, 0.8f});
     const Scene clear = room_with_box(glass), filled = glass_with_lamp(glass);

@@ -133,15 +133,6 @@ TEST(Dielectric, BodyUnderAUniformSkyIsInvisible) {
     }
 }
 
-TEST(Dielectric, BodyUnderAUniformSkyIsInvisibleWithRouletteAndBranches) {
-    Scene scene = make_sphere(dielectric_material(1.5f), Facing::outwards);
-    scene.background = vec3(1);
-    RenderSettings settings = make_settings(300, 2);
-    settings.survival_cap = 0.9f;
-    settings.splitting_factor = 2;
-    expect_radiance("sphere", render(scene, settings), glm::dvec3(1), 0.01, 3);
-}
-
 // Directions that are on opposite sides of the triangle and of its interpolated normal carry nothing, so a
 // smooth body loses some light at its silhouette and never gains any.
 TEST(Dielectric, SmoothBodyLosesLittle) {
@@ -204,34 +195,6 @@ TEST(Dielectric, AbsorbsWhatTheCameraSeesWithin) {
     const double r = fresnel_reflectance(1, 1.5);
     expect_radiance("towards a side", render(scene, make_settings(100, 1)),
                     2.25 * (1 - r) * once / (1.0 - r * twice), 0.01, 3);
-}
-
-// Whatever enters a glass rod at its end leaves it at the other one, though it meets the sides in between.
-Scene make_light_guide(float length) {
-    const float lamp = length + 1;
-    std::vector<Quad> quads{{{-100, -100, -lamp}, {200, 0, 0}, {0, 200, 0}, 0}};
-    for (const Quad& side : box_sides({-0.5f, -0.5f, -length}, {0.5f, 0.5f, 0}, 1, Facing::outwards))
-        quads.push_back(side);
-    Scene scene = make_scene({diffuse_material(vec3(0), vec3(1)), dielectric_material(1.5f)}, quads);
-    scene.camera = {
-        .position = {0.8f, 0.5f, 1}, .target = {0.03f, 0.05f, 0}, .up = {0, 1, 0}, .vertical_fov = 1};
-    return scene;
-}
-
-TEST(Dielectric, LightGuideKeepsAllLight) {
-    const Scene scene = make_light_guide(20);
-    const glm::dvec3 direction =
-        glm::normalize(glm::dvec3(scene.camera.target) - glm::dvec3(scene.camera.position));
-    const double r = fresnel_reflectance(-direction.z, 1.5);
-    const glm::dvec3 expected((1 - r) / (1 + r));
-    expect_radiance("without roulette", render(scene, make_settings(200, 1)), expected, 0.003, 6);
-    RenderSettings with_roulette = make_settings(400, 2);
-    with_roulette.survival_cap = 0.95f;
-    expect_radiance("with roulette", render(scene, with_roulette), expected, 0.01, 6);
-    // It takes at least 20 tan θ_t = 9 bounces at the sides, so that light of shorter paths is not seen.
-    RenderSettings cut_off = make_settings(20, 3);
-    cut_off.max_path_length = 8;
-    for (const double mean : pixel_means(render(scene, cut_off), 0)) ASSERT_EQ(mean, 0);
 }
 
 }  // namespace

@@ -211,30 +211,6 @@ const std::vector<LightCase>& light_cases() {
     return cases;
 }
 
-TEST(LambertPolygon, IsTheIntegralOverTheLight) {
-    // The definition, ∫ cos θ cos θ' / r² dA, by the midpoint rule on 1,048,576 congruent triangles.
-    constexpr int n = 1024;
-    for (const LightCase& light_case : light_cases()) {
-        const dvec3 a = light_case.light[0], u = (light_case.light[1] - a) / double{n},
-                    v = (light_case.light[2] - a) / double{n};
-        const dvec3 normal = glm::cross(u, v);
-        double sum = 0;
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; i + j < n; ++j)
-                for (const double third : {1.0 / 3, 2.0 / 3}) {
-                    if (third > 0.5 && i + j + 1 == n) continue;
-                    const dvec3 y = a + (i + third) * u + (j + third) * v;
-                    const double square = glm::dot(y, y);
-                    if (y.z > 0) sum += 0.5 * std::abs(glm::dot(normal, y)) * y.z / (square * square);
-                }
-        Corners light = light_case.light;
-        if (glm::dot(normal, a) > 0) std::swap(light[1], light[2]);
-        EXPECT_NEAR(polygon_irradiance(light, dvec3(0), {0, 0, 1}) / sum, 1, 1e-4) << light_case.name;
-        std::swap(light[1], light[2]);
-        EXPECT_EQ(polygon_irradiance(light, dvec3(0), {0, 0, 1}), 0) << "the back of " << light_case.name;
-    }
-}
-
 class DirectLight : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(light_sampling_chapters()), own_estimator_name);
 
@@ -248,62 +224,6 @@ TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
         expect_direct_light(name, batches, receiver.irradiance(receiver.place(light)), {0.02, 0.7},
                             light_cases().size());
     }
-}
-
-// A light of n x n cells of very unequal size, two triangles each, in columns of eight different
-// brightnesses.
-TEST_P(DirectLight, OfManyTrianglesIsThatOfTheirUnion) {
-    const Receiver receiver({1, 0, 0});
-    const Corners quad{{-0.8, 0.5, 0.6}, {0.9, 0.6, 0.7}, {0.9, 0.9, 1.5}, {-0.8, 0.8, 1.4}};
-    const auto point = [&](double s, double t) {
-        return glm::mix(glm::mix(quad[0], quad[1], s * s), glm::mix(quad[3], quad[2], s * s), t * t * t);
-    };
-    for (const uint32_t n : {44u, 224u}) {
-        std::vector<vec3> emissions;
-        for (int i = 0; i < 8; ++i) emissions.push_back(colour * std::exp2(static_cast<float>(i - 4)));
-        Scene scene = receiver.scene(emissions);
-        std::vector<double> irradiance(size_t{Receiver::size} * Receiver::size);
-        const double step = 1.0 / n;
-        for (uint32_t i = 0; i < n; ++i) {
-            const auto material = 1 + i % 8;
-            const double s_0 = i * step, s_1 = (i + 1) * step;
-            for (uint32_t j = 0; j < n; ++j) {
-                const double t_0 = j * step, t_1 = (j + 1) * step;
-                add_triangle(scene, receiver.place({point(s_0, t_0), point(s_1, t_0), point(s_1, t_1)}),
-                             material);
-                add_triangle(scene, receiver.place({point(s_0, t_0), point(s_1, t_1), point(s_0, t_1)}),
-                             material);
-            }
-            const auto column = receiver.irradiance(
-                receiver.place({point(s_0, 0), point(s_1, 0), point(s_1, 1), point(s_0, 1)}));
-            for (size_t k = 0; k < column.size(); ++k)
-                irradiance[k] += column[k] * std::exp2(static_cast<double>(i % 8) - 4);
-        }
-        const Batches batches = render_batches(scene, settings_of(GetParam(), 24, n), light_batches);
-        expect_direct_light(std::to_string(2 * n * n) + " triangles", batches, irradiance, {0.02, 0.5}, 2);
-    }
-}
-
-TEST_P(DirectLight, OfVeryDifferentLightsAddsUp) {
-    // Radiances from 10^-12 to 10^12. The brightest are so small that they bring as much as the one of
-    // radiance 1; the darkest bring next to nothing, but must not disturb the others.
-    const Receiver receiver({0, 1, 0});
-    std::vector<vec3> emissions;
-    for (int k = -3; k <= 3; ++k) emissions.push_back(colour * std::pow(10.0f, static_cast<float>(4 * k)));
-    Scene scene = receiver.scene(emissions);
-    std::vector<double> irradiance(size_t{Receiver::size} * Receiver::size);
-    for (int k = -3; k <= 3; ++k) {
-        const double scale = std::pow(10.0, -2.0 * std::max(k, 0)), angle = 0.9 * k;
-        Corners light;
-        for (const dvec3& corner : {dvec3(-0.3, 0, 0), dvec3(0.2, 0.3, 0.1), dvec3(0.1, -0.3, 0.2)})
-            light.push_back(dvec3(std::cos(angle), std::sin(angle), 0.9) + scale * corner);
-        const Corners placed = receiver.place(light);
-        add_triangle(scene, placed, static_cast<uint32_t>(4 + k));
-        const auto image = receiver.irradiance(placed);
-        for (size_t i = 0; i < image.size(); ++i) irradiance[i] += std::pow(10.0, 4.0 * k) * image[i];
-    }
-    const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), light_batches);
-    expect_direct_light("seven lights", batches, irradiance, {0.02, 0.5}, 1);
 }
 
 TEST_P(DirectLight, OfTransformedInstancesIsThatOfTheirImages) {

@@ -69,8 +69,6 @@ TEST(Memory, HoldsFilmsOfSixteenMegapixels) {
     EXPECT_NE(refusal([&] { require_memory(test_device(), {&too_large, 1}); }), "");
 }
 
-TEST(Memory, OfLargeRendersIsThatOfTheFilm) { EXPECT_EQ(Renderer::memory_needs({1024, 1024}).size(), 1u); }
-
 TEST(Memory, OfSmallRendersIsThatOfFilmAndSamples) {
     const auto needs = Renderer::memory_needs({48, 40});
     ASSERT_EQ(needs.size(), 2u);

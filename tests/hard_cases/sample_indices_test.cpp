@@ -11,38 +11,6 @@
 namespace lab {
 namespace {
 
-TEST(SampleIndices, StartStatesAreABijectionAtTheTopOfTheRange) {
-    // start_state() is invertible for every pixel and sample: so it is a bijection. Here the device's is the
-    // same function where numbers of 32 bits end, and these states are not those of the first samples.
-    struct Stream {
-        uint32_t pixel, sample;
-        RandomState key;
-    };
-    constexpr uint32_t last_pixel = (1u << 28) - 1;  // of the largest image, 16384 x 16384
-    std::vector<Stream> streams;
-    for (const RandomState key : {RandomState{0, 0}, RandomState{0xffffffff, 0xffffffff}, RandomState{1, 2}})
-        for (const uint32_t pixel : {0u, 1u, last_pixel})
-            for (uint32_t i = 0; i < 1 << 15; ++i) {
-                streams.push_back({pixel, i, key});
-                streams.push_back({pixel, 0x7fffffffu + i, key});
-                streams.push_back({pixel, 0xffffffffu - i, key});
-            }
-    auto states = run_shader<RandomState>({"random.comp", {"START_STATES"}}, streams);
-    const size_t states_of_a_key = streams.size() / 3;
-    for (size_t i = 0; i < streams.size(); ++i) {
-        const auto& [pixel, sample, key] = streams[i];
-        ASSERT_EQ(states[i], start_state(pixel, sample, key));
-        ASSERT_EQ(pixel_and_sample(states[i], key), (RandomState{pixel, sample}));
-    }
-    for (size_t first = 0; first < states.size(); first += states_of_a_key) {
-        const auto begin = states.begin() + static_cast<std::ptrdiff_t>(first),
-                   end = begin + static_cast<std::ptrdiff_t>(states_of_a_key);
-        std::sort(begin, end);
-        ASSERT_EQ(std::adjacent_find(begin, end), end);
-    }
-    record("states_that_occur_twice", "0 of %zu", states.size());
-}
-
 class SampleIndexCases : public OnEachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, SampleIndexCases, testing::ValuesIn(all_backends), backend_name);
 

@@ -53,27 +53,8 @@ double floor_radiance(uvec2 sun = ordinary_sun, double sky = sky_radiance) {
     return sum / pi * (pi / height) * (2 * pi / width) / (steps * steps);
 }
 
-class SunCases : public OnEachBackend {
-  protected:
-    static void expect_lit_floor(uint32_t samples, double largest_bias);
-};
+class SunCases : public OnEachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, SunCases, testing::ValuesIn(all_backends), backend_name);
-
-void SunCases::expect_lit_floor(uint32_t samples, double largest_bias) {
-    RenderSettings settings{.samples = samples,
-                            .max_path_length = 1,
-                            .seed = 21 + static_cast<uint32_t>(GetParam()),
-                            .backend = GetParam()};
-    settings.estimator = chapter_estimator("02_cosine_sampling");
-    const double expected = floor_radiance();
-    const MeanEstimate mean = estimate_mean(pixel_means(render(sunny_floor(), settings), 1));
-    record("mean_over_integral", "%.3f ± %.3f", mean.mean / expected, mean.standard_error / expected);
-    expect_mean("radiance of the floor over its integral", mean, expected, largest_bias);
-}
-
-// Bounces find the sun by chance.
-TEST_P(SunCases, LightsAFloorAsItsIntegralSays) { expect_lit_floor(512, 0.12); }
-TEST_P(SunCases, LightsAFloorExactlyAsItsIntegralSays_all) { expect_lit_floor(16384, 0.0212); }
 
 TEST_P(SunCases, IsSeenAtItsFullRadiance) {
     Scene scene = sunny_floor();

@@ -36,35 +36,6 @@ Texture colourful_texture() {
 // What a device may decode wrongly: at most twice its error of x^2.4, and roundings.
 double decoding_error() { return 2 * test_arithmetic().decoding + 1e-6; }
 
-TEST_P(Textures, ShowTheirTexelsFromTheTopRowDown) {
-    const Texture texture = colourful_texture();
-    std::vector<vec2> coordinates;
-    std::vector<dvec3> expected;
-    for (uint32_t row = 0; row < 2; ++row)
-        for (uint32_t column = 0; column < 4; ++column)
-            for (const vec2 repeat : {vec2(0, 0), vec2(1, 0), vec2(-3, 2), vec2(0, -1)}) {
-                coordinates.push_back(vec2((glm::dvec2(column, row) + 0.5) / glm::dvec2(4, 2)) + repeat);
-                expected.push_back(texel(texture, column, row));
-            }
-    const auto albedos = albedo_at(texture, coordinates);
-    for (size_t i = 0; i < albedos.size(); ++i)
-        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error())
-            << coordinates[i].x << " " << coordinates[i].y;
-}
-
-TEST_P(Textures, AreDecodedFromSrgb) {
-    Texture texture{256, 1, {}};
-    std::vector<vec2> coordinates;
-    for (int value = 0; value < 256; ++value) {
-        for (int channel = 0; channel < 4; ++channel) texture.pixels.push_back(static_cast<uint8_t>(value));
-        coordinates.emplace_back((static_cast<float>(value) + 0.5f) / 256, 0.5f);
-    }
-    const auto albedos = albedo_at(texture, coordinates);
-    for (size_t value = 0; value < albedos.size(); ++value)
-        EXPECT_NEAR(double{albedos[value].g}, decode_srgb(static_cast<uint8_t>(value)), decoding_error())
-            << value;
-}
-
 TEST_P(Textures, AreFilteredLinearlyAcrossTheirBorders) {
     const Texture texture = colourful_texture();
     // Between two columns, a quarter of the way between two rows, and between the first and the last ones.
@@ -170,19 +141,6 @@ TEST_P(LightProbe, IsMultipliedByItsIntensity) {
     Scene scene = probe_scene();
     scene.background = {2, 3, 4};
     EXPECT_LT(glm::distance(radiance(scene, {0, 0, -1}), vec3(2, 3, 4) * texel_radiance(4, 2)), 1.0f);
-}
-
-TEST_P(LightProbe, OfOneColourIsASky) {
-    Scene sky = make_scene({diffuse_material({0.5f, 0.6f, 0.7f})}, {{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}});
-    sky.background = {1, 2, 3};
-    Scene probe = sky;
-    probe.background = vec3(1);
-    probe.light_probe = Image{2, 1, {1, 2, 3, 1, 2, 3}};
-    const RenderSettings settings{.width = 16, .height = 16, .samples = 4, .backend = GetParam()};
-    const FilmImage expected = render(sky, settings), film = render(probe, settings);
-    for (size_t i = 0; i < film.pixels.size(); ++i)
-        ASSERT_LT(glm::distance(film.pixels[i].sum, expected.pixels[i].sum),
-                  1e-5f * glm::length(expected.pixels[i].sum));
 }
 
 }  // namespace

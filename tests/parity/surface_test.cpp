@@ -153,55 +153,6 @@ TEST_P(Surface, InterpolatesTheNormalsOfItsVertices) {
     EXPECT_LT(glm::distance(radiance_at(render_view(scene, "normals"), 8, 8), 0.5f + 0.5f * expected), 0.01f);
 }
 
-TEST_P(Surface, ScattersAboutItsShadingNormal) {
-    // Vertex normals tilted by 30 degrees under a white sky. Directions below the triangle carry nothing, so
-    // the radiance is the part of the hemisphere's cosine above it; by quadrature over the normal's
-    // hemisphere.
-    const double tilt = pi / 6;
-    constexpr int steps = 1000;
-    double expected = 0;
-    for (int i = 0; i < steps; ++i)
-        for (int j = 0; j < steps; ++j) {
-            const double theta = (i + 0.5) * 0.5 * pi / steps, phi = (j + 0.5) * 2 * pi / steps;
-            const double height =
-                std::cos(theta) * std::cos(tilt) - std::sin(theta) * std::cos(phi) * std::sin(tilt);
-            if (height > 0) expected += std::cos(theta) * std::sin(theta) * pi / steps / steps;
-        }
-    Scene scene = square(diffuse_material(vec3(1)));
-    scene.normals.assign(scene.positions.size(), vec3(dvec3(std::sin(tilt), 0, std::cos(tilt))));
-    scene.background = vec3(1);
-    const FilmImage film = render(scene, {.samples = 200, .max_path_length = 1, .backend = GetParam()});
-    expect_mean("radiance", estimate_mean(pixel_means(film, 0)), expected, 0.005);
-}
-
-TEST_P(Surface, ShowsDepthAlbedoAndEmission) {
-    Scene scene = square(diffuse_material({0.1f, 0.2f, 0.3f}, {4, 5, 6}), 3);
-    scene.camera.vertical_fov = 0.1f;
-    EXPECT_NEAR(radiance_at(render_view(scene, "depth"), 8, 8).r, 3, 1e-5);
-    EXPECT_EQ(radiance_at(render_view(scene, "albedo"), 8, 8), vec3(0.1f, 0.2f, 0.3f));
-    EXPECT_EQ(radiance_at(render_view(scene, "emission"), 8, 8), vec3(4, 5, 6));
-}
-
-TEST_P(Surface, ShowsItsTriangleAndInstance) {
-    // The diagonal from the lower left to the upper right corner divides the square into its two triangles.
-    Scene scene = square(diffuse_material(vec3(1)));
-    scene.camera.vertical_fov = 80;
-    const FilmImage triangles = render_view(scene, "triangles");
-    EXPECT_EQ(radiance_at(triangles, 1, 2), radiance_at(triangles, 4, 5));
-    EXPECT_EQ(radiance_at(triangles, 13, 14), radiance_at(triangles, 12, 10));
-    EXPECT_NE(radiance_at(triangles, 4, 5), radiance_at(triangles, 13, 14));
-    // Two instances of it beside each other.
-    Instance left = scene.instances.front(), right = left;
-    left.object_to_world[3] = {-1, 0, 0};
-    right.object_to_world[3] = {1, 0, 0};
-    scene.instances = {left, right};
-    scene.instance_meshes = {0, 0};
-    const FilmImage instances = render_view(scene, "instances");
-    EXPECT_EQ(radiance_at(instances, 2, 3), radiance_at(instances, 5, 12));
-    EXPECT_EQ(radiance_at(instances, 10, 3), radiance_at(instances, 13, 12));
-    EXPECT_NE(radiance_at(instances, 2, 3), radiance_at(instances, 13, 3));
-}
-
 TEST_P(Surface, IsHitInTheNearestOfSeveralLayers) {
     // Layers in an order that is not that of their depth.
     std::vector<Material> materials;

@@ -89,30 +89,6 @@ TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
     EXPECT_LT(worst_reciprocity, 2 * tolerance);
 }
 
-TEST(Brdf, ReflectsItsAlbedoAtNormalIncidence) {
-    // Midpoint rule for the integral over the hemisphere of BRDF · cos θ; around the normal the integrand
-    // depends on the inclination only.
-    for (const float exponent : {0.0f, 1.0f, 20.0f, 500.0f}) {
-        constexpr int steps = 1 << 14;
-        std::vector<BrdfInput> inputs;
-        for (int i = 0; i < steps; ++i)
-            inputs.push_back({{0, 0, 1},
-                              direction((i + 0.5) * 0.5 * pi / steps, 1),
-                              {0, 0, 1},
-                              glossy_material(exponent)});
-        const auto results = evaluate(inputs);
-        for (int channel = 0; channel < 3; ++channel) {
-            double albedo = 0;
-            for (int i = 0; i < steps; ++i)
-                albedo += results[static_cast<size_t>(i)].pi_brdf[channel] *
-                          std::sin((i + 0.5) * pi / steps) * 0.5 * pi / steps;
-            const Material& material = inputs.front().material;
-            EXPECT_NEAR(albedo, material.diffuse_albedo[channel] + material.specular_albedo[channel], 1e-4)
-                << "exponent " << exponent;
-        }
-    }
-}
-
 TEST(Brdf, CarriesNothingBelowTheSurface) {
     const std::vector<BrdfInput> inputs{{{0, 0, 1}, {0, 0.6f, -0.8f}, {0, 0, 1}, white_material()},
                                         {{0, 0, 1}, {0, 1, 0}, {0, 0, 1}, white_material()},
@@ -124,26 +100,6 @@ TEST(Brdf, CarriesNothingBelowTheSurface) {
     EXPECT_EQ(results[1].is_above, 0u);
     EXPECT_EQ(results[2].is_above, 1u);
     EXPECT_EQ(results[3].is_above, 0u);
-}
-
-TEST(Brdf, IsIntegratedByTheEstimatorUnderObliqueLight) {
-    // The integral of BRDF · cos θ over the hemisphere for light that leaves at 60 degrees, by quadrature and
-    // by the estimator of chapter 1 under a white sky.
-    constexpr int steps = 1000;
-    const Surface surface{{0, 0, 1}, direction(pi / 3, 0), glossy_material(10)};
-    double albedo = 0;
-    for (int i = 0; i < steps; ++i)
-        for (int j = 0; j < steps; ++j) {
-            const double theta = (i + 0.5) * 0.5 * pi / steps;
-            const vec3 in = direction(theta, (j + 0.5) * 2 * pi / steps);
-            albedo += pi_brdf({surface.normal, in, surface.out_direction, surface.material}, 0) *
-                      std::cos(theta) * std::sin(theta) * pi / steps / steps;
-        }
-    std::vector<double> weights;
-    for (const uint32_t run : {41, 42, 43})
-        for (const Bounce& bounce : sample_bounces("01_uniform_sampling", surface, 4'000'000, run))
-            weights.push_back(bounce.weight);
-    expect_mean("reflected radiance", estimate_mean(weights), albedo, 0.005);
 }
 
 // Directions of chapter 7's bounces that follow the whole BRDF, on materials between all diffuse and all

@@ -163,21 +163,5 @@ TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndScramblesAreIndependent) {
                        }));
 }
 
-// What the chapter's page says of functions of two pairs: in the worst case neighbours agree.
-TEST(LowDiscrepancyPoints, ProductsOfSignsOfTwoPairsHaveTwiceTheVarianceOfRandomOnes) {
-    constexpr uint32_t pixels = 4096, count = 64;
-    const Points points(pixels, count, 2 * count, 150);
-    const auto sign = [&](uint32_t p, uint32_t i, uint32_t pair) {
-        return points.number(p, i, pair, 0) < 0.5 ? -1.0 : 1.0;
-    };
-    std::vector<double> squares;  // of a pixel's sum; for random numbers their mean is the count
-    for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
-        double sum = 0;
-        for (uint32_t i = 0; i < count; ++i) sum += sign(pixel, i, 1) * sign(pixel, i, 2);
-        squares.push_back(sum * sum / count);
-    }
-    expect_mean("variance over that of random numbers", estimate_mean(squares), 2, 0.2);
-}
-
 }  // namespace
 }  // namespace lab

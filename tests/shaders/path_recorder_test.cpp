@@ -179,26 +179,6 @@ TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
     EXPECT_EQ(lost > 3, has_roulette);
 }
 
-TEST(PathRecorder, FollowsATreeThatSplitsAtEveryHit) {
-    RenderSettings settings = settings_for("04_splitting");
-    settings.estimator = every_hit_estimator();
-    settings.roulette_start = no_roulette;
-    settings.max_path_length = 4;
-    size_t largest = 0;
-    for (const auto& [pixel, sample, path] :
-         record_paths(closed_box(diffuse_material(vec3(0.5f))), settings, 4)) {
-        std::vector<uint32_t> lengths;
-        for (const PathVertex& vertex : path.vertices) {
-            lengths.push_back(vertex.parent < 0 ? 0 : lengths[static_cast<size_t>(vertex.parent)] + 1);
-            EXPECT_LT(
-                glm::length(vertex.throughput - vec3(std::pow(0.5f, static_cast<float>(lengths.back())))),
-                1e-6f);
-        }
-        largest = std::max(largest, path.vertices.size());
-    }
-    EXPECT_EQ(largest, 1u + 2 + 4 + 8 + 16);
-}
-
 TEST(PathRecorder, SaysWhetherThereIsAThroughputToFollow) {
     RenderSettings settings = settings_for("02_cosine_sampling");
     const Scene scene = closed_box(diffuse_material(vec3(0.5f)));

@@ -95,6 +95,12 @@ TEST(StartStates, AreDistinct) {
         streams.push_back({i >> 2, i & 3, key});
         streams.push_back({i & 7, 4 + (i >> 3), key});
     }
+    // And where 32 bits end: the last pixels of the largest image, the middle and the last of all samples.
+    for (uint32_t i = 0; i < 1 << 15; ++i)
+        for (const uint32_t pixel : {(1u << 28) - 1, (1u << 28) - 2}) {
+            streams.push_back({pixel, 0x7fffffffu + i, key});
+            streams.push_back({pixel, 0xffffffffu - i, key});
+        }
     auto states = run_shader<RandomState>({"random.comp", {"START_STATES"}}, streams);
     for (size_t i = 0; i < streams.size(); ++i) {
         const auto [pixel, sample, stream_key] = streams[i];

@@ -38,48 +38,6 @@ TEST(UniformAngles, FollowTheirDensity) {
     }
 }
 
-TEST(UniformAngles, HaveUniformInclinationAndAzimuth) {
-    const dvec3 normal = test_normals()[2];
-    const Frame frame(normal);
-    std::vector<double> inclinations, azimuths;
-    for (const Bounce& bounce : sample(normal, 1'000'000, 11)) {
-        // At the horizon rounding may bring a direction below the surface, once in millions; it is dropped.
-        if (bounce.ray_count < 2) continue;
-        const Angles angles = frame.angles(bounce.direction);
-        inclinations.push_back(std::atan2(angles.sin_theta, angles.cos_theta) / (0.5 * pi));
-        azimuths.push_back((angles.phi + pi) / (2 * pi));
-    }
-    expect_uniform("inclination", inclinations, 0.01);
-    expect_uniform("azimuth", azimuths, 0.01);
-}
-
-// Where rounding errors would show first.
-constexpr double largest_number = 1 - 0x1p-24;
-
-TEST(UniformAngles, AreThoseOfTheRandomNumbers) {
-    std::vector<std::array<double, 2>> numbers;
-    for (const double x : {0.0, 0x1p-24, 0.25, 0.5, 0.75, largest_number})
-        for (const double y : {0.0, 0x1p-24, 0.5, largest_number}) numbers.push_back({x, y});
-    for (int x = 0; x < 128; ++x)
-        for (int y = 0; y < 128; ++y) numbers.push_back({(x + 0.37) / 128, (y + 0.61) / 128});
-    const auto bounces = bounces_at(chapter, {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers);
-    double worst = 0;
-    for (size_t i = 0; i < numbers.size(); ++i) {
-        const double phi = 2 * pi * numbers[i][0] - pi, theta = 0.5 * pi * numbers[i][1];
-        if (bounces[i].ray_count != 2) {
-            EXPECT_EQ(numbers[i][1], largest_number) << "only a direction along the surface may be dropped";
-            continue;
-        }
-        const dvec3 expected(std::cos(phi) * std::sin(theta), std::sin(phi) * std::sin(theta),
-                             std::cos(theta));
-        worst = std::max(worst, glm::length(dvec3(bounces[i].direction) - expected));
-        ASSERT_GE(bounces[i].weight, 0.0f);
-    }
-    record("largest_error_of_a_direction", "%.1e", worst);
-    // Each component is a product of at most two of the four sines and cosines.
-    EXPECT_LT(worst, 3 * test_arithmetic().sine + 1e-6);
-}
-
 TEST(UniformAngles, HaveTheDensityOfTheJacobian) {
     // |det J| of the map from random numbers to directions is the solid angle per unit area: 1 / density = π²
     // sin θ. Central differences over 2^-8 have an error of 1e-4 or less.

@@ -184,22 +184,6 @@ TEST(LightTable, NeverChoosesDegenerateTriangles) {
         EXPECT_EQ(probabilities[i], lights[i].triangle == 1 ? 1 : 0) << "light " << i;
 }
 
-// Rays find one of them only. The first stands in the table, and the others keep their order.
-TEST(LightTable, CountsOneOfSeveralInTheSamePlace) {
-    Scene scene = make_lights({1, 3, 2}, {vec3(1), vec3(2), vec3(1)});
-    const uvec3 corners = scene.triangles[2];
-    scene.triangles[1] = {corners.y, corners.z, corners.x};  // the third once more, from another corner
-    add_instance(scene, mat4x3(1));
-    add_instance(scene, mat4x3(glm::translate(glm::mat4(1), vec3(0, 0, 1))));
-    add_instance(scene, mat4x3(1));
-    const auto lights = build_light_table(scene).triangles;
-    ASSERT_EQ(lights.size(), 4u);
-    for (uint32_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(lights[i].instance, i / 2);
-        EXPECT_EQ(lights[i].triangle, i % 2);
-    }
-}
-
 TEST(LightTable, IsEmptyWithoutLights) {
     Scene scene = make_lights({1, 1}, {vec3(0), vec3(0)});
     add_instance(scene, mat4x3(1));
@@ -211,26 +195,6 @@ TEST(LightTable, RefusesMoreLightsThanItCanHold) {
     Scene scene = make_lights(std::vector<float>(1000, 1), std::vector<vec3>(1000, vec3(1)));
     for (int i = 0; i < (1 << 24) / 1000 + 1; ++i) add_instance(scene, mat4x3(1));
     EXPECT_USER_ERROR(build_light_table(scene), "16778000 emissive triangles");
-}
-
-// With powers over 24 orders of magnitude each light has a probability, and its weight makes up for it.
-TEST(LightTable, HoldsVeryDifferentPowers) {
-    std::vector<float> sizes;
-    std::vector<vec3> emissions;
-    for (int exponent = -12; exponent <= 12; exponent += 3) {
-        sizes.push_back(1);
-        emissions.emplace_back(std::pow(10.0f, static_cast<float>(exponent)));
-    }
-    Scene scene = make_lights(sizes, emissions);
-    add_instance(scene, mat4x3(1));
-    const auto lights = build_light_table(scene).triangles;
-    ASSERT_EQ(lights.size(), sizes.size());
-    const auto probabilities = probabilities_of(lights);
-    for (size_t i = 0; i < lights.size(); ++i) {
-        EXPECT_GT(probabilities[i], 0) << "light " << i;
-        EXPECT_TRUE(std::isfinite(lights[i].inverse_density));
-        EXPECT_NEAR(area_in_table(lights, i), 1, 1e-6) << "light " << i;
-    }
 }
 
 }  // namespace

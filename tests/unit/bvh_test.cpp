@@ -170,43 +170,6 @@ TEST(BvhBuilder, FindsGoodSplits) {
     EXPECT_LT(TreeWalk(build_bvh(random_triangles(50'000, 0.01f))).surface_area_cost(), 50);
 }
 
-// What splits a range later rests on its bounds. Wider ones keep the tree valid and make it a little worse.
-void expect_exact_bounds(const bvh::Range& range) {
-    bvh::Extent extent;
-    for (const bvh::Primitive& primitive : range.primitives) extent.add(primitive);
-    for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(range.box.low[axis], extent.box.low[axis]);
-        EXPECT_EQ(range.box.high[axis], extent.box.high[axis]);
-        EXPECT_EQ(range.places.low[axis], extent.places.low[axis]);
-        EXPECT_EQ(range.places.high[axis], extent.places.high[axis]);
-    }
-}
-
-TEST(BvhBuilder, SplitsKnowTheirBoundsExactly) {
-    constexpr size_t count = 3000;
-    std::vector<bvh::Primitive> primitives, room(count);
-    bvh::Extent extent;
-    for (const BvhTriangle& triangle : random_triangles(count, 0.1f)) {
-        Bounds bounds;
-        for (int k = 0; k < 3; ++k) bounds.grow({triangle.x[k], triangle.y[k], triangle.z[k]});
-        extent.add(primitives.emplace_back(bounds, triangle.triangle));
-    }
-    bvh::Range all{primitives, room.data(), extent.box, extent.places, extent.box.half_area()};
-    const auto expect_exact_halves = [](const bvh::Range& range) {
-        const auto halves = bvh::split(range);
-        ASSERT_TRUE(halves.has_value());
-        EXPECT_EQ((*halves)[0].primitives.size() + (*halves)[1].primitives.size(), range.primitives.size());
-        for (const bvh::Range& half : *halves) expect_exact_bounds(half);
-    };
-    expect_exact_halves(all);
-    all.depth = 1000;  // too deep for planes
-    expect_exact_halves(all);
-    all.depth = 0;
-    const bvh::LargeRanges large(all, count / 3 * 2);  // two pieces, and one split
-    ASSERT_NE(all.halves, nullptr);
-    for (const bvh::Range& half : *all.halves) expect_exact_bounds(half);
-}
-
 Scene two_instances() {
     Scene scene;
     scene.file = "two.json";

@@ -45,17 +45,6 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
     }
 }
 
-TEST(Chapter, HasDefaults) {
-    const TestFolder folder;
-    folder.write("chapter.json", "{\"title\": \"A title\"}");
-    const Chapter chapter = load_chapter(folder.path().string());
-    EXPECT_EQ(chapter.name, folder.path().string());
-    EXPECT_EQ(chapter.title, "A title");
-    EXPECT_EQ(chapter.default_scene, "cornell_box");
-    EXPECT_FALSE(chapter.unlimited_path_length || chapter.dielectrics);
-    EXPECT_TRUE(chapter.options.empty() && chapter.strategies.empty());
-}
-
 TEST(Chapter, MistakesAreNamed) {
     const TestFolder folder;
     const auto load = [&] { load_chapter(folder.path().string()); };

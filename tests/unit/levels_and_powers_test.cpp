@@ -89,52 +89,6 @@ TEST(WelchTest, HasItsLevelAndItsPower) {
     }
 }
 
-TEST(NormalTest, HasItsLevelAndItsPower) {
-    std::normal_distribution<double> normal;
-    expect_share("level", 50'000, level, level,
-                 [&](Generator& generator) { return normal_p_value(normal(generator)) < level; });
-    const double bias = smallest_detectable_bias(1, significance, power);
-    expect_share("power", 50'000, power, power, [&](Generator& generator) {
-        return normal_p_value(bias + normal(generator)) < significance;
-    });
-}
-
-// Counts of a million samples. Cells have equal probabilities, but for a relative error of this root mean
-// square.
-std::vector<uint64_t> draw_counts(Generator& generator, size_t cells, double error) {
-    uint64_t samples = 1'000'000;
-    const double scale = std::sqrt(static_cast<double>(cells) / static_cast<double>(cells / 2 * 2));
-    std::vector<uint64_t> counts;
-    double rest = 1;
-    for (size_t i = 0; i < cells; ++i) {
-        const double sign = i == cells / 2 * 2 ? 0 : i % 2 == 0 ? 1 : -1;
-        const double probability = (1 + sign * scale * error) / static_cast<double>(cells);
-        counts.push_back(i + 1 == cells ? samples
-                                        : std::binomial_distribution<uint64_t>(
-                                              samples, std::min(probability / rest, 1.0))(generator));
-        samples -= counts.back();
-        rest -= probability;
-    }
-    return counts;
-}
-
-TEST(ChiSquareTest, HasItsLevelAndItsPower) {
-    for (const size_t cells : {2u, 4u, 21u}) {
-        const std::vector<double> even(cells, 1 / static_cast<double>(cells));
-        const std::string what = std::to_string(cells - 1) + " degrees of freedom";
-        const int trials = cells < 20 ? 20'000 : 5'000;
-        expect_share("level, " + what, trials, level, level, [&](Generator& generator) {
-            return chi_square_test(draw_counts(generator, cells, 0), even).p_value < level;
-        });
-        Generator generator(2);
-        const double error = chi_square_test(draw_counts(generator, cells, 0), even)
-                                 .smallest_detectable_error(significance, power);
-        expect_share("power, " + what, trials, power, power, [&](Generator& generator) {
-            return chi_square_test(draw_counts(generator, cells, error), even).p_value < significance;
-        });
-    }
-}
-
 TEST(ChiSquareTest, KnowsTheNoncentralDistribution) {
     // Noncentralities of SciPy. With one degree of freedom it is the test of a normal number.
     ChiSquareTest test;
@@ -166,22 +120,6 @@ TEST(KolmogorovSmirnov, HasItsLevelAndItsPower) {
     const double distance = kolmogorov_smirnov_detectable_distance(200, significance, power);
     expect_share("power", 3'000, power, 1,
                  [&](Generator& generator) { return p_value(generator, 200, distance) < significance; });
-}
-
-TEST(Correlation, HasTheStandardDeviationOfIndependentSeries) {
-    constexpr int trials = 5'000;
-    constexpr size_t count = 50;
-    Generator generator(1);
-    double sum_of_squares = 0;
-    for (int trial = 0; trial < trials; ++trial) {
-        const auto first = normal_numbers(generator, count, 1, 2),
-                   second = normal_numbers(generator, count, 3, 4);
-        const double r = correlation(std::vector<float>(first.begin(), first.end()),
-                                     std::vector<float>(second.begin(), second.end()));
-        sum_of_squares += r * r;
-    }
-    // 1 / (n - 1) exactly, with a standard deviation of √2 / √trials.
-    EXPECT_NEAR(sum_of_squares / trials * (count - 1), 1, 5 * std::sqrt(2.0 / trials));
 }
 
 }  // namespace

@@ -161,19 +161,6 @@ TEST(LiveVerdict, TakesImagesLargerThanTheReference) {
     EXPECT_THROW(LiveVerdict(flat_reference(), {64, 32}), UserError);
 }
 
-TEST(LiveVerdict, ReadsTheFilmWhenSamplesDouble) {
-    LiveVerdict verdict(flat_reference(), glm::uvec2(extent));
-    FakeRender render(1, unbiased);
-    std::vector<uint32_t> reads;
-    while (verdict.next_samples() <= 1024) {
-        reads.push_back(verdict.next_samples());
-        verdict.add(render.advance(verdict.next_samples()));
-    }
-    EXPECT_EQ(reads, (std::vector<uint32_t>{128, 256, 512, 1024}));
-    EXPECT_EQ(verdict.verdict()->samples, 1024u);
-    EXPECT_EQ(verdict.verdict()->differences[0].degrees_of_freedom, extent * extent - 1);
-}
-
 TEST(LiveVerdict, SaysNothingOfATileOfOnePixel) {
     // Tiles have 8 x 8 pixels, and a single one has no spread.
     Reference reference{{9, 9, std::vector<float>(3 * 9 * 9, 0.5f)}, std::nullopt, {}};

@@ -94,21 +94,6 @@ TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {
     wait_for_verdict();
 }
 
-TEST_F(InsideTest, AVerdictNeedsNoSecondLookAtTheSceneFile) {
-    fs::copy(scenes.parent_path() / "meshes", folder_.path() / "meshes");
-    fs::create_directory(folder_.path() / "scenes");
-    fs::copy_file(scenes / "cornell_box.json", folder_.path() / "scenes" / "cornell_box.json");
-    Options options = options_with_reference();
-    options.scene.file = folder_.path() / "scenes" / "cornell_box.json";
-    open(options);
-    wait_for_verdict();
-    fs::remove_all(folder_.path() / "scenes");
-    session().restart();
-    run_frames(1);
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
-    EXPECT_NE(session().verdict(), nullptr) << session().verdict_text();
-}
-
 TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     open(options_with_reference());
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
@@ -135,7 +120,6 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     session().change(options);
     wait_until("many samples", [&] { return session().samples() >= 8 && inspection().has_hemisphere(); });
     wait_until("the hemisphere", [&] { return inspection().hemisphere().samples() >= 2; });
-    take_screenshot("viewer_inside");
 }
 
 TEST_F(InsideTest, AnEstimatorWithoutRaysHasAPathWithoutVertices) {
@@ -149,33 +133,6 @@ TEST_F(InsideTest, AnEstimatorWithoutRaysHasAPathWithoutVertices) {
     EXPECT_TRUE(inspection().path()->vertices.empty());
     EXPECT_EQ(inspection().path()->radiance, vec3(0.25f));
     EXPECT_FALSE(inspection().has_hemisphere());
-}
-
-TEST_F(InsideTest, AShaderThatCannotBeRecordedDoesNotSpeakForTheNext) {
-    const fs::path shader = folder_.path() / "path_trace.glsl";
-    const std::string good = "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.25); }\n";
-    // Renders, but what records a throughput expects three numbers.
-    const std::string bad = "void f() {\n    vec2 throughput;\n    throughput = vec2(1.0);\n}\n" + good;
-    write(shader, good);
-    chapter_ = {.name = folder_.path().string(), .title = "Constant"};
-    open(make_options());
-    const auto show = [&](const std::string& text) {
-        const uint64_t before = session().build().shader_hash;
-        write(shader, text);
-        while (session().build().shader_hash == before || session().reduction() > 1)
-            session().update(0.01, false);
-    };
-    show(bad);
-    Inspection inspection(*device_);
-    inspection.select({0, 0});
-    inspection.update(session(), 0.01);
-    ASSERT_TRUE(inspection.is_building());
-    std::this_thread::sleep_for(std::chrono::seconds(3));  // until it has failed
-    show(good);
-    const auto start = Clock::now();
-    while (!inspection.path() && Clock::now() - start < std::chrono::seconds(30))
-        inspection.update(session(), 0.01);
-    EXPECT_TRUE(inspection.path()) << inspection.message();
 }
 
 TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor) {
@@ -206,48 +163,6 @@ TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor) 
     expect_the_sample_of_the_render("a background");
 }
 
-TEST_F(InsideTest, ASecondRenderIsGivenUpWithoutWaiting) {
-    // A sheet of so many triangles that its tree takes a while.
-    constexpr int size = 250;
-    std::string mesh;
-    for (int y = 0; y <= size; ++y)
-        for (int x = 0; x <= size; ++x)
-            mesh +=
-                "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(x * y % 7) + "\n";
-    for (int y = 0; y < size; ++y)
-        for (int x = 1; x <= size; ++x) {
-            const int corner = y * (size + 1) + x;
-            mesh += "f " + std::to_string(corner) + " " + std::to_string(corner + 1) + " " +
-                    std::to_string(corner + size + 2) + " " + std::to_string(corner + size + 1) + "\n";
-        }
-    write(folder_.path() / "sheet.obj", mesh);
-    Options options = make_options();
-    options.scene.file = folder_.path() / "sheet.obj";
-    open(options);
-    Comparison& comparison = viewer_->comparison();
-    const auto seconds_of = [](const auto& act) {
-        const auto start = Clock::now();
-        act();
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    };
-    const auto start = [&] { comparison.start(session(), chapter_.name); };
-    start();
-    wait_until("both", [&] { return comparison.is_active(); });
-    const double build_seconds = seconds_of([&] {
-        start();
-        wait_until("both", [&] { return comparison.is_active(); });
-    });
-    start();
-    EXPECT_LT(seconds_of([&] { comparison.stop(); }), 0.2 * build_seconds) << "of the first build";
-    start();
-    wait_until("both", [&] { return comparison.is_active(); });
-    options = session().options();
-    options.scene.specular = true;
-    session().change(options);
-    run_frames(1);
-    EXPECT_LT(seconds_of([&] { comparison.stop(); }), 0.2 * build_seconds);
-}
-
 TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
     open(options_with_reference());
     Comparison& comparison = viewer_->comparison();
@@ -264,7 +179,6 @@ TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
     EXPECT_LT(difference->standard_error, 0.01);
     EXPECT_LT(std::abs(difference->z()), 5) << difference->value;
     ASSERT_TRUE(comparison.speedup(session()));
-    take_screenshot("viewer_comparison");
 
     // The second follows the camera, and equal time means equal time.
     comparison.equal = Equal::time;

@@ -39,7 +39,6 @@ TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
     EXPECT_EQ(a.record.backend, b.record.backend);
     EXPECT_EQ(a.record.estimator_hash, b.record.estimator_hash);
     EXPECT_EQ(a.record.rays, b.record.rays);
-    take_screenshot("viewer");
 }
 
 TEST_F(ViewerTest, KeysMoveTheCameraAndRestartWithinAFrame) {
@@ -93,18 +92,6 @@ TEST_F(ViewerTest, TypingIntoAFieldDoesNotMoveTheCamera) {
     EXPECT_NE(session().camera().position, before.position) << "a click beside the field gives the keys back";
 }
 
-TEST_F(ViewerTest, AnotherSizeOfTheWindowKeepsTheSamples) {
-    open(make_options());
-    double samples = session().samples();
-    for (const auto& [width, height] : {std::pair{1100, 700}, {500, 900}, {320, 240}, {900, 640}}) {
-        glfwSetWindowSize(window_->handle(), width, height);
-        wait_until("resized", [&] { return viewer_->screen().size() == uvec2(width, height); });
-        run_frames(2);
-        EXPECT_GT(session().samples(), samples);
-        samples = session().samples();
-    }
-}
-
 TEST_F(ViewerTest, EveryOptionTakesEffect) {
     open(make_options());
     const auto parameters = [&] { return session().build().job.parameters; };
@@ -152,18 +139,6 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     change([](Options& options) { options.image.view = nullptr; });
 }
 
-TEST_F(ViewerTest, OptionsThatContradictEachOtherAreTakenBack) {
-    open(make_options());
-    Options options = session().options();
-    options.estimator.split_every_hit = true;
-    options.light.max_path_length = 12;
-    session().change(options);
-    finish_build();
-    EXPECT_NE(session().message().find("--max-path-length"), std::string::npos) << session().message();
-    EXPECT_FALSE(session().options().estimator.split_every_hit);
-    wait_until("samples", [&] { return session().samples() > 1; });
-}
-
 TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
     open(make_options());
     drop(scenes / "furnace.json");
@@ -182,7 +157,6 @@ TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
         EXPECT_EQ(session().options().scene.file, session().build().job.options.scene.file);
         EXPECT_EQ(session().camera().position, camera.position);
     }
-    take_screenshot("viewer_refused_scene");
     const double samples = session().samples();
     run_frames(3);
     EXPECT_GT(session().samples(), samples) << "the last scene goes on";
@@ -225,7 +199,6 @@ TEST_F(ViewerTest, AChangedShaderIsShownAndABrokenOneReported) {
     EXPECT_TRUE(shows(0, 1, 0)) << "the last good picture stays";
     run_frames(3);
     EXPECT_NE(session().message(), "") << "the message stays as long as the mistake does";
-    take_screenshot("viewer_broken_shader");
 
     write(shader, constant("included"));
     wait_until("blue", [&] { return shows(0, 0, 1); });
@@ -311,21 +284,6 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken) {
     RecordProperty("chapter_reload_seconds", std::to_string(seconds));
 }
 
-TEST_F(ViewerTest, AGoodShaderIsShownThoughTheSceneThatCameWithItIsRefused) {
-    const fs::path shader = folder_.path() / "path_trace.glsl";
-    chapter_ = {.name = folder_.path().string(), .title = "Reload"};
-    const std::string black = "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.0); }\n";
-    write(shader, black);
-    open(make_options());
-    write(shader, "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.5); }\n");
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the next frame looks for changes
-    session().open_scene(folder_.path() / "missing.json");
-    run_frames(1);
-    ASSERT_TRUE(session().is_building());
-    wait_until("grey",
-               [&] { return session().samples() >= 1 && saved_film("shown.exr").mean_radiance()[0] == 0.5; });
-}
-
 TEST_F(ViewerTest, PicturesOfMoreBlocksThanADispatchMayHaveAreShown) {
     write(folder_.path() / "path_trace.glsl",
           "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(1.0, 0.0, 0.0); }\n");
@@ -360,7 +318,6 @@ TEST_F(ViewerTest, PausesAndRestarts) {
     wait_until("a first sample of the paused picture", [&] { return session().samples() >= 1; });
     press(GLFW_KEY_TAB);  // without the controls
     run_frames(2);
-    take_screenshot("viewer_without_controls");
 }
 
 }  // namespace
