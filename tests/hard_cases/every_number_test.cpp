@@ -34,11 +34,11 @@ void for_all_numbers(const Check& check) {
 TEST(EveryNumber, MakesACosineSampleAboveTheHorizon) {
     double lowest = 1, worst_length = 0;
     for_all_numbers([&](const auto& numbers) {
-        std::vector<HemisphereQuery> queries;
-        for (const auto& [x, y] : numbers) queries.push_back({vec2(x, y)});
-        for (const auto& answer : evaluate_hemisphere("02_cosine_sampling", queries)) {
-            lowest = std::min(lowest, double{answer.direction.z});
-            worst_length = std::max(worst_length, std::abs(glm::length(dvec3(answer.direction)) - 1));
+        std::vector<vec2> pairs;
+        for (const auto& [x, y] : numbers) pairs.emplace_back(x, y);
+        for (const vec3& direction : sample_hemisphere("02_cosine_sampling", pairs)) {
+            lowest = std::min(lowest, double{direction.z});
+            worst_length = std::max(worst_length, std::abs(glm::length(dvec3(direction)) - 1));
         }
     });
     record("lowest_cosine", "%.3g", lowest);

@@ -1,5 +1,4 @@
-// Chapter 2's sampling of directions with density cos θ / π per solid angle, and its copy for the later
-// chapters.
+// Cosine sampling: density cos θ / π with respect to solid angle.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -8,7 +7,6 @@
 #include "support/device_arithmetic.h"
 #include "support/directions.h"
 #include "support/expect_statistics.h"
-#include "support/hemisphere.h"
 
 namespace lab {
 namespace {
@@ -35,31 +33,6 @@ TEST(CosineSampling, FollowsItsDensity) {
                                 histogram(bounces, Frame(normal), rows, columns),
                                 cell_probabilities(rows, columns, integral), 0.015);
     }
-}
-
-TEST(CosineSampling, HasTheCellProbabilitiesOfTheDensityFunction) {
-    // get_hemisphere_density() integrated over the histogram's cells (midpoint rule: it is linear in cos θ)
-    // equals the exact probabilities, so sampler and density cannot be wrong together. Below the horizon it
-    // is 0.
-    constexpr size_t rows = 51, columns = 8;
-    std::vector<HemisphereQuery> queries;
-    for (const double side : {1.0, -1.0})
-        for (size_t row = 0; row < rows; ++row)
-            for (size_t column = 0; column < columns; ++column) {
-                const double c = (static_cast<double>(row) + 0.5) / rows, s = std::sqrt(1 - c * c),
-                             phi = 2 * pi * (static_cast<double>(column) + 0.5) / columns;
-                queries.push_back({vec2(0), vec3(dvec3(std::cos(phi) * s, std::sin(phi) * s, side * c))});
-            }
-    const auto answers = evaluate_hemisphere(chapter_2, queries);
-    const auto exact = cell_probabilities(rows, columns, [](double c) { return c * c; });
-    const double solid_angle = 2 * pi / (rows * columns);
-    double sum = 0;
-    for (size_t i = 0; i < exact.size(); ++i) {
-        EXPECT_NEAR(answers[i].density * solid_angle / exact[i], 1, 1e-6);
-        EXPECT_EQ(answers[exact.size() + i].density, 0);
-        sum += answers[i].density * solid_angle;
-    }
-    EXPECT_NEAR(sum, 1, 1e-6);
 }
 
 TEST(CosineSampling, WeightsEveryDirectionWithTheAlbedo) {

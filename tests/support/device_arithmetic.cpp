@@ -155,13 +155,13 @@ double uniform_angles_error(const Device& device) {
 }
 
 double cosine_sampling_error(const Device& device) {
-    std::vector<HemisphereQuery> queries;
-    for (const auto& [x, y] : random_numbers()) queries.push_back({vec2(x, y)});
-    const auto answers = evaluate_hemisphere("02_cosine_sampling", queries, device);
+    std::vector<vec2> numbers;
+    for (const auto& [x, y] : random_numbers()) numbers.emplace_back(x, y);
+    const auto directions = sample_hemisphere("02_cosine_sampling", numbers, device);
     double worst = 0;
-    for (size_t i = 0; i < queries.size(); ++i) {
-        const double phi = 2 * pi * queries[i].numbers.x - pi, y = queries[i].numbers.y;
-        worst = std::max(worst, glm::distance(dvec3(answers[i].direction),
+    for (size_t i = 0; i < numbers.size(); ++i) {
+        const double phi = 2 * pi * numbers[i].x - pi, y = numbers[i].y;
+        worst = std::max(worst, glm::distance(dvec3(directions[i]),
                                               direction(std::sqrt(1 - y), std::sqrt(y), phi)));
     }
     return worst;

@@ -4,15 +4,11 @@
 
 namespace lab {
 
-std::vector<HemisphereAnswer> evaluate_hemisphere(const std::string& chapter,
-                                                  const std::vector<HemisphereQuery>& queries,
-                                                  const Device& device) {
-    const Estimator estimator = chapter_estimator(chapter);
-    TestShader shader{.name = "hemisphere.comp",
-                      .defines = estimator.defines,
-                      .named_includes = named_includes(estimator)};
-    if (chapter == "02_cosine_sampling") shader.defines.emplace_back("DENSITY");
-    return run_shader<HemisphereAnswer>(shader, queries, device);
+std::vector<vec3> sample_hemisphere(const std::string& chapter, const std::vector<vec2>& numbers,
+                                    const Device& device) {
+    const TestShader shader{.name = "hemisphere.comp",
+                            .named_includes = named_includes(chapter_estimator(chapter))};
+    return run_shader<vec3>(shader, numbers, device);
 }
 
 }  // namespace lab

@@ -120,13 +120,9 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     EXPECT_LT(one, all);
     change([](Options& options) { options.light.only_path_length.reset(); });
     change([](Options& options) { options.estimator.strategy = Strategy::bounces; });
-    EXPECT_NE(session().build().job.record.settings.find("--light-sampling off"), std::string::npos);
-    change([](Options& options) {
-        options.estimator.strategy = Strategy::both, options.estimator.split_every_hit = true;
-    });
-    EXPECT_NE(session().build().job.record.settings.find("--split-every-hit"), std::string::npos);
+    EXPECT_NE(session().build().job.record.settings.find("--strategy bounces"), std::string::npos);
     const double black_sky = change(
-        [](Options& options) { options.estimator.split_every_hit = false, options.scene.specular = true; });
+        [](Options& options) { options.estimator.strategy.reset(), options.scene.specular = true; });
     const double sky = change([](Options& options) { options.light.background = {1, 2, 3}; });
     EXPECT_EQ(parameters().background, vec3(1, 2, 3));
     EXPECT_GT(sky, 1.2 * black_sky);
