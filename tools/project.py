@@ -28,6 +28,11 @@ class UserError(Exception):
     """Bad input: one line that says what is wrong, where, and what to do."""
 
 
+def name_of(number):
+    """The name of a chapter, which stays where its number changes."""
+    return CHAPTERS[number][3:]
+
+
 def chapter_named(name):
     """The folder of the chapter with this name, whatever its number."""
     return next(folder for folder in CHAPTERS.values() if folder[3:] == name)
@@ -42,6 +47,11 @@ def original(number):
     """The number of the chapter that this one is a copy of, by its title, or its own."""
     title = description(CHAPTERS[number])["title"]
     return next(other for other in CHAPTERS if description(CHAPTERS[other])["title"] == title)
+
+
+def course():
+    """The numbers of all chapters that are no copies of another."""
+    return [number for number in CHAPTERS if original(number) == number]
 
 
 def has_low_discrepancy(program):
@@ -156,8 +166,19 @@ def write_bytes(file, content):
     os.replace(unfinished, file)
 
 
-def write_json(file, content):
-    write_bytes(file, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
+def write_json(file, content, depth=None):
+    """Writes JSON whose lists and objects have a line for each item; those that lie as deep as `depth` are on one line."""
+    write_bytes(file, (json_lines(content, depth) + "\n").encode())
+
+
+def json_lines(content, depth, indent="\n"):
+    if depth == 0 or not content or not isinstance(content, (dict, list)):
+        return json.dumps(content, ensure_ascii=False)
+    indent += " "
+    lines = [json_lines(item, depth and depth - 1, indent) for item in (content.values() if isinstance(content, dict) else content)]
+    if isinstance(content, dict):
+        lines = [f"{json.dumps(key, ensure_ascii=False)}: {line}" for key, line in zip(content, lines)]
+    return "[{"[isinstance(content, dict)] + ",".join(indent + line for line in lines) + indent[:-1] + "]}"[isinstance(content, dict)]
 
 
 def load_records(folder):

@@ -86,7 +86,7 @@ Chapter load_chapter(const std::string& name) {
         {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length",
          "dielectrics", "low_discrepancy", "options", "check"});
     // What ./lab check renders: tools/check/grading.py reads it.
-    if (root.has("check")) root.object("check", {"samples", "references", "gains_over"});
+    if (root.has("check")) root.object("check", {"samples", "references", "other_references", "gains_over"});
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),

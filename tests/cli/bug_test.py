@@ -43,15 +43,15 @@ class BugTest(ProgramTest):
             self.assertEqual(len({mistakes.own_shader(chapter).read_text(encoding="utf-8"), *texts}), 1 + len(texts))
 
     def test_a_place_that_is_gone_is_told(self):
-        moved = {"name": "moved", "check": {"plantings": [{"chapters": [3], "find": "no such line", "replace": ""}]}}
-        with mock.patch.object(mistakes, "read_json", return_value=[moved]), self.assertRaisesRegex(mistakes.Stale, "moved in chapter 3"):
+        moved = {"name": "moved", "find": "no such line", "replace": ""}
+        with mock.patch.object(mistakes, "read_json", return_value=[moved]), self.assertRaisesRegex(mistakes.Stale, "moved in chapters/03"):
             mistakes.bugs_of(3)
 
     def test_every_answer_names_what_catches_the_bug(self):
         text = "\n".join(file.read_text(encoding="utf-8") for file in (PROJECT / "tests").rglob("*.cpp"))
         known = set(re.findall(r"^TEST(?:_[PF])?\((\w+), (\w+)\)", text, re.MULTILINE))
         for chapter in CHAPTERS:
-            checked = {planted["name"] for number, planted, _ in mistakes.catalogue() if number == chapter}
+            checked = {found.mistake["name"] for found in mistakes.catalogue() if found.chapter == chapter}
             for found in mistakes.bugs_of(chapter):
                 test, command = bug.caught_by(found)
                 if test:

@@ -4,7 +4,6 @@ What is checked: a link to a source file whose text is `code` quotes that file; 
 `Suite.Test` is a test; a line or a `piece` that starts with ./lab is a command.
 """
 
-import json
 import os
 import re
 import shlex
@@ -21,7 +20,7 @@ from docs import numerics
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
-COURSE = [CHAPTERS[exercise["chapter"]] for exercise in json.loads((TOOLS / "course/exercises.json").read_text(encoding="utf-8"))]
+COURSE = [name for name in CHAPTERS.values() if (ROOT / "chapters" / name / "exercise.json").exists()]
 CHAPTERS.setdefault(20, CHAPTERS[3])  # the pages call a student's copy of a chapter 20
 SECTIONS = ["From the formula to the code", "The decisive lines", "What it gains, and where it does not", "What can go wrong", "How we know",
             "Exercises", "Summary"]  # of each chapter's page, in this order

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Teaches ./lab check what the mistakes of tests/mistakes/mistakes.json do, and measures how often it names them right.
+"""Teaches ./lab check what the mistakes of the chapters do, and measures how often it names them right.
 
     tests/mistakes/learn.py learn      renders the chapters' own shaders and each mistake planted in them; writes
-                                       tools/check/knowledge.json
+                                       knowledge.json in the chapters' folders
     tests/mistakes/learn.py confusion  plants each mistake again and lets it be named, with new seeds, on scenes that check does
-                                       not use and in the differently written shaders of tests/variants; checks correct
+                                       not use and in the differently written shaders of their variants; checks correct
                                        shaders as well; writes docs/records/check/confusion.json
 
 Both do only what has changed since the last time: a shader or what it is rendered with. So both go on where they were
@@ -26,12 +26,12 @@ import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
 from check.likely_mistake import candidates, noise_and_rays, read_signatures, signature, surprises  # noqa: E402
 from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
-from project import (RECORDS, Parser, add_device_options, commit, number, read_json, show_progress,  # noqa: E402
-                     write_json)
+from project import RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
-OTHER_KNOWLEDGE = Path(__file__).with_name("other_scenes.json")  # as grading.KNOWLEDGE, of OTHER_SCENES
+OTHER_KNOWLEDGE = "other_scenes.json"  # as grading.KNOWLEDGE, of OTHER_SCENES
+DEPTH = 2  # of what has a line in these files and in the record
 # Levels have the seeds of a check without --seed, see grading.first_seed(); the others have seeds that no check has.
 LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0), "factor": 1}
 # The chapter that a chapter has less noise than with the same samples, where that is its lesson.
@@ -68,9 +68,10 @@ class Workshop:
         return {"backend": self.options.backend, "device": self.options.device, "time_limit": 600, "runs": plan["runs"],
                 "samples": samples, "first_seed": plan["first_seed"] + seed, "is_quiet": True}
 
-    def judge(self, chapter, text, plan, levels, scenes, seed=0):
+    def judge(self, chapter, name, text, plan, levels, scenes, seed=0):
+        """Judges a shader of a chapter's folder, with this name."""
         with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "path_trace.glsl"
+            file = Path(folder) / name
             file.write_text(text, encoding="utf-8")
             return grading.judge(chapter, file, self.settings(chapter, plan, seed), levels, scenes)[0]
 
@@ -111,25 +112,31 @@ def written(result):
     return scenes
 
 
+def read_knowledge(name, chapters):
+    """Chapter -> what the file with this name in its folder knows."""
+    files = {chapter: grading.knowledge_file(chapter, name) for chapter in chapters}
+    return {chapter: read_json(file) for chapter, file in files.items() if file.exists()}
+
+
 def planned_knowledge(scenes, before):
     """What is to be known of each chapter of `scenes`, names of references: the levels of its own shader and what its mistakes do.
     What `before` has of it and was measured alike is there, the rest is empty. With it a list of what is to be rendered."""
     knowledge, work = {}, []
     for chapter, names in scenes.items():
-        known = before.get(str(chapter), {"mistakes": {}})
+        known = before.get(chapter, {})
         measured = level_digest(chapter, names)
         levels = known["levels"] if known.get("measured") == measured else None
-        knowledge[str(chapter)] = {"measured": measured, "levels": levels, "mistakes": {}}
-    for chapter, mistake, text in catalogue():
-        if chapter in scenes:
-            entry = {key: mistake["check"][key] for key in ("hint", "slide")}
-            chapters = knowledge[str(chapter)]
-            entry["measured"] = digest(settings(chapter, LEARNING, scenes[chapter]), text, chapters["measured"])
-            known = before.get(str(chapter), {"mistakes": {}})["mistakes"].get(mistake["name"], {})
+        knowledge[chapter] = {"measured": measured, "levels": levels, "mistakes": {}}
+    for bug in catalogue():
+        if bug.chapter in scenes:
+            name, chapter = bug.mistake["name"], knowledge[bug.chapter]
+            entry = {key: bug.mistake[key] for key in ("hint", "slide")}
+            entry["measured"] = digest(settings(bug.chapter, LEARNING, scenes[bug.chapter]), bug.text, chapter["measured"])
+            known = before.get(bug.chapter, {"mistakes": {}})["mistakes"].get(name, {})
             entry["scenes"] = known["scenes"] if known.get("measured") == entry["measured"] else {}
-            chapters["mistakes"][mistake["name"]] = entry
+            chapter["mistakes"][name] = entry
             if not entry["scenes"]:
-                work.append((chapter, text, entry))
+                work.append((bug, entry))
     return knowledge, work
 
 
@@ -141,63 +148,66 @@ def unmeasured(knowledge, scenes):
                       if not mistake["scenes"]]
 
 
-def learn(workshop, file, scenes, is_anew):
-    """Fills a file of knowledge with what it lacks."""
-    knowledge, work = planned_knowledge(scenes, read_json(file) if file.exists() and not is_anew else {})
+def learn(workshop, name, scenes, is_anew):
+    """Fills the files of knowledge with this name with what they lack."""
+    knowledge, work = planned_knowledge(scenes, {} if is_anew else read_knowledge(name, scenes))
+
+    def write(chapter):
+        write_json(grading.knowledge_file(chapter, name), knowledge[chapter], DEPTH)
 
     def learn_levels(chapter):
-        knowledge[str(chapter)]["levels"] = workshop.levels(chapter, scenes[chapter])
+        knowledge[chapter]["levels"] = workshop.levels(chapter, scenes[chapter])
 
-    workshop.map("levels", learn_levels, [n for n in scenes if not knowledge[str(n)]["levels"]])
+    workshop.map("levels", learn_levels, [chapter for chapter in scenes if not knowledge[chapter]["levels"]])
     lock = Lock()
 
     def learn_mistake(item):
-        chapter, text, entry = item
-        result = workshop.judge(chapter, text, LEARNING, knowledge[str(chapter)]["levels"], scenes[chapter])
+        bug, entry = item
+        levels = knowledge[bug.chapter]["levels"]
+        result = workshop.judge(bug.chapter, bug.file.name, bug.text, LEARNING, levels, scenes[bug.chapter])
         with lock:
             entry["scenes"] = written(result)
-            write_json(file, knowledge)
+            write(bug.chapter)
 
-    write_json(file, knowledge)
+    for chapter in scenes:
+        write(chapter)
     workshop.map("signatures", learn_mistake, work)
     return knowledge
 
 
 def planned_trials():
-    """Name -> chapter, mistake, text, seed and scenes of a trial, and the digest of all that it depends on."""
+    """Name -> a Trial, its scenes, and the digest of all that it depends on."""
     planned = {}
-    for key, (chapter, name, text, seed) in trials().items():
-        scenes = OTHER_SCENES[chapter] if key.startswith("other scenes") else None
-        own = own_shader(chapter).read_text(encoding="utf-8")
-        planned[key] = {"chapter": chapter, "mistake": name, "text": text, "seed": seed, "scenes": scenes,
-                        "measured": digest(settings(chapter, TRYING, scenes), text, seed, own)}
+    for key, trial in trials().items():
+        scenes = OTHER_SCENES[trial.chapter] if trial.is_elsewhere else None
+        own = own_shader(trial.chapter).read_text(encoding="utf-8")
+        planned[key] = trial, scenes, digest(settings(trial.chapter, TRYING, scenes), trial.text, trial.seed, own)
     return planned
 
 
 def confusion(workshop, is_anew):
-    own = read_json(grading.KNOWLEDGE)
+    own = read_knowledge(grading.KNOWLEDGE, project.course())
     others = learn(workshop, OTHER_KNOWLEDGE, OTHER_SCENES, is_anew)
     done = read_json(RECORD)["trials"] if RECORD.exists() and not is_anew else {}
     planned, lock = planned_trials(), Lock()
-    kept = {key: trial for key, trial in done.items() if key in planned and trial["measured"] == planned[key]["measured"]}
+    kept = {key: trial for key, trial in done.items() if key in planned and trial["measured"] == planned[key][-1]}
     record = {"commit": commit(), "trials": kept}
 
     def try_naming(item):
-        key, trial = item
-        knowledge = (others if trial["scenes"] else own)[str(trial["chapter"])]
-        result = workshop.judge(trial["chapter"], trial["text"], TRYING, knowledge["levels"], trial["scenes"], TRYING["runs"] * trial["seed"])
-        answer = {"mistake": trial["mistake"], "verdict": result["verdict"], "named": [], "is_sure": False,
-                  "measured": trial["measured"], **effect(result)}
+        key, (trial, scenes, measured) = item
+        knowledge = (others if scenes else own)[trial.chapter]
+        result = workshop.judge(trial.chapter, trial.file, trial.text, TRYING, knowledge["levels"], scenes, TRYING["runs"] * trial.seed)
+        answer = {"mistake": trial.mistake, "verdict": result["verdict"], "named": [], "is_sure": False, "measured": measured, **effect(result)}
         if result["verdict"] != "correct":
             found = surprises(signature(result), read_signatures(knowledge["mistakes"]))
             answer |= {"named": list(found)[:3], "is_sure": len(candidates(found)) == 1}
         with lock:
             record["trials"][key] = answer
-            write_json(RECORD, record)
+            write_json(RECORD, record, DEPTH)
 
     workshop.map("naming", try_naming, [item for item in planned.items() if item[0] not in kept])
     record["trials"] = {key: record["trials"][key] for key in planned}
-    write_json(RECORD, record)
+    write_json(RECORD, record, DEPTH)
 
 
 def effect(result):
@@ -218,7 +228,7 @@ def main():
     if options.action == "confusion":
         confusion(workshop, options.anew)
     else:
-        learn(workshop, grading.KNOWLEDGE, {n: scenes for n, (_, scenes) in grading.SCENES.items()}, options.anew)
+        learn(workshop, grading.KNOWLEDGE, {n: grading.SCENES[n][1] for n in project.course()}, options.anew)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes a mistake of mistakes.json in a copy of the shaders and expects the test that is meant to catch it to fail.
+"""Plants a mistake in a copy of the shaders and expects the test that is meant to catch it to fail.
 
     LAB_BINARIES=build/bin tests/mistakes/mistake.py NAME
 
@@ -7,7 +7,6 @@ Exits with 0 if the test was red because an expectation failed: neither because 
 program crashed. A substitution that does not match exactly once is stale, which is an error, too.
 """
 
-import json
 import os
 import shutil
 import subprocess
@@ -18,14 +17,17 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += [str(ROOT / "tools"), str(ROOT / "tests")]
 import test_report  # noqa: E402  (found by the line above)
-from course.mistakes import Stale, plant  # noqa: E402
+from course.mistakes import Stale, complete, plant, records, shader_of  # noqa: E402
 from project import BINARIES  # noqa: E402
 
 
 def load():
-    """Mistakes that have a test, by name; the others are there for ./lab check only."""
-    mistakes = json.loads((Path(__file__).parent / "mistakes.json").read_text(encoding="utf-8"))
-    return {mistake["name"]: mistake for mistake in mistakes if "test" in mistake}
+    """Mistakes that have a test, by name, with the shader that they are planted in; the others are there for ./lab check only."""
+    everything, mistakes = records(), {}
+    for chapter, record in ((chapter, record) for chapter, those in everything.items() for record in those if "test" in record):
+        file = record["file"] if "file" in record else shader_of(chapter, record).relative_to(ROOT).as_posix()
+        mistakes.setdefault(record["name"], complete(record, everything) | {"file": file})
+    return mistakes
 
 
 def make(mistake, tree):

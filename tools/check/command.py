@@ -31,7 +31,7 @@ POINTS = 10
 def parse():
     parser = Parser("./lab check", __doc__)
     parser.add_argument("chapter", type=number(int, 1), metavar="N", help="number of the chapter")
-    parser.add_argument("file", nargs="?", type=Path, metavar="FILE", help="default: the chapter's path_trace.glsl")
+    parser.add_argument("file", nargs="?", type=Path, metavar="FILE", help="default: the chapter's own")
     parser.add_argument("--all", type=Path, metavar="FOLDER", dest="folder", help="grade all shaders in this folder")
     parser.add_argument("--output", type=Path, metavar="FOLDER", help="for --all; default: output/check_N")
     parser.add_argument("--teacher", action="store_true", help="name the mistake instead of only asking")
@@ -89,6 +89,12 @@ def check(options, file, picture=None):
     return result
 
 
+def own_file(chapter):
+    """The chapter's shader in which something is still to be written, or else its estimator."""
+    folder = ROOT / "chapters" / CHAPTERS[chapter]
+    return next(filter(find_todo, sorted(folder.glob("*.glsl"))), folder / "path_trace.glsl")
+
+
 def find_todo(file):
     """Number of the first line that is still to be written, or None."""
     lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
@@ -115,7 +121,7 @@ def main():
     try:
         options = parse()
         refuse(options)
-        file = options.file or ROOT / "chapters" / CHAPTERS[options.chapter] / "path_trace.glsl"
+        file = options.file or own_file(options.chapter)
         options.chapter = original(options.chapter)
         if options.folder:
             sys.exit(grade_all(options, check))

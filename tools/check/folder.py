@@ -10,7 +10,7 @@ from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
-from check.grading import KNOWLEDGE
+from check.grading import knowledge_file
 from check.words import explain, hint_lines
 from project import ROOT, UserError, printable, read_json, write_json
 from report.measurement import digest_of_sources
@@ -72,7 +72,7 @@ def grade_all(options, check):
     record = folder / "results.json"
     known = read_json(record) if record.exists() else {}
     options.is_quiet, rows, found = True, [], submissions(options.folder)
-    sources = digest_of_sources([]), hashlib.sha256(KNOWLEDGE.read_bytes()).hexdigest()
+    sources = digest_of_sources([]), hashlib.sha256(knowledge_file(options.chapter).read_bytes()).hexdigest()
     for done, (name, file) in enumerate(found.items(), 1):
         key = digest(options, sources, file) if os.access(file, os.R_OK) else None
         if known.get(name, {}).get("digest") != key or known[name]["verdict"] == "not graded":

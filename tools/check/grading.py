@@ -1,7 +1,7 @@
 """Grades a shader of a chapter: renders scenes that have a reference image and judges bias, noise and cost.
 
 Means of the whole image and of its tiles are tested against the reference. Error and rays are compared with those of the
-chapter's own shader, which knowledge.json has.
+chapter's own shader, which knowledge.json in its folder has.
 """
 import os
 import shutil
@@ -19,7 +19,7 @@ from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
-KNOWLEDGE = Path(__file__).with_name("knowledge.json")
+KNOWLEDGE = "knowledge.json"  # in the chapters' folders
 DESCRIPTIONS = {number: description(folder) for number, folder in CHAPTERS.items()}
 # Of each chapter: samples of a run, and references that show what its shader does.
 SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in DESCRIPTIONS.items() if "check" in says}
@@ -48,11 +48,21 @@ def first_seed(seed):
     return seed * SEED_STEP + 1
 
 
+def knowledge_file(chapter, name=KNOWLEDGE):
+    return ROOT / "chapters" / CHAPTERS[chapter] / name
+
+
+def stands_for(chapter, file):
+    """The name of the chapter's shader that a file is graded as: the one that it has itself, or else the estimator."""
+    shaders = {shader.name for shader in (ROOT / "chapters" / chapter).glob("*.glsl")}
+    return file.name if file.name in shaders else "path_trace.glsl"
+
+
 def make_tree(chapter, file, tree):
-    """Copies what a chapter's program reads, with `file` as its shader; returns the program there and its shader."""
+    """Copies what a chapter's program reads, with `file` as one of its shaders; returns the program there and that shader."""
     shutil.copytree(ROOT / "shaders", tree / "shaders")
     shutil.copytree(ROOT / "chapters" / chapter, tree / "chapters" / chapter)
-    shader = Path(shutil.copy(file, tree / "chapters" / chapter / "path_trace.glsl"))
+    shader = Path(shutil.copy(file, tree / "chapters" / chapter / stands_for(chapter, file)))
     share(ROOT / "assets", tree / "assets")
     if (libraries := BINARIES.parent / "lib").exists():  # of an archive that ./lab package made
         share(libraries, tree / "lib")
@@ -66,10 +76,10 @@ def share(folder, place):
 
 
 @contextmanager
-def program_with(chapter, text):
-    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as its shader."""
+def program_with(chapter, text, name="path_trace.glsl"):
+    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as one of its shaders."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "path_trace.glsl"
+        file = Path(folder) / name
         file.write_text(text, encoding="utf-8")
         yield make_tree(chapter, file, Path(folder) / "tree")[0]
 
@@ -179,11 +189,10 @@ def grade(case, recorded, comparisons):
 
 def read_levels(chapter):
     """Scene -> level of the chapter's own shader."""
-    known = read_json(KNOWLEDGE)
-    if str(chapter) not in known:
+    if not knowledge_file(chapter).exists():
         raise UserError(f"chapter {chapter} has a title of its own and is not measured yet: ./lab check 3 FILE grades a file as chapter 3's, "
                         "tests/mistakes/learn.py learn measures a new chapter")
-    return known[str(chapter)]["levels"]
+    return read_json(knowledge_file(chapter))["levels"]
 
 
 def early_bias(cases):

@@ -1,13 +1,13 @@
 """Names the mistake that a shader probably makes, by comparing what it does to the pictures with what each known mistake does.
 
 A signature tells of each scene how much the means of the image and its tiles differ from the reference, as parts of it, and
-how often the chapter's own noise and rays a shader has. knowledge.json has those of all known mistakes, written by
-tests/mistakes/learn.py.
+how often the chapter's own noise and rays a shader has. knowledge.json in a chapter's folder has those of the mistakes that are known in
+it, written by tests/mistakes/learn.py.
 """
 import math
 from dataclasses import dataclass
 
-from check.grading import KNOWLEDGE
+from check.grading import knowledge_file
 from project import read_json
 
 # Another student's shader has the same mistake but not quite the same signature: parts of a difference, and the least.
@@ -78,13 +78,13 @@ def percentages(text):
 
 
 def read_signature(scenes):
-    """The signature of a mistake in KNOWLEDGE, given as scene -> what it does there."""
+    """The signature of a mistake in knowledge.json, given as scene -> what it does there."""
     regions = [percentages(" ".join([scene["image"], *scene["tiles"]])) for scene in scenes.values()]
     return Signature(sum(regions, []), [], *([scene[key] for scene in scenes.values()] for key in ("noise", "rays")))
 
 
 def read_signatures(mistakes):
-    """Name -> Signature, of a chapter's mistakes in KNOWLEDGE."""
+    """Name -> Signature, of a chapter's mistakes in knowledge.json."""
     return {name: read_signature(entry["scenes"]) for name, entry in mistakes.items()}
 
 
@@ -108,7 +108,7 @@ def likely_mistake(result):
     also where to look to tell them apart. None where nothing known explains it."""
     if result["verdict"] == "correct":
         return None
-    known = read_json(KNOWLEDGE)[str(result["chapter"])]["mistakes"]
+    known = read_json(knowledge_file(result["chapter"]))["mistakes"]
     seen, signatures = signature(result), read_signatures(known)
     names = candidates(surprises(seen, signatures))
     if not names:

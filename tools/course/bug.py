@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, program_with
 from check.words import percent
-from course.mistakes import CATALOGUE, bugs_of, own_shader
+from course.mistakes import bugs_of
 from lesson import diff
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, has_low_discrepancy, number, show_progress
 from references.images import averaged, find_references, read_rgb, scene_file
@@ -141,7 +141,7 @@ def caught_by(bug):
 
 def changes(bug):
     """Rows of the difference from the chapter's own shader, for lesson.diff."""
-    own = own_shader(bug.chapter).read_text(encoding="utf-8")
+    own = bug.file.read_text(encoding="utf-8")
     return diff.compare(own.splitlines(), bug.text.splitlines())[0]
 
 
@@ -158,7 +158,7 @@ def main():
         raise UserError(f"there is no chapter {options.chapter}: ./lab run lists them")
     bugs = bugs_of(options.chapter)
     if not bugs:
-        raise UserError(f"chapter {options.chapter} has no bugs: {CATALOGUE.relative_to(ROOT)} knows none in its shader")
+        raise UserError(f"chapter {options.chapter} has no bugs: its folder has no mistakes.json, or none is in its shaders")
     if options.bug is None:
         for index, bug in enumerate(bugs, 1):
             print(f"{index:3}  {bug.question}")
@@ -170,8 +170,8 @@ def main():
     if options.answer:
         answer(bug)
         return
-    own = own_shader(bug.chapter).read_text(encoding="utf-8")
-    with program_with(CHAPTERS[bug.chapter], own) as right, program_with(CHAPTERS[bug.chapter], bug.text) as wrong:
+    chapter, own, name = CHAPTERS[bug.chapter], bug.file.read_text(encoding="utf-8"), bug.file.name
+    with program_with(chapter, own, name) as right, program_with(chapter, bug.text, name) as wrong:
         scene = options.scene or telling_scene(bug.chapter, (right, wrong), options)
         if options.window:
             open_window(bug, scene, wrong, options)

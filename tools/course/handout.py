@@ -1,4 +1,4 @@
-"""Writes a student's tree of chapters 1 to N into the folder DIR: what exercises.json lists of chapter N is a TODO.
+"""Writes a student's tree of chapters 1 to N into the folder DIR: the lines that exercise.json of chapter N names are a TODO.
 
 It has neither later chapters nor the tests, which name solutions, nor the history. --verify proves for all chapters that
 the tree configures, and that its chapter fails ./lab check before the solution is filled in and passes with it.
@@ -16,12 +16,12 @@ from package.make import pack
 from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress
 
 HERE = Path(__file__).parent
-EXERCISES = read_json(HERE / "exercises.json")
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it holds or names solutions, or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/measuring.md", "docs/solutions", "docs/bugs*", "docs/pictures/bug*",
-            "docs/records/check", "docs/grading", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
+            "docs/records/check", "docs/grading", "chapters/*/exercise.json", "chapters/*/mistakes.json", "chapters/*/other_scenes.json",
+            "chapters/*/variants", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -30,8 +30,8 @@ def few(chapter):
     return ["--runs", "8"] + ([] if description(CHAPTERS[chapter]).get("low_discrepancy") else ["--samples", "4"])
 
 
-def exercises(chapter):
-    return [exercise for exercise in EXERCISES if exercise["chapter"] == chapter]
+def exercise_file(chapter):
+    return ROOT / "chapters" / CHAPTERS[chapter] / "exercise.json"
 
 
 def find_once(text, piece, exercise):
@@ -73,17 +73,15 @@ def write_handout(chapter, folder):
     # Splitting at every hit repeats the estimators of the chapters that have it.
     if any("split_every_hit" in description(name) for n, name in CHAPTERS.items() if n >= chapter):
         (folder / "shaders/path_trace_every_hit.glsl").unlink()
-    solutions = []
-    for exercise in exercises(chapter):
-        shader = folder / exercise["file"]
-        text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
-        shader.write_text(text, encoding="utf-8")
-        solutions.append(solution)
+    exercise = read_json(exercise_file(chapter))
+    shader = folder / "chapters" / CHAPTERS[chapter] / exercise["file"]
+    text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
+    shader.write_text(text, encoding="utf-8")
     readme = (HERE / "readme.md").read_text(encoding="utf-8")
-    for name, value in (("NUMBER", str(chapter)), ("FOLDER", CHAPTERS[chapter]), ("SHADER", exercises(chapter)[0]["file"])):
+    for name, value in (("NUMBER", str(chapter)), ("FOLDER", CHAPTERS[chapter]), ("SHADER", shader.relative_to(folder).as_posix())):
         readme = readme.replace(name, value)
     (folder / "README.md").write_text(readme, encoding="utf-8")
-    clean_pages(folder, "\n".join(solutions))
+    clean_pages(folder, solution)
 
 
 def verify(chapter, folder):
@@ -97,7 +95,7 @@ def verify(chapter, folder):
     environment = os.environ | {"LAB_BINARIES": str(BINARIES.resolve())}
     check = [sys.executable, "-B", tree / "tools", "check", chapter, *few(chapter)]
     run_to_end(check, f"chapter {chapter}: check of the TODO", EXPECTED["biased"], env=environment)
-    solution = ROOT / "chapters" / CHAPTERS[chapter] / "path_trace.glsl"
+    solution = exercise_file(chapter).with_name(read_json(exercise_file(chapter))["file"])
     run_to_end([*check, solution], f"chapter {chapter}: check of the solution", EXPECTED["correct"], env=environment)
 
 
@@ -108,9 +106,9 @@ def main():
     parser.add_argument("--windows", action="store_true", help="write DIR.zip, with programs to unpack and run on Windows")
     parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
     options = parser.parse_intermixed_args()
-    known = [chapter for chapter in CHAPTERS if exercises(chapter)]
+    known = [chapter for chapter in CHAPTERS if exercise_file(chapter).exists()]
     if options.chapter not in [*known, *([None] if options.verify else [])]:
-        parser.error(f"N must be a chapter with an exercise in tools/course/exercises.json: {', '.join(map(str, known))}")
+        parser.error(f"N must be a chapter with an exercise.json in its folder: {', '.join(map(str, known))}")
     if options.verify == bool(options.folder):
         parser.error("give N and DIR, or --verify")
     if not options.verify:

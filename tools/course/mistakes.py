@@ -1,10 +1,18 @@
-"""The catalogue of mistakes, tests/mistakes/mistakes.json, and how they are planted into the chapters' shaders."""
+"""The mistakes that chapters know, mistakes.json in their folders, and how they are planted into the chapters' shaders.
+
+A record replaces the text `find`, which is there exactly once, by `replace`: in a shader of its chapter's folder, or in `file`. A chapter
+that can have the mistake of an earlier one has a record of its own with the same name. What is said of a mistake need be said in one
+record only: its "explanation"; "hint" and "slide", with which ./lab check is to know it; the "test" that is red where it is planted.
+"""
 from dataclasses import dataclass
+from pathlib import Path
 
-from project import CHAPTERS, ROOT, UserError, read_json
+from project import CHAPTERS, ROOT, UserError, course, original, read_json
 
-CATALOGUE = ROOT / "tests/mistakes/mistakes.json"
 NO_QUESTION = "Where do the two pictures differ, and which line decides that?"
+SAID_ONCE = ("explanation", "hint", "slide", "test")
+# Of shaders that no chapter teaches.
+ENGINE = ROOT / "tests/mistakes/engine.json"
 
 
 class Stale(UserError):
@@ -13,14 +21,15 @@ class Stale(UserError):
 
 @dataclass
 class Bug:
-    """A mistake in a chapter: its entry in the catalogue and the chapter's shader with it."""
+    """A mistake in a chapter: its record, and a shader of the chapter's folder with it."""
     chapter: int
     mistake: dict
+    file: Path
     text: str
 
     @property
     def question(self):
-        return self.mistake.get("check", {}).get("hint", NO_QUESTION)
+        return self.mistake.get("hint", NO_QUESTION)
 
 
 def own_shader(chapter):
@@ -33,34 +42,43 @@ def plant(text, find, replace, what):
     return text.replace(find, replace)
 
 
-def planted(mistake, chapter, piece):
-    """The bug that a piece with `find` and `replace` makes of a chapter's shader."""
-    text = own_shader(chapter).read_text(encoding="utf-8")
-    return Bug(chapter, mistake, plant(text, piece["find"], piece["replace"], f"{mistake['name']} in chapter {chapter}"))
+def records():
+    """The mistakes of each chapter as they stand in its file, and as those of None the engine's. Of chapters with the same title
+    only the first one counts."""
+    files = {chapter: own_shader(chapter).with_name("mistakes.json") for chapter in course()} | {None: ENGINE}
+    return {chapter: read_json(file) for chapter, file in files.items() if file.exists()}
 
 
-def plantings(mistake):
-    """Pairs (chapter, piece) in which ./lab check is to know a mistake."""
-    return [(chapter, {**mistake, **planting}) for planting in mistake.get("check", {}).get("plantings", [])
-            for chapter in planting["chapters"]]
+def complete(record, everything):
+    """A record with what is said in others of the same mistake; the first one that says it counts."""
+    same = [other for others in everything.values() for other in others if other["name"] == record["name"]]
+    return {key: other[key] for other in reversed(same) for key in SAID_ONCE if key in other} | record
 
 
-def catalogue():
-    """(chapter, mistake, text of the chapter's shader with it) for all mistakes that check is to know."""
-    for mistake in read_json(CATALOGUE):
-        for chapter, piece in plantings(mistake):
-            yield chapter, mistake, planted(mistake, chapter, piece).text
+def shader_of(chapter, record):
+    """The shader in a chapter's folder that has the text to be replaced, or else the estimator."""
+    shaders = sorted(own_shader(chapter).parent.glob("*.glsl"))
+    return next((file for file in shaders if record["find"] in file.read_text(encoding="utf-8")), own_shader(chapter))
+
+
+def planted(chapter, mistake):
+    """The bug that a record makes of a chapter's shaders."""
+    file = shader_of(chapter, mistake)
+    what = f"{mistake['name']} in {file.relative_to(ROOT)}"
+    return Bug(chapter, mistake, file, plant(file.read_text(encoding="utf-8"), mistake["find"], mistake["replace"], what))
 
 
 def bugs_of(chapter):
-    """The bugs of a chapter in the order of the catalogue: those that check is to know, and those that a test plants into this
-    shader. One that stands there under two names counts once."""
-    own, bugs = str(own_shader(chapter).relative_to(ROOT)), {}
-    for mistake in read_json(CATALOGUE):
-        pieces = [piece for number, piece in plantings(mistake) if number == chapter]
-        if not pieces and mistake.get("file") == own:
-            pieces = [mistake]
-        for piece in pieces:
-            bug = planted(mistake, chapter, piece)
+    """The bugs of a chapter, or of the one that it is a copy of, in the order of its file. One that stands there under two names
+    counts once."""
+    everything, bugs = records(), {}
+    for record in everything.get(original(chapter), []):
+        if "file" not in record:
+            bug = planted(chapter, complete(record, everything))
             bugs.setdefault(bug.text, bug)
     return list(bugs.values())
+
+
+def catalogue():
+    """The bugs that ./lab check is to know, of all chapters."""
+    return [bug for chapter in records() if chapter for bug in bugs_of(chapter) if "hint" in bug.mistake]

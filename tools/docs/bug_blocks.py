@@ -2,11 +2,12 @@
 import textwrap
 
 from course.bug import caught_by, changes
-from course.mistakes import CATALOGUE, bugs_of
-from project import UserError, read_json
+from course.mistakes import bugs_of, records
+from project import UserError
 
 # Name of the mistake: chapter and reference.
-GALLERY = {mistake["name"]: tuple(mistake["gallery"]) for mistake in read_json(CATALOGUE) if "gallery" in mistake}
+GALLERY = {mistake["name"]: (chapter, mistake["gallery"]) for chapter, mistakes in records().items()
+           for mistake in mistakes if "gallery" in mistake}
 
 
 def find_bug(name):

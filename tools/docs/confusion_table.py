@@ -1,5 +1,5 @@
 """What docs/results.md shows of ./lab check: how often it finds mistakes and names them right."""
-from project import table
+from project import CHAPTERS, name_of, table
 from scipy.stats import binomtest
 
 CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "other scenes": "the same on other scenes",
@@ -47,14 +47,15 @@ def confusion_table(record):
     correct = conditions.pop("correct")
     text = f"\nThe check refused correct shaders {part(correct.found, correct.tried)} times.\n\n"
     text += table(["", *head], [row(words, conditions[key]) for key, words in CONDITIONS.items() if key in conditions])
-    chapters = rates(record, lambda key: int(key.split("/")[1]) if key.startswith("new seeds") else None)
+    numbers = {name_of(number): number for number in CHAPTERS}
+    chapters = rates(record, lambda key: numbers[key.split("/")[1]] if key.startswith("new seeds") else None)
     text += "\nThe first row for each chapter:\n\n" + table(
         ["chapter", *head], [row(str(chapter), rate) for chapter, rate in sorted(chapters.items())])
     missed = []
     for key, trial in record["trials"].items():
         if trial["mistake"] and trial["named"][:1] != [trial["mistake"]]:
-            condition, place, _ = key.split("/")
-            place = f"chapter {place}" if place.isdigit() else place
+            condition, chapter, *variant, _ = key.split("/")
+            place = ", ".join([f"chapter {numbers[chapter]}", *variant])
             effect = f"{100 * trial['bias']:.2g} %, × {trial['noise']:.2g}"
             missed.append([f"{place}, {condition}", trial["mistake"], effect, trial["verdict"], ", ".join(trial["named"]) or "-"])
     head = ["where", "mistake", "change of mean and error", "verdict", "named"]

@@ -150,7 +150,8 @@ def find_device(program, settings):
 
 def digest_of_sources(cases):
     """A digest of all that decides what a run computes: with other sources a measurement starts anew."""
-    files = [path for folder in ("chapters", "common", "shaders", "assets") for path in (ROOT / folder).rglob("*")]
+    files = [path for folder in ("common", "shaders", "assets") for path in (ROOT / folder).rglob("*")]
+    files += [path for name in ("*.glsl", "chapter.json") for path in ROOT.glob(f"chapters/*/{name}")]
     files += [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
     digest = hashlib.sha256()
     for path in sorted(set(files)):
