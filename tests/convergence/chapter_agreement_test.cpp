@@ -22,13 +22,12 @@ struct Subject {
 // Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
 // p-values are independent. The splitting factors differ from length to length.
 using Pair = std::array<Subject, 2>;
-const Pair bounces{Subject{"1", chapter_estimator(all_chapters.at(0)), 1},
-                   Subject{"2", chapter_estimator(all_chapters.at(1)), 1}};
+Subject subject(const std::string& name, uint32_t splitting_factor = 1) {
+    return {name + (splitting_factor > 1 ? ", s = " + std::to_string(splitting_factor) : ""),
+            chapter_estimator(chapter_named(name)), splitting_factor};
+}
+const Pair bounces{subject("uniform_sampling"), subject("cosine_sampling")};
 std::vector<Pair> light_sampling_pairs(uint32_t length) {
-    const auto chapter = [](size_t number, uint32_t s) {
-        return Subject{std::to_string(number) + (s > 1 ? ", s = " + std::to_string(s) : ""),
-                       chapter_estimator(all_chapters.at(number - 1)), s};
-    };
     const auto at_every_hit = [](const std::string& name, uint32_t s, uint32_t roulette_start) {
         return Subject{name + " at every hit, s = " + std::to_string(s), every_hit_estimator(), s,
                        roulette_start, 2};
@@ -37,17 +36,14 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
     std::vector<Pair> pairs;
     // At length 1 there is but one hit to split at.
     if (length > 1)
-        pairs.push_back(
-            {at_every_hit("4", length == 2 ? 3 : 2, no_roulette), at_every_hit("5", length == 2 ? 2 : 3, 1)});
-    pairs.push_back({chapter(3, 1), chapter(4, s)});
-    pairs.push_back({chapter(5, 6 - s), chapter(8, 1)});
-    const auto by_light_samples = [&](size_t number) {
-        Subject subject = chapter(number, 1);
-        subject.name += " by light samples";
-        subject.estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
-        return subject;
-    };
-    pairs.push_back({by_light_samples(8), chapter(9, 1)});
+        pairs.push_back({at_every_hit("splitting", length == 2 ? 3 : 2, no_roulette),
+                         at_every_hit("russian_roulette", length == 2 ? 2 : 3, 1)});
+    pairs.push_back({subject("next_event_estimation"), subject("splitting", s)});
+    pairs.push_back({subject("russian_roulette", 6 - s), subject("light_probes")});
+    Subject by_light_samples = subject("light_probes");
+    by_light_samples.name += " by light samples";
+    by_light_samples.estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
+    pairs.push_back({by_light_samples, subject("low_discrepancy_points")});
     return pairs;
 }
 
@@ -109,8 +105,8 @@ TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
             const std::array images{render_subject(scene, pair[0], length, pair_samples, ++seed),
                                     render_subject(scene, pair[1], length, pair_samples, ++seed)};
             const auto more = expect_agreement(
-                "length " + std::to_string(length) + ": chapters " + pair[0].name + " and " + pair[1].name,
-                images[0], images[1], limits);
+                "length " + std::to_string(length) + ": " + pair[0].name + " and " + pair[1].name, images[0],
+                images[1], limits);
             p_values.insert(p_values.end(), more.begin(), more.end());
             return images;
         };
@@ -120,8 +116,9 @@ TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
         for (const Pair& pair : light_sampling_pairs(length)) {
             const auto images = compare_pair(pair, samples, of_light_samples);
             for (size_t i = 0; i < pair.size(); ++i)
-                expect_agreement("length " + std::to_string(length) + ": chapters " + pair[i].name + " and 2",
-                                 images[i], oracle, of_bounces);
+                expect_agreement(
+                    "length " + std::to_string(length) + ": " + pair[i].name + " and cosine_sampling",
+                    images[i], oracle, of_bounces);
         }
     }
     expect_uniform("p-values of the tiles", p_values, 0.3);

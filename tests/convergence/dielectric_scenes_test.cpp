@@ -20,7 +20,7 @@ RenderSettings room_settings(uint32_t samples, uint32_t seed) {
             .max_path_length = 1000,  // as good as unlimited: roulette ends paths long before
             .seed = seed,
             .roulette_start = 3,
-            .estimator = chapter_estimator("06_dielectrics")};
+            .estimator = chapter_estimator(chapter_named("dielectrics"))};
 }
 
 constexpr uint32_t scene_batches = 32;

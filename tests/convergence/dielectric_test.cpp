@@ -19,7 +19,7 @@ RenderSettings make_settings(uint32_t samples, uint32_t seed) {
             .max_path_length = unlimited,
             .seed = seed,
             .survival_cap = 1,
-            .estimator = chapter_estimator("06_dielectrics")};
+            .estimator = chapter_estimator(chapter_named("dielectrics"))};
 }
 
 // Each channel of all pixels has this mean, and a relative bias would have been found.

@@ -47,71 +47,79 @@ void expect_gain(const std::string& what, const Cost& before, const Cost& techni
     EXPECT_TRUE(gain.value < 0 && gain.p_value() < significance) << what << " does not pay";
 }
 
-Cost measure_chapter(const std::string& scene_name, size_t number, uint32_t samples, uint32_t length,
-                     uint32_t splitting = 1) {
+Cost measure_chapter(const std::string& scene_name, const std::string& name, uint32_t samples,
+                     uint32_t length, uint32_t splitting = 1) {
     const Scene scene = load_shipped_scene(scene_name + ".json");
     RenderSettings settings{.width = 64, .height = 64, .samples = samples, .max_path_length = length};
     settings.splitting_factor = splitting;
     settings.roulette_start = 2;
-    settings.seed = static_cast<uint32_t>(1000 * number);
-    settings.estimator = chapter_estimator(all_chapters.at(number - 1));
+    const std::string chapter = chapter_named(name);
+    settings.seed = chapter_seed(chapter);
+    settings.estimator = chapter_estimator(chapter);
     return measure(scene, settings);
 }
 
-// Chapter 7 with one of its two ways to find light.
+// Multiple importance sampling with one of its two ways to find light.
 Cost measure_strategy(const std::string& scene_name, Strategy strategy, uint32_t samples, uint32_t length) {
     RenderSettings settings{.width = 64, .height = 64, .samples = samples, .max_path_length = length};
     settings.roulette_start = 2;
     settings.seed = 7100;
-    settings.estimator = chapter_estimator(all_chapters.at(6));
+    settings.estimator = chapter_estimator(chapter_named("multiple_importance_sampling"));
     if (strategy == Strategy::light) settings.estimator.defines = {"STRATEGY STRATEGY_LIGHT"};
     if (strategy == Strategy::bounces) settings.strategy = Strategy::bounces;
     return measure(load_shipped_scene(scene_name + ".json"), settings);
 }
 
 TEST(Efficiency, CosineSamplingAndNextEventEstimationPay) {
-    const Cost uniform = measure_chapter("cornell_box", 1, 24, 4),
-               cosine = measure_chapter("cornell_box", 2, 24, 4);
+    const Cost uniform = measure_chapter("cornell_box", "uniform_sampling", 24, 4),
+               cosine = measure_chapter("cornell_box", "cosine_sampling", 24, 4);
     expect_gain("cosine sampling against uniform angles", uniform, cosine);
     expect_gain("next event estimation against cosine sampling", cosine,
-                measure_chapter("cornell_box", 3, 4, 4));
+                measure_chapter("cornell_box", "next_event_estimation", 4, 4));
 }
 
 // Splitting pays where what comes after the first hit is noisy, as with a light of thousands of triangles. In
 // the Cornell box edges and camera rays weigh as much as they save each other.
 TEST(Efficiency, SplittingPaysForNoisyLight) {
-    expect_gain("splitting in 4 against next event estimation", measure_chapter("heart_light", 3, 16, 4),
-                measure_chapter("heart_light", 4, 4, 4, 4));
+    expect_gain("splitting in 4 against next event estimation",
+                measure_chapter("heart_light", "next_event_estimation", 16, 4),
+                measure_chapter("heart_light", "splitting", 4, 4, 4));
 }
 
 // Without a limit of the path length there is more to be estimated, and still it pays.
 TEST(Efficiency, RussianRoulettePaysForLongPaths) {
-    expect_gain("Russian roulette against splitting", measure_chapter("cornell_box", 4, 8, 8, 2),
-                measure_chapter("cornell_box", 5, 8, 1000, 2));
+    expect_gain("Russian roulette against splitting", measure_chapter("cornell_box", "splitting", 8, 8, 2),
+                measure_chapter("cornell_box", "russian_roulette", 8, 1000, 2));
 }
 
 // Where lights are near, light samples are noisy; where surfaces are glossy, they miss the lobe.
 TEST(Efficiency, MultipleImportanceSamplingPays) {
     expect_gain("multiple importance sampling against dielectrics, heart",
-                measure_chapter("heart_light", 6, 12, 4), measure_chapter("heart_light", 7, 12, 4));
-    const Cost both = measure_chapter("plates", 7, 8, 2);
+                measure_chapter("heart_light", "dielectrics", 12, 4),
+                measure_chapter("heart_light", "multiple_importance_sampling", 12, 4));
+    const Cost both = measure_chapter("plates", "multiple_importance_sampling", 8, 2);
     expect_gain("both strategies against light samples", measure_strategy("plates", Strategy::light, 32, 2),
                 both);
-    expect_gain("both strategies against bounces", measure_strategy("plates", Strategy::bounces, 32, 2), both);
+    expect_gain("both strategies against bounces", measure_strategy("plates", Strategy::bounces, 32, 2),
+                both);
 }
 
 TEST(Efficiency, SamplingTheLightProbePays) {
     expect_gain("light probes against multiple importance sampling, small sun",
-                measure_chapter("sunny", 7, 8, 2), measure_chapter("sunny", 8, 4, 2));
+                measure_chapter("sunny", "multiple_importance_sampling", 8, 2),
+                measure_chapter("sunny", "light_probes", 4, 2));
     expect_gain("light probes against multiple importance sampling, wide sun",
-                measure_chapter("textured", 7, 8, 2), measure_chapter("textured", 8, 4, 2));
+                measure_chapter("textured", "multiple_importance_sampling", 8, 2),
+                measure_chapter("textured", "light_probes", 4, 2));
 }
 
 TEST(Efficiency, LowDiscrepancyPointsPay) {
     expect_gain("low-discrepancy points against light probes, Cornell box",
-                measure_chapter("cornell_box", 8, 16, 4), measure_chapter("cornell_box", 9, 16, 4));
-    expect_gain("low-discrepancy points against light probes, wide sun", measure_chapter("textured", 8, 8, 2),
-                measure_chapter("textured", 9, 8, 2));
+                measure_chapter("cornell_box", "light_probes", 16, 4),
+                measure_chapter("cornell_box", "low_discrepancy_points", 16, 4));
+    expect_gain("low-discrepancy points against light probes, wide sun",
+                measure_chapter("textured", "light_probes", 8, 2),
+                measure_chapter("textured", "low_discrepancy_points", 8, 2));
 }
 
 }  // namespace

@@ -14,70 +14,17 @@
 namespace lab {
 namespace {
 
-enum class Tail { light, heavy };  // heavy: rare bright samples
-
-struct ReferenceCase {
-    std::string reference;  // in assets/references: scene and maximal path length
-    size_t chapter;
-    uint32_t samples;                // of a batch
-    double largest_bias;             // of the image's mean, that may go unnoticed
-    double largest_tile_bias = 0.9;  // the same of a tile, as part of the image's mean
-    Run run = Run::always;
-    Tail tail = Tail::light;
-};
-
 constexpr uint32_t reference_batches = 64;
 constexpr uint32_t tile = 8;
 // In tiles that light hardly reaches, batches without a hit have no spread. What is a small part of the
 // image's mean there is taken for noise.
 constexpr double tile_floor = 5e-4;
 
-// Chapters 1 and 2, which find lights by bounces, are held to 1 % of the image's mean, the others to 0.3 %;
-// less strictly what takes longest: glass with a small lamp, whose caustics bounces find by chance (chapter 6
-// shows a larger one every time), and the studio. Chapters that RepeatedChapter shows to be another one, path
-// by path, do not run every time: 3 and 4 are 5 without splitting and roulette, 7 and 8 are 9 with random
-// numbers instead of points, which need more samples.
-const std::vector<ReferenceCase> reference_cases{
-    {"cornell_box_1", 1, 14, 0.01},
-    {"cornell_box_1", 2, 14, 0.01},
-    {"cornell_box_1", 3, 27, 0.003},
-    {"textured_4", 2, 4, 0.01},
-    {"instances_4", 3, 1, 0.003},
-    {"cornell_box_6", 5, 17, 0.003},
-    {"check_glass_8", 6, 2, 0.003},
-    {"cornell_box_6", 9, 11, 0.003},
-    {"heart_light_4", 9, 4, 0.003},
-    {"glossy_5", 9, 11, 0.003},
-    {"plates_3", 9, 13, 0.07, 15.0},  // one pixel, the smallest light, has nearly all the noise
-    {"glass_8", 9, 5, 0.01, 0.9, Run::always, Tail::heavy},
-    {"sunny_4", 9, 8, 0.003},
-    {"studio_4", 9, 12, 0.005},
-    {"cornell_box_6", 3, 16, 0.003, 0.9, Run::with_all},
-    {"cornell_box_6", 4, 20, 0.003, 0.9, Run::with_all},
-    {"cornell_box_6", 6, 26, 0.003, 0.9, Run::with_all},
-    {"heart_light_4", 3, 16, 0.003, 0.9, Run::with_all},
-    {"heart_light_4", 4, 7, 0.003, 0.9, Run::with_all},
-    {"heart_light_4", 5, 9, 0.003, 0.9, Run::with_all},
-    {"heart_light_4", 7, 5, 0.003, 0.9, Run::with_all},
-    {"textured_4", 1, 16, 0.01, 0.9, Run::with_all},
-    {"textured_4", 3, 44, 0.003, 0.9, Run::with_all},
-    {"textured_4", 4, 26, 0.003, 0.9, Run::with_all},
-    {"textured_4", 5, 34, 0.003, 0.9, Run::with_all},
-    {"torus_5", 3, 26, 0.003, 0.5, Run::with_all},
-    {"torus_5", 4, 22, 0.003, 0.5, Run::with_all},
-    {"torus_5", 5, 24, 0.003, 0.5, Run::with_all},
-    {"instances_4", 4, 4, 0.003, 0.9, Run::with_all},
-    {"instances_4", 5, 4, 0.003, 0.9, Run::with_all},
-    {"instances_4", 6, 4, 0.003, 0.9, Run::with_all},
-    {"glossy_5", 3, 72, 0.003, 0.9, Run::with_all},
-    {"glossy_5", 5, 52, 0.003, 0.9, Run::with_all},
-    {"glossy_5", 7, 25, 0.003, 0.9, Run::with_all},
-    {"glass_8", 6, 26, 0.003, 0.9, Run::with_all, Tail::heavy},
-    {"glass_8", 7, 3, 0.01, 0.9, Run::with_all, Tail::heavy},
-    {"plates_3", 7, 24, 0.07, 15.0, Run::with_all},
-    {"sunny_4", 8, 12, 0.003, 0.9, Run::with_all},
-    {"studio_4", 8, 14, 0.005, 0.9, Run::with_all},
-};
+// What tests.json of the chapters asks for. Those that find lights by bounces are held to 1 % of the image's
+// mean, the others to 0.3 %; less strictly what takes longest: glass with a small lamp, whose caustics
+// bounces find by chance, and the studio. Chapters that RepeatedChapter shows to be another one, path by
+// path, do not run every time.
+const std::vector<ReferenceCase> all_references = reference_cases();
 
 // The part of the estimates that a batch has in a rectangle of pixels, and the same of the reference.
 struct Comparison {
@@ -136,15 +83,16 @@ double sign_map_p_value(const ZMap& map) {
 }
 
 std::string case_name(const ReferenceCase& c) {
-    return instance_name(c.reference + "_chapter_" + std::to_string(c.chapter), c.run);
+    return instance_name(c.reference + "_chapter_" + c.chapter,
+                         c.runs_with_all ? Run::with_all : Run::always);
 }
 
 class ReferenceImage : public testing::TestWithParam<size_t> {};
-INSTANTIATE_TEST_SUITE_P(, ReferenceImage, testing::Range(size_t{0}, reference_cases.size()),
-                         [](const auto& instance) { return case_name(reference_cases[instance.param]); });
+INSTANTIATE_TEST_SUITE_P(, ReferenceImage, testing::Range(size_t{0}, all_references.size()),
+                         [](const auto& instance) { return case_name(all_references[instance.param]); });
 
 TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
-    const ReferenceCase& c = reference_cases[GetParam()];
+    const ReferenceCase& c = all_references[GetParam()];
     const auto file = project_folder() / "assets" / "references" / (c.reference + ".exr");
     const Reference reference = read_reference(file);
     const auto& attributes = reference.attributes;
@@ -156,10 +104,10 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
         .width = reference.mean.width, .height = reference.mean.height, .samples = c.samples};
     settings.max_path_length = static_cast<uint32_t>(std::stoul(attributes.at("max_path_length")));
     // Another one for each case: chapters may follow the same paths if their seeds are equal.
-    settings.seed = 1000 + static_cast<uint32_t>(&c - reference_cases.data());
+    settings.seed = 1000 + static_cast<uint32_t>(&c - all_references.data());
     settings.roulette_start = 2;
-    settings.splitting_factor = c.chapter >= 4 ? 2 : 1;
-    settings.estimator = chapter_estimator(all_chapters.at(c.chapter - 1));
+    settings.splitting_factor = 2;
+    settings.estimator = chapter_estimator(c.chapter);
     const Batches batches = render_batches(scene, settings, reference_batches);
 
     const Comparison comparison{batches, reference};
@@ -191,7 +139,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     std::printf("  signs of neighbouring tiles: p = %.2g; excess kurtosis of batches %.2f\n", sign_p_value,
                 kurtosis);
     EXPECT_GT(sign_p_value, significance) << "neighbouring tiles are off to the same side";
-    if (c.tail == Tail::light) {
+    if (!c.has_heavy_tail) {
         EXPECT_LT(kurtosis, 2) << "the batches' spread does not tell the error of their mean";
     }
     if (HasFailure()) write_failure("", batches.mean_image(), reference.mean, map);

@@ -10,42 +10,18 @@
 namespace lab {
 namespace {
 
-struct Repetition {
-    std::string name;
-    uint32_t chapter, before;
-    uint32_t splitting_factor = 2;
-    bool has_roulette = true;
-    bool has_glass = true, has_probe = false;
-    bool has_points = true;  // instead of random numbers, where the chapter has them
-};
-const std::vector<Repetition> repetitions{
-    {.name = "chapter_4_without_splitting",
-     .chapter = 4,
-     .before = 3,
-     .splitting_factor = 1,
-     .has_roulette = false,
-     .has_glass = false},
-    {.name = "chapter_5_without_roulette",
-     .chapter = 5,
-     .before = 4,
-     .has_roulette = false,
-     .has_glass = false},
-    {.name = "chapter_6_without_glass", .chapter = 6, .before = 5, .has_glass = false},
-    {.name = "chapter_8_without_probe", .chapter = 8, .before = 7},
-    {.name = "chapter_9_without_its_points",
-     .chapter = 9,
-     .before = 8,
-     .has_probe = true,
-     .has_points = false},
-    {.name = "chapter_10", .chapter = 10, .before = 9, .has_probe = true}};
+// What tests.json of the chapters says.
+const std::vector<Repetition> repeated_chapters = repetitions();
 
 class RepeatedChapter : public testing::TestWithParam<size_t> {};
-INSTANTIATE_TEST_SUITE_P(, RepeatedChapter, testing::Range(size_t{0}, repetitions.size()),
-                         [](const auto& instance) { return repetitions[instance.param].name; });
+INSTANTIATE_TEST_SUITE_P(, RepeatedChapter, testing::Range(size_t{0}, repeated_chapters.size()),
+                         [](const auto& instance) {
+                             return "chapter_" + repeated_chapters[instance.param].chapter;
+                         });
 
 Estimator repetition_estimator(const Repetition& repetition) {
-    Estimator estimator = chapter_estimator(all_chapters.at(repetition.chapter - 1));
-    if (repetition.has_points) return estimator;
+    Estimator estimator = chapter_estimator(repetition.chapter);
+    if (repetition.has("points")) return estimator;
     estimator.observed = estimator.file;
     estimator.file = project_folder() / "tests" / "shaders" / "without_points.glsl";
     std::erase(estimator.defines, "LOW_DISCREPANCY");
@@ -61,12 +37,12 @@ std::vector<std::pair<Scene, Strategy>> scenes_of(const Repetition& repetition) 
     open.background = {0.2f, 0.3f, 0.5f};
     for (Material& material : furnace.materials) material.emission = vec3(1);
     std::vector<std::pair<Scene, Strategy>> scenes{{room, Strategy::both},
-                                                        {glossy, Strategy::both},
-                                                        {open, Strategy::both},
-                                                        {furnace, Strategy::bounces}};
-    if (repetition.has_glass)
+                                                   {glossy, Strategy::both},
+                                                   {open, Strategy::both},
+                                                   {furnace, Strategy::bounces}};
+    if (repetition.has("glass"))
         scenes.emplace_back(room_with_box(dielectric_material(1.5f, vec3(0.3f))), Strategy::both);
-    if (repetition.has_probe) scenes.emplace_back(load_shipped_scene("textured.json"), Strategy::both);
+    if (repetition.has("probe")) scenes.emplace_back(load_shipped_scene("textured.json"), Strategy::both);
     return scenes;
 }
 
@@ -88,11 +64,11 @@ void expect_same_paths(const Rendering& chapter, const Rendering& before) {
 }
 
 TEST_P(RepeatedChapter, IsTheChapterBeforeIt) {
-    const Repetition& repetition = repetitions[GetParam()];
+    const Repetition& repetition = repeated_chapters[GetParam()];
     constexpr uint32_t endless = 100'000;
     std::vector<std::tuple<uint32_t, uint32_t, float, float>> limits{
         {0, no_roulette, 1.0f, 1.0f}, {1, no_roulette, 1.0f, 1.0f}, {8, no_roulette, 1.0f, 1.0f}};
-    if (repetition.has_roulette)
+    if (repetition.has("roulette"))
         limits = {{0, 1, 0.95f, 1.0f},
                   {1, 1, 0.95f, 1.0f},
                   {8, 1, 0.95f, 0.25f},
@@ -103,11 +79,11 @@ TEST_P(RepeatedChapter, IsTheChapterBeforeIt) {
                                 .height = 48,
                                 .samples = 8,
                                 .seed = 7,
-                                .splitting_factor = repetition.splitting_factor,
+                                .splitting_factor = repetition.has("splitting") ? 2u : 1u,
                                 .strategy = strategy,
                                 .estimator = repetition_estimator(repetition)};
         SceneRenderer chapter(scene, settings);
-        settings.estimator = chapter_estimator(all_chapters.at(repetition.before - 1));
+        settings.estimator = chapter_estimator(repetition.before);
         SceneRenderer before(scene, settings);
         for (const auto& [length, roulette_start, cap, weight] : limits) {
             settings.max_path_length = length;

@@ -35,7 +35,8 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
 }
 
 class Roulette : public OnEachChapter {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_from(5)), own_estimator_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_that(has_roulette)),
+                         own_estimator_name);
 
 // With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So
 // E[X] = m = 1/(1-a), E[X²] = (1 + 2am)/(1 - a²/p), and it has 1/(1-p) rays.
@@ -47,7 +48,7 @@ TEST_P(Roulette, HasTheKnownMeanVarianceAndCost) {
         {0.5f, 0.45f, true},  {0.5f, 0.5f, true},  {0.5f, 0.95f, true}, {0.8f, 0.7f, false},
         {0.8f, 0.75f, false}, {0.8f, 0.78f, true}, {0.8f, 0.95f, true},
     };
-    uint32_t seed = 1000 * chapter_number(GetParam());
+    uint32_t seed = chapter_seed(GetParam());
     for (const auto& [albedo, cap, is_fourth_moment_finite] : cases) {
         RenderSettings settings{.samples = 1, .max_path_length = endless, .seed = ++seed};
         settings.survival_cap = cap;
@@ -79,8 +80,8 @@ TEST_P(Roulette, SurvivalIsTheLargestComponentOfTheThroughput) {
 }
 
 class SplitRoulette : public Roulette {};
-INSTANTIATE_TEST_SUITE_P(Chapters, SplitRoulette, testing::Values("05_russian_roulette", "06_dielectrics"),
-                         chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, SplitRoulette,
+                         testing::ValuesIn(chapters_that(has_roulette, splits_paths)), chapter_name);
 
 TEST_P(SplitRoulette, IgnoresTheSplitting) {
     // Each of s branches has p/(1-p) rays, and the variance of one is divided by s: were the factor 1/s part
@@ -89,7 +90,7 @@ TEST_P(SplitRoulette, IgnoresTheSplitting) {
     for (const uint32_t s : {1u, 4u, 7u}) {
         RenderSettings settings{.samples = 1,
                                 .max_path_length = endless,
-                                .seed = 1000 * chapter_number(GetParam()) + 20 + s,
+                                .seed = chapter_seed(GetParam()) + 20 + s,
                                 .splitting_factor = s};
         const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 96);
         const std::string name = "s = " + std::to_string(s) + ": ";
@@ -113,8 +114,7 @@ TEST_P(Roulette, SurvivorsCarryTheSurvivalWeight) {
     // With the survival weight a² and no cap two bounces are certain. From then on a path of weight a²
     // survives with probability a, and so sees 1 + a + a² X' with E[X'] = 1/(1-a) and Var X' = a/(1-a)².
     const double a = 0.5, m = 1 / (1 - a), variance = std::pow(a, 4) * a * m * m;
-    RenderSettings settings{
-        .samples = 1, .max_path_length = endless, .seed = 1000 * chapter_number(GetParam()) + 40};
+    RenderSettings settings{.samples = 1, .max_path_length = endless, .seed = chapter_seed(GetParam()) + 40};
     settings.survival_cap = 1;
     settings.survival_weight = 0.25f;
     const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 96);

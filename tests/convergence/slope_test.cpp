@@ -20,7 +20,7 @@ void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings
     settings.splitting_factor = 2;
     settings.roulette_start = 2;
     settings.estimator = chapter_estimator(chapter);
-    settings.seed = 1000 * chapter_number(chapter);
+    settings.seed = chapter_seed(chapter);
     const ErrorSlope slope = measure_error_slope(scene, settings, 1024);
     // A slope that leaves the tolerance with this probability.
     const double finds = slope_tolerance + normal_quantile(power) * slope.standard_error;
@@ -31,7 +31,7 @@ void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings
 }
 
 class Convergence : public OnEachChapter {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(pseudorandom_chapters_from(1)),
+INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(chapters_that(is_pseudorandom)),
                          own_estimator_name);
 TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
     Scene scene = load_shipped_scene("cornell_box.json");
@@ -66,7 +66,7 @@ void expect_slope_below(const std::string& what, const std::vector<double>& erro
 // Of smooth functions whose integrals are known. Pixels that share a scramble would err together, so that
 // their mean is no better than each of them. Pairs of numbers that share one would have another integral.
 TEST(LowDiscrepancyConvergence, ErrorOfSmoothIntegralsFallsFast) {
-    const Estimator chapter = chapter_estimator(all_chapters.at(8));
+    const Estimator chapter = chapter_estimator(chapter_named("low_discrepancy_points"));
     RenderSettings settings{.width = 64, .height = 64, .seed = test_seed(9100)};
     settings.estimator = {.file = project_folder() / "tests" / "shaders" / "smooth_radiance.glsl",
                           .defines = chapter.defines,
@@ -117,7 +117,7 @@ Scene lamp_above_floor() {
 
 RenderSettings light_samples_only() {
     RenderSettings settings{.width = 48, .height = 48, .max_path_length = 1};
-    settings.estimator = chapter_estimator(all_chapters.at(8));
+    settings.estimator = chapter_estimator(chapter_named("low_discrepancy_points"));
     settings.estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
     return settings;
 }
@@ -128,7 +128,7 @@ TEST(LowDiscrepancyConvergence, ErrorOfUnoccludedDirectLightFallsFast) {
 
 TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster) {
     RenderSettings settings{.width = 48, .height = 48, .max_path_length = 3, .roulette_start = 3};
-    settings.estimator = chapter_estimator(all_chapters.at(8));
+    settings.estimator = chapter_estimator(chapter_named("low_discrepancy_points"));
     expect_fast_convergence(load_shipped_scene("cornell_box.json"), settings, -0.52);
 }
 

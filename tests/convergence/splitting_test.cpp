@@ -39,7 +39,7 @@ Scene view_of_boxes() {
 
 RenderSettings settings_of(const std::string& chapter, uint32_t splitting_factor) {
     RenderSettings settings{.width = 16, .height = 16, .samples = 1, .max_path_length = 4};
-    settings.seed = 1000 * chapter_number(chapter) + splitting_factor;
+    settings.seed = chapter_seed(chapter) + splitting_factor;
     settings.splitting_factor = splitting_factor;
     settings.estimator = chapter_estimator(chapter);
     return settings;
@@ -83,9 +83,7 @@ SplittingFit fit_variances(const std::vector<std::vector<double>>& variances_of_
 }
 
 class Splitting : public OnEachChapter {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Splitting,
-                         testing::Values("04_splitting", "05_russian_roulette", "06_dielectrics"),
-                         chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, Splitting, testing::ValuesIn(chapters_that(splits_paths)), chapter_name);
 
 TEST_P(Splitting, LowersTheVarianceAfterTheFirstHit) {
     std::vector<std::vector<double>> variances;

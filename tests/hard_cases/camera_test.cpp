@@ -85,7 +85,7 @@ TEST_P(HardCamera, GrazingViewsLoseNoLight) {
             }
             scene.background = vec3(1);
             RenderSettings settings{.width = 64, .height = 64, .samples = 4};
-            settings.estimator = chapter_estimator("02_cosine_sampling");
+            settings.estimator = chapter_estimator(chapter_named("cosine_sampling"));
             settings.backend = GetParam();
             for (const FilmPixel& pixel : render(scene, settings).pixels) {
                 lost += pixel.sum.r != 4;

@@ -35,8 +35,8 @@ Scene floor_and_wall(double nearest, double farthest) {
     return scene;
 }
 
-const std::string next_event_estimation = "03_next_event_estimation",
-                  multiple_importance_sampling = "07_multiple_importance_sampling";
+const std::string next_event_estimation = chapter_named("next_event_estimation"),
+                  multiple_importance_sampling = chapter_named("multiple_importance_sampling");
 
 RenderSettings settings(const std::string& chapter) {
     RenderSettings settings{.max_path_length = 1};

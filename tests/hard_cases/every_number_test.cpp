@@ -36,7 +36,7 @@ TEST(EveryNumber, MakesACosineSampleAboveTheHorizon) {
     for_all_numbers([&](const auto& numbers) {
         std::vector<vec2> pairs;
         for (const auto& [x, y] : numbers) pairs.emplace_back(x, y);
-        for (const vec3& direction : sample_hemisphere("02_cosine_sampling", pairs)) {
+        for (const vec3& direction : sample_hemisphere(chapter_named("cosine_sampling"), pairs)) {
             lowest = std::min(lowest, double{direction.z});
             worst_length = std::max(worst_length, std::abs(glm::length(dvec3(direction)) - 1));
         }
@@ -52,7 +52,7 @@ TEST(EveryNumber, GivesUniformAnglesABoundedWeight) {
     const Surface surface{{0, 0, 1}, {0, 0, 1}, white_material()};
     double largest = 0, worst = 0;
     for_all_numbers([&](const auto& numbers) {
-        const auto bounces = bounces_at("01_uniform_sampling", surface, numbers);
+        const auto bounces = bounces_at(chapter_named("uniform_sampling"), surface, numbers);
         for (size_t i = 0; i < numbers.size(); ++i) {
             const double exact = pi / 2 * std::sin(pi * numbers[i][1]);
             ASSERT_GE(bounces[i].weight, 0.0f);

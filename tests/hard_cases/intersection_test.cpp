@@ -119,8 +119,8 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
     for (const auto& [name, object_to_world, before] : cases) {
         std::vector<vec3> corners = Random(2).triangles(200);
         for (vec3& corner : corners) corner = before * corner;
-        const glm::dvec3 total = probe_total(triangle_scene(corners, object_to_world),
-                                             settings("reintersect", size, effort));
+        const glm::dvec3 total =
+            probe_total(triangle_scene(corners, object_to_world), settings("reintersect", size, effort));
         RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
         EXPECT_GE(total.g, 0.9 * size * size) << name;
@@ -166,7 +166,7 @@ TEST_P(Intersection, NothingLeaksThroughPlanesCloseToEachOther) {
             const Scene scene = two_planes(gap, is_turned);
             RenderSettings furnace = settings("", 128, 1);
             furnace.strategy = Strategy::bounces;
-            furnace.estimator = chapter_estimator("02_cosine_sampling");
+            furnace.estimator = chapter_estimator(chapter_named("cosine_sampling"));
             for (const FilmPixel& pixel : render(scene, furnace).pixels) {
                 leaks += pixel.sum.r != 2 - 1.0f / 256;
                 ++rays;

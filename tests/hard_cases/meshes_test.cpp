@@ -63,7 +63,7 @@ class BadMeshes : public OnEachBackend {
 
     Batches batches(const Scene& scene, const std::string& chapter) const {
         RenderSettings settings{.width = 32, .height = 32, .samples = 3, .max_path_length = 3};
-        settings.seed = chapter_number(chapter);
+        settings.seed = chapter_seed(chapter);
         settings.estimator = chapter_estimator(chapter);
         settings.backend = GetParam();
         return render_batches(scene, settings, 32);
@@ -78,11 +78,11 @@ class BadMeshes : public OnEachBackend {
         const glm::dvec3 total = probe_total(scene, look);
         EXPECT_EQ(total.r + total.g, 0) << what << ": points without a normal or position";
         RecordProperty("points_without_a_normal", out_of(total.r, total.b));
-        const std::vector<double> expected = batches(equivalent, "02_cosine_sampling").means(0);
+        const std::vector<double> expected = batches(equivalent, chapter_named("cosine_sampling")).means(0);
         const double mean = estimate_mean(expected).mean;
         std::vector<Difference> differences;
         for (const std::string& chapter :
-             chapters_for(GetParam(), {"05_russian_roulette", "01_uniform_sampling"}))
+             chapters_for(GetParam(), {chapter_named("russian_roulette"), chapter_named("uniform_sampling")}))
             differences.push_back(
                 difference_of(batches(scene, chapter).means(0), expected).relative_to(mean));
         expect_no_difference(what, differences, 0.06, 6);

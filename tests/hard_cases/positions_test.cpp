@@ -20,7 +20,7 @@ class Positions : public OnEachBackend {
                                .samples = 8,
                                .max_path_length = 3,
                                .seed = 1,
-                               .estimator = chapter_estimator("03_next_event_estimation"),
+                               .estimator = chapter_estimator(chapter_named("next_event_estimation")),
                                .backend = GetParam()},
                               32);
     }
@@ -117,7 +117,7 @@ TEST_P(Positions, PowersOfTwoChangeNoBit) {
         return render(scene, {.width = 32,
                               .height = 32,
                               .samples = 4,
-                              .estimator = chapter_estimator("06_dielectrics"),
+                              .estimator = chapter_estimator(chapter_named("dielectrics")),
                               .backend = GetParam()});
     };
     const FilmImage expected = render_scaled(0);

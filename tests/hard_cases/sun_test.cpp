@@ -93,7 +93,7 @@ TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
                                     .max_path_length = 1,
                                     .seed = ++seed,
                                     .backend = GetParam()};
-            settings.estimator = chapter_estimator("08_light_probes");
+            settings.estimator = chapter_estimator(chapter_named("light_probes"));
             if (only_light_samples) settings.estimator.defines = {"STRATEGY STRATEGY_LIGHT"};
             Scene scene = sunny_floor(sun, sky);
             scene.probe_rotation = rotation;
@@ -112,7 +112,7 @@ TEST_P(SunCases, LampAndSunAddUp) {
                             .max_path_length = 1,
                             .seed = 77 + static_cast<uint32_t>(GetParam()),
                             .backend = GetParam()};
-    settings.estimator = chapter_estimator("08_light_probes");
+    settings.estimator = chapter_estimator(chapter_named("light_probes"));
     // A lamp so far to the side that it hides next to nothing of the sky, and not the sun.
     const std::vector<dvec3> lamp{{9, 5, -9}, {10, 5, -8}, {10, 6, -8}, {9, 6, -9}};
     Scene scene = sunny_floor(ordinary_sun, sky_radiance,
@@ -133,7 +133,8 @@ TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable) {
     scene.light_probe = Image{columns, rows, std::vector<float>(size_t{3} * columns * rows, 1.0f)};
     const size_t sun = 3 * (size_t{1500} * columns + 1000);
     std::fill_n(scene.light_probe->pixels.begin() + static_cast<ptrdiff_t>(sun), 3, 1e10f);
-    for (const char* chapter : {"08_light_probes", "09_low_discrepancy_points"}) {
+    for (const std::string& chapter :
+         {chapter_named("light_probes"), chapter_named("low_discrepancy_points")}) {
         RenderSettings settings{.samples = 1024, .max_path_length = 1, .seed = 31};
         settings.estimator = chapter_estimator(chapter);
         settings.estimator.defines.push_back("STRATEGY STRATEGY_LIGHT");
@@ -143,7 +144,7 @@ TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable) {
 
 TEST_P(SunCases, BlackProbesGiveNothing) {
     RenderSettings settings{.samples = 16, .max_path_length = 4, .backend = GetParam()};
-    settings.estimator = chapter_estimator("08_light_probes");
+    settings.estimator = chapter_estimator(chapter_named("light_probes"));
     Scene scene = sunny_floor();
     scene.light_probe->pixels.assign(scene.light_probe->pixels.size(), 0.0f);
     for (const FilmPixel& pixel : render(scene, settings).pixels) ASSERT_EQ(pixel.sum, vec3(0));

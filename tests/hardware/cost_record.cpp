@@ -109,7 +109,7 @@ void print(const std::string& what, Backend backend, const std::vector<Rates>& r
 
 // Each feature alone, and nothing, in the box without light. Chapter 6 knows all of them.
 json measure_features(const Device& device, Backend backend, const Options& options) {
-    const std::string chapter = "06_dielectrics";
+    const std::string chapter = chapter_named("dielectrics");
     Scene bare = make_box_scene(200, 100);
     for (Material& material : bare.materials) material.emission = vec3(0);
     std::vector<std::string> names{"none"};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "benchmark/box_scene.h"
+#include "support/chapters.h"
 #include "support/dielectric_scenes.h"
 #include "support/meshes.h"
 
@@ -34,7 +35,7 @@ Scene spheres(uint64_t count) {
 }  // namespace
 
 std::vector<Growth> all_growths(uint32_t size) {
-    const std::string roulette = "05_russian_roulette";
+    const std::string roulette = chapter_named("russian_roulette");
     const auto triangles = [size](uint64_t count) {
         const Scene scene = box_of(count);
         return GrowthStep{scene.triangles.size(), scene, uvec2(size), path_length};
@@ -54,12 +55,13 @@ std::vector<Growth> all_growths(uint32_t size) {
         return GrowthStep{count, empty_room(), uvec2(size), static_cast<uint32_t>(count)};
     };
     const std::vector<uint64_t> lengths{1, 2, 4, 8, 16, 32, 64};
-    return {{"triangles", roulette, {100, 1'000, 10'000, 100'000, 1'000'000, 4'000'000}, triangles},
-            {"emissive triangles", roulette, {2, 10, 100, 1'000, 10'000, 100'000}, lights},
-            {"instances", roulette, {1, 8, 64, 512, 4'096}, instances},
-            {"pixels", roulette, {1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22}, pixels},
-            {"maximal path length without roulette", "03_next_event_estimation", lengths, bounces},
-            {"maximal path length with roulette", roulette, lengths, bounces}};
+    return {
+        {"triangles", roulette, {100, 1'000, 10'000, 100'000, 1'000'000, 4'000'000}, triangles},
+        {"emissive triangles", roulette, {2, 10, 100, 1'000, 10'000, 100'000}, lights},
+        {"instances", roulette, {1, 8, 64, 512, 4'096}, instances},
+        {"pixels", roulette, {1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22}, pixels},
+        {"maximal path length without roulette", chapter_named("next_event_estimation"), lengths, bounces},
+        {"maximal path length with roulette", roulette, lengths, bounces}};
 }
 
 }  // namespace lab

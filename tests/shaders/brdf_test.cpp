@@ -120,7 +120,8 @@ class BrdfSampling : public testing::TestWithParam<std::string> {
         return {{0, 0, 1}, direction(lobe.degrees * pi / 180, 0.7), material};
     }
 };
-INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_from(7)), chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_that(weights_lights)),
+                         chapter_name);
 
 TEST_P(BrdfSampling, FollowsTheLobe) {
     // 1 - cos α grows from 0 with the probability 1 - (cos α)^(n+1), and the azimuth about the mirror image

@@ -14,8 +14,8 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-const std::vector<std::string> chapters = chapters_from(2);
-const std::string& chapter_2 = chapters.front();
+const std::vector<std::string> chapters = chapters_that(weighs_by_albedo);
+const std::string cosine_sampling = chapter_named("cosine_sampling");
 
 std::vector<Bounce> sample(const std::string& chapter, const dvec3& normal, size_t count, uint32_t run) {
     return sample_bounces(chapter, {vec3(normal), vec3(normal), white_material()}, count, run);
@@ -26,7 +26,7 @@ TEST(CosineSampling, FollowsItsDensity) {
     const auto integral = [](double c) { return c * c; };
     uint32_t run = 50;
     for (const dvec3& normal : test_normals()) {
-        const auto bounces = sample(chapter_2, normal, 4'000'000, ++run);
+        const auto bounces = sample(cosine_sampling, normal, 4'000'000, ++run);
         for (const auto& [rows, columns] : {std::pair{16u, 32u}, {51u, 102u}})
             expect_distribution("normal " + std::to_string(run - 50) + ", " + std::to_string(rows) + " x " +
                                     std::to_string(columns) + " cells",

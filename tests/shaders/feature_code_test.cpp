@@ -56,14 +56,9 @@ Scene bare_scene() { return closed_box(diffuse_material(vec3(0.5f))); }
 
 class FeatureCode : public testing::TestWithParam<std::string> {
   protected:
-    bool samples_lights() const { return chapter_number(GetParam()) >= 3; }
-    bool weights_lights() const { return chapter_number(GetParam()) >= 7; }
-    bool samples_probes() const { return chapter_number(GetParam()) >= 8; }
-    bool knows_dielectrics() const { return chapter_number(GetParam()) >= 6; }
-
     Footprint footprint(const Scene& scene, Backend backend) const {
         const RenderSettings settings{
-            .strategy = samples_lights() ? Strategy::both : Strategy::bounces,
+            .strategy = samples_lights(GetParam()) ? Strategy::both : Strategy::bounces,
             .estimator = chapter_estimator(GetParam())};
         const GpuScene gpu_scene = make_gpu_scene(scene, settings);
         const auto structure = build_acceleration_structure(backend, test_device(), gpu_scene);
@@ -112,11 +107,12 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
     for (const SceneFeature& feature : all_scene_features()) {
         SCOPED_TRACE(feature.name);
         Needs needs = needs_of_features().at(feature.name);
-        if (!needs.functions.empty() && needs.functions.contains("sample_dielectric") && !knows_dielectrics())
+        if (!needs.functions.empty() && needs.functions.contains("sample_dielectric") &&
+            !handles_dielectrics(GetParam()))
             continue;
-        if (feature.name == "area lights" && !samples_lights()) needs = {};
-        if (feature.name == "area lights" && !weights_lights()) needs.material_members = {};
-        if (feature.name == "light probe" && !samples_probes()) {
+        if (feature.name == "area lights" && !samples_lights(GetParam())) needs = {};
+        if (feature.name == "area lights" && !weights_lights(GetParam())) needs.material_members = {};
+        if (feature.name == "light probe" && !load_chapter(GetParam()).light_probe_sampling) {
             needs.bindings.erase(BINDING_PROBE_CELLS);
             needs.functions.erase("choose_probe_cell");
         }

@@ -36,7 +36,7 @@ struct DielectricResult {
 
 std::vector<DielectricResult> evaluate(const std::vector<DielectricInput>& inputs) {
     TestShader shader{.name = "fresnel.comp"};
-    shader.named_includes = {{"path_trace.glsl", chapter_estimator("06_dielectrics").file}};
+    shader.named_includes = {{"path_trace.glsl", chapter_estimator(chapter_named("dielectrics")).file}};
     return run_shader<DielectricResult>(shader, inputs);
 }
 

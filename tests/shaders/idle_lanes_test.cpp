@@ -8,8 +8,8 @@
 namespace lab {
 namespace {
 
-const std::string without_regeneration = "09_low_discrepancy_points",
-                  with_regeneration = "10_path_regeneration";
+const std::string without_regeneration = chapter_named("low_discrepancy_points"),
+                  with_regeneration = chapter_named("path_regeneration");
 
 // The mean over the image, whose size is no multiple of a block's.
 double idle_part(const Scene& scene, const std::string& chapter, RenderSettings settings) {

@@ -21,7 +21,7 @@ struct Words {
 };
 
 std::vector<Words> words_of(const std::vector<SampleId>& samples) {
-    const Estimator estimator = chapter_estimator(all_chapters.at(8));
+    const Estimator estimator = chapter_estimator(chapter_named("low_discrepancy_points"));
     TestShader shader{.name = "low_discrepancy.comp",
                       .defines = estimator.defines,
                       .named_includes = named_includes(estimator)};

@@ -15,7 +15,7 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-const std::string chapter = "01_uniform_sampling";
+const std::string chapter = chapter_named("uniform_sampling");
 
 std::vector<Bounce> sample(const dvec3& normal, size_t count, uint32_t run) {
     return sample_bounces(chapter, {vec3(normal), vec3(normal), white_material()}, count, run);

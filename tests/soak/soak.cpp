@@ -20,6 +20,7 @@
 #include "files/project_folder.h"
 #include "rendering/renderer.h"
 #include "rendering/settings.h"
+#include "support/chapters.h"
 #include "tests/support/temporary_folder.h"
 
 namespace lab {
@@ -29,9 +30,9 @@ struct Case {
     std::string scene;
     std::string chapter;
 };
-const std::vector<Case> cases = {{"cornell_box", "03_next_event_estimation"},
-                                 {"textured", "01_uniform_sampling"},
-                                 {"glass", "06_dielectrics"}};
+const std::vector<Case> cases = {{"cornell_box", chapter_named("next_event_estimation")},
+                                 {"textured", chapter_named("uniform_sampling")},
+                                 {"glass", chapter_named("dielectrics")}};
 constexpr uint32_t camera_count = 2;
 constexpr uvec2 image_size(32, 32);
 constexpr uint32_t samples = 2;

@@ -142,8 +142,8 @@ dvec3 direction(double cos_theta, double sin_theta, double phi) {
 
 double uniform_angles_error(const Device& device) {
     const auto numbers = random_numbers();
-    const auto bounces =
-        bounces_at("01_uniform_sampling", {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers, device);
+    const auto bounces = bounces_at(chapter_named("uniform_sampling"),
+                                    {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers, device);
     double worst = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const double phi = 2 * pi * numbers[i][0] - pi, theta = 0.5 * pi * numbers[i][1];
@@ -157,7 +157,7 @@ double uniform_angles_error(const Device& device) {
 double cosine_sampling_error(const Device& device) {
     std::vector<vec2> numbers;
     for (const auto& [x, y] : random_numbers()) numbers.emplace_back(x, y);
-    const auto directions = sample_hemisphere("02_cosine_sampling", numbers, device);
+    const auto directions = sample_hemisphere(chapter_named("cosine_sampling"), numbers, device);
     double worst = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const double phi = 2 * pi * numbers[i].x - pi, y = numbers[i].y;

@@ -13,12 +13,6 @@ Scene load_shipped_scene(const std::string& file) {
     return load_scene(project_folder() / "assets" / "scenes" / file);
 }
 
-std::vector<std::string> light_sampling_chapters() {
-    std::vector<std::string> chapters = all_chapters;
-    std::erase_if(chapters, [](const std::string& chapter) { return load_chapter(chapter).strategies.empty(); });
-    return chapters;
-}
-
 Estimator chapter_estimator(const std::string& chapter) {
     const Chapter own = load_chapter(chapter);
     const char* copy = std::getenv("LAB_TEST_COPY");
@@ -26,7 +20,9 @@ Estimator chapter_estimator(const std::string& chapter) {
     return estimator_of(tested.title == own.title ? tested : own);
 }
 
-Estimator every_hit_estimator() { return {project_folder() / "chapters/04_splitting/solutions/split_every_hit.glsl"}; }
+Estimator every_hit_estimator() {
+    return {project_folder() / "chapters/04_splitting/solutions/split_every_hit.glsl"};
+}
 
 Estimator view_estimator(const std::string& view, const std::string& chapter) {
     Options options;
@@ -134,36 +130,6 @@ std::vector<double> pixel_means(const FilmImage& film, int channel) {
 
 void OnEachBackend::SetUp() {
     if (!test_device().description().supports(GetParam())) GTEST_SKIP() << "the device lacks this backend";
-}
-
-bool repeats_another(const std::string& chapter) {
-    // 4 without splitting is 3, 6 without glass is 5, 10 is 9, which is 8 but for the random numbers, and 8
-    // without light probes is 7.
-    constexpr std::array<uint32_t, 5> repeated{4, 6, 7, 8, 10};
-    return std::ranges::count(repeated, chapter_number(chapter)) > 0;
-}
-
-uint32_t chapter_number(const std::string& chapter) {
-    return static_cast<uint32_t>(std::stoul(chapter.substr(0, 2)));
-}
-
-std::vector<std::string> chapters_from(uint32_t first) {
-    std::vector<std::string> chapters;
-    for (const std::string& chapter : all_chapters)
-        if (chapter_number(chapter) >= first) chapters.push_back(chapter);
-    return chapters;
-}
-
-std::vector<std::string> pseudorandom_chapters_from(uint32_t first) {
-    std::vector<std::string> chapters = chapters_from(first);
-    std::erase_if(chapters, [](const std::string& name) { return load_chapter(name).low_discrepancy; });
-    return chapters;
-}
-
-bool splits_paths(const std::string& chapter) {
-    const auto options = load_chapter(chapter).options;
-    return std::any_of(options.begin(), options.end(),
-                       [](const ChapterOption& option) { return option.name == "--splitting-factor"; });
 }
 
 std::string backend_name(const testing::TestParamInfo<Backend>& info) {

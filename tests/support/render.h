@@ -5,26 +5,11 @@
 #include <array>
 #include <string>
 
-#include "rendering/chapter.h"
 #include "rendering/renderer.h"
 #include "scene/scene.h"
+#include "support/chapters.h"
 
 namespace lab {
-
-// The chapters whose estimators are tested, in order.
-inline const std::vector<std::string> all_chapters = course_chapters();
-
-// Those that sample lights.
-std::vector<std::string> light_sampling_chapters();
-
-// Those that use what chapter number `first` teaches, and all after it.
-std::vector<std::string> chapters_from(uint32_t first);
-
-// Of these, those whose random numbers are the generator's: its states decide what they do.
-std::vector<std::string> pseudorandom_chapters_from(uint32_t first);
-
-// Whether its paths split: whether it has --splitting-factor.
-bool splits_paths(const std::string& chapter);
 
 // Where the environment's LAB_TEST_COPY names the folder of a copy of this chapter, that of the copy.
 Estimator chapter_estimator(const std::string& chapter);
@@ -114,13 +99,6 @@ class OnEachBackend : public testing::TestWithParam<Backend> {
 };
 
 using OnEachChapter = testing::TestWithParam<std::string>;
-
-// Whether a chapter is another one path by path, but for what it adds, as RepeatedChapter shows.
-bool repeats_another(const std::string& chapter);
-
-// 1 for "01_uniform_sampling". Chapters may follow the same paths if their seeds are equal: tests that are to
-// be independent of each other make it part of the seed.
-uint32_t chapter_number(const std::string& chapter);
 
 // For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters. Ray queries ask the
 // structure that the pipeline traces through, and Parity compares their paths: they are left to --all. So are

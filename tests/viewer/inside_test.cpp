@@ -136,7 +136,7 @@ TEST_F(InsideTest, AnEstimatorWithoutRaysHasAPathWithoutVertices) {
 }
 
 TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor) {
-    chapter_ = load_chapter("07_multiple_importance_sampling");
+    chapter_ = load_chapter(chapter_named("multiple_importance_sampling"));
     Options options = options_with_reference();
     options.appearance.sample_count = 1;
     open(options);
@@ -166,7 +166,7 @@ TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor) 
 TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
     open(options_with_reference());
     Comparison& comparison = viewer_->comparison();
-    comparison.start(session(), "03_next_event_estimation");
+    comparison.start(session(), chapter_named("next_event_estimation"));
     comparison.equal = Equal::samples;
     wait_until("both", [&] { return comparison.is_active(); });
     EXPECT_EQ(comparison.message(), "");
@@ -216,13 +216,13 @@ TEST_F(InsideTest, TwoSettingsBesideEachOtherFollowTheView) {
 TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
     Options options = make_options();
     options.scene.file = scenes / "glass.json";
-    chapter_ = load_chapter("06_dielectrics");
+    chapter_ = load_chapter(chapter_named("dielectrics"));
     open(options);
-    viewer_->comparison().start(session(), "03_next_event_estimation");
+    viewer_->comparison().start(session(), chapter_named("next_event_estimation"));
     wait_until("refused", [&] { return !viewer_->comparison().message().empty(); });
     EXPECT_NE(viewer_->comparison().message().find("dielectric"), std::string::npos);
     EXPECT_FALSE(viewer_->comparison().is_active());
-    viewer_->comparison().start(session(), "06_dielectrics");
+    viewer_->comparison().start(session(), chapter_named("dielectrics"));
     wait_until("both", [&] { return viewer_->comparison().is_active(); });
 }
 

@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "files/project_folder.h"
+#include "support/chapters.h"
 #include "support/temporary_folder.h"
 #include "viewer/viewer.h"
 
@@ -177,7 +178,7 @@ class ViewerTest : public testing::Test {
     }
 
     TemporaryFolder folder_;
-    Chapter chapter_ = load_chapter("05_russian_roulette");
+    Chapter chapter_ = load_chapter(chapter_named("russian_roulette"));
     std::unique_ptr<Window> window_;
     std::unique_ptr<Device> device_;
     std::unique_ptr<Viewer> viewer_;
