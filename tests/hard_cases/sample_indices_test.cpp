@@ -1,11 +1,7 @@
 // Sample indices up to 2^32: no two samples of an image share their random numbers, also not the last ones.
-#include <algorithm>
 #include <set>
 
-#include "error.h"
-#include "film/film_file.h"
 #include "support/gpu_test.h"
-#include "support/pcg2d.h"
 #include "support/render.h"
 
 namespace lab {
@@ -41,31 +37,6 @@ TEST_P(SampleIndexCases, TheLastSamplesAreRenderedAsAnyOthers) {
     EXPECT_EQ(images.size(), count + others.size());
     for (size_t p = 0; p < sums.size(); ++p)
         ASSERT_LE(glm::distance(glm::dvec3(whole.pixels[p].sum), sums[p]), 1e-6 * glm::length(sums[p]));
-}
-
-TEST(SampleIndices, MergedRangesEndBelowTheRange) {
-    // A pixel counts its samples in 32 bits; parts that have more together are refused instead of starting
-    // over at 0.
-    const auto file = [](const std::string& name) {
-        return std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + name);
-    };
-    const auto write = [&](const std::string& name, uint32_t first, uint32_t samples) {
-        FilmRecord record{};
-        record.first_sample = first;
-        write_film(
-            file(name),
-            {1,
-             1,
-             {FilmPixel{
-                 .sum = vec3(1), .compensation = vec3(0), .sample_count = samples, .invalid_count = 0}}},
-            record);
-        return file(name);
-    };
-    const auto first = write("first.exr", 0, 0x80000000), fits = write("fits.exr", 0x80000000, 0x7fffffff),
-               too_many = write("too_many.exr", 0x80000000, 0x80000000);
-    EXPECT_EQ(merge_films({first, fits}).image.min_samples(), 0xffffffffu);
-    EXPECT_THROW(merge_films({first, too_many}), UserError);
-    for (const auto& path : {first, fits, too_many}) std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -31,5 +31,25 @@ TEST(FilmFile, GoesOnWithTheWholeSum) {
         }
 }
 
+TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
+    const TestFolder folder;
+    const auto write = [&](uint32_t first, uint32_t samples) {
+        FilmRecord record{};
+        record.first_sample = first;
+        const auto file = folder / (std::to_string(first) + "_" + std::to_string(samples) + ".exr");
+        write_film(file, {1, 1, {{vec3(1), vec3(0), samples, 0}}}, record);
+        return file;
+    };
+    const uint32_t half = 0x80000000;
+    const auto first = write(0, half), rest = write(half, half - 1);
+    // In any order, and a pixel counts its samples in 32 bits.
+    const FilmFile merged = merge_films({rest, first});
+    EXPECT_EQ(merged.record.first_sample, 0u);
+    EXPECT_EQ(merged.image.min_samples(), 0xffffffffu);
+    EXPECT_USER_ERROR(merge_films({first, write(half, half)}), "at most 2^32 - 1 samples");
+    EXPECT_USER_ERROR(merge_films({first, write(half + 1, 7)}), "without overlap or gap");
+    EXPECT_USER_ERROR(merge_films({first, write(half - 1, 7)}), "without overlap or gap");
+}
+
 }  // namespace
 }  // namespace lab

@@ -65,6 +65,7 @@ TEST(Srgb, KnownValues) {
     // Where the two pieces of the curve nearly meet.
     EXPECT_NEAR(linear_to_srgb(0.0031307f), 12.92 * 0.0031307, 4e-9);
     EXPECT_NEAR(linear_to_srgb(0.0031309f), 1.055 * std::pow(0.0031309, 1 / 2.4) - 0.055, 4e-9);
+    EXPECT_FLOAT_EQ(linear_to_srgb(0.02f), static_cast<float>(1.055 * std::pow(0.02f, 1 / 2.4) - 0.055));
     EXPECT_FLOAT_EQ(linear_to_srgb(0.5f), 0.7353569831f);
 }
 

@@ -1,9 +1,12 @@
+// How far off an image is: against a reference, and told by its own samples.
 #include "statistics/noise.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "statistics/error_metrics.h"
 
 namespace lab {
 namespace {
@@ -32,6 +35,21 @@ TEST(Noise, IsThatOfTheMean) {
     EXPECT_EQ(estimate_noise(earlier, film, {16, 16}, {8, 8}).invalid_samples, 0u);
     EXPECT_EQ(estimate_noise({}, film, {0, 0}, {8, 8}).standard_error, 0);
     EXPECT_EQ(estimate_noise(film, film, {60, 60}, {8, 8}).standard_error, 0);
+}
+
+TEST(ErrorMetrics, DoNotContainTheVarianceOfTheReference) {
+    // The error of 0.5 everywhere, of which the reference's own noise is 0.09 of 0.25.
+    const Image image{2, 1, {1.5f, 1.5f, 1.5f, 2.5f, 2.5f, 2.5f}}, mean{2, 1, {1, 1, 1, 2, 2, 2}},
+        variance{2, 1, std::vector<float>(6, 0.09f)};
+    const double weight = 0.5 / (1 + 0.01 * 2.25) + 0.5 / (4 + 0.01 * 2.25);
+    const ErrorMetrics without = compare(image, {mean, std::nullopt, {}}),
+                       with = compare(image, {mean, variance, {}});
+    EXPECT_NEAR(without.mse, 0.25, 1e-9);
+    EXPECT_NEAR(without.rel_mse, 0.25 * weight, 1e-9);
+    EXPECT_NEAR(with.mse, 0.16, 1e-7);
+    EXPECT_NEAR(with.rel_mse, 0.16 * weight, 1e-7);
+    EXPECT_NEAR(with.rel_mse_uncorrected, 0.25 * weight, 1e-9);
+    EXPECT_NEAR(with.rel_rmse, std::sqrt(with.rel_mse), 1e-12);
 }
 
 }  // namespace
