@@ -1,10 +1,7 @@
 """The tools behind `lab`: python3 tools NAME ARGUMENTS.
 
-They stand in rooms: assets makes meshes, textures and scenes; references are images of another renderer, and how to read them;
-check grades a shader; report measures speed against error; lesson shows what a chapter changes and what samplers do; book makes
-a site of the pages. What only a teacher needs is in docs (tables and figures of the pages), course (handouts, and the
-bugs of the catalogue of mistakes) and package (archives for machines without a compiler): handouts leave these out. project.py is
-what all share. Tests import from here, never the other way.
+common/README.md lists their rooms. Handouts leave out those for teachers: docs, course and package. project.py is what all share.
+Tests import from here, never the other way.
 """
 import sys
 from importlib import import_module
@@ -14,7 +11,7 @@ import project
 TOOLS = {  # name: module
     "assets": "assets.make", "benchmark": "docs.benchmark", "book": "book.build", "bug": "course.bug", "check": "check.command",
     "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout", "package": "package.make", "peer": "references.peer",
-    "reference": "references.make", "report": "report.make", "sample": "lesson.sample", "tables": "docs.tables",
+    "reference": "references.make", "report": "report.make", "rooms": "docs.rooms", "sample": "lesson.sample", "tables": "docs.tables",
     "windows": "package.windows_programs",
 }
 

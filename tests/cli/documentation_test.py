@@ -17,6 +17,7 @@ from program import BINARIES, TOOLS, UNOPTIMISED  # first: it finds the tools
 from program import PROJECT as ROOT
 import measure
 from docs import numerics
+from lesson import sample
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
@@ -154,7 +155,7 @@ class DocumentedCommandsTest(unittest.TestCase):
             for name, *arguments in commands(page):
                 self.assertTrue(f"\ncommand_{name}()" in lab, f"{page.relative_to(ROOT)}: ./lab {name}")
                 if name == "sample" and arguments:
-                    self.assertIn(f'    "{arguments[0]}": Playground(', text_of(ROOT / "tools/lesson/sample.py"))
+                    self.assertIn(arguments[0], sample.PLAYGROUNDS)
                 for argument in arguments if name != "run" else []:
                     if argument.startswith("--"):
                         self.assertTrue(argument in options, f"{page.relative_to(ROOT)}: ./lab {name} {argument}")

@@ -9,11 +9,10 @@ from program import CHAPTER, PROJECT, ProgramTest, RenderTest  # first: it finds
 import numpy as np
 from check.grading import program_with
 from docs import figures, first_steps
-from docs.figure_plots import GAP, LABEL
 from PIL import Image
 from project import read_json
 from references.images import read_rgb
-from report.plots import encode_srgb
+from report.plots import GAP, LABEL, encode_srgb
 
 MOST_LINES = 25
 SHADERS = first_steps.shaders(first_steps.PAGE.read_text(encoding="utf-8"))

@@ -6,7 +6,8 @@ from pathlib import Path
 from unittest import mock
 
 import tools_path  # noqa: F401  (first: it finds the others)
-from docs import best_table, code_blocks, peer_table
+from book import code_blocks
+from docs import best_table, peer_table
 from project import UserError
 
 SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}

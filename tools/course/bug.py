@@ -114,7 +114,7 @@ def show(bug, index, scene, programs, options):
         show_progress(f"{('right', 'wrong')[len(images) - 1]} picture of {case['scene']}", len(images), len(cases), started)
     path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
     path.parent.mkdir(exist_ok=True)
-    from docs.figure_plots import right_and_wrong  # only here: Matplotlib takes longer to begin than all other modules together
+    from report.plots import right_and_wrong  # only here: Matplotlib takes longer to begin than all other modules together
     right_and_wrong(path, *images)
     taken = sum(row["samples"] for row in last_rows(cases[0]["runs"]))
     for name, text in (("scene", f"{cases[0]['scene']}, {taken} samples per pixel"), ("verdict", verdict(*cases)),

@@ -2,7 +2,7 @@
 import re
 from itertools import takewhile
 
-from docs.code_blocks import BLOCK
+from book.code_blocks import BLOCK
 
 FENCED = re.compile(r"^ *```\w+\n.*?^ *```$", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"(?<!!)\[(`[^`]+`|[^\[\]]+)\]\(([^()\s]+)\)")

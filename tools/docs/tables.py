@@ -1,5 +1,5 @@
 """Fills the tables of the pages from the records in docs/records. In a page, what stands between the lines <!-- table: NAME -->
-and <!-- end of table --> is replaced by that table, and blocks of code are filled from their sources (docs/code_blocks.py).
+and <!-- end of table --> is replaced by that table, and blocks of code are filled from their sources (book/code_blocks.py).
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
@@ -12,9 +12,9 @@ import os
 import re
 from pathlib import Path
 
+from book.code_blocks import fill
 from docs.best_table import among_chapters, best_table
 from docs.bug_blocks import bug_block
-from docs.code_blocks import fill
 from docs.confusion_table import confusion_table
 from docs.cost_tables import feature_table, growth_tables, seconds_text
 from docs.numerics import case_table, device_tables

@@ -16,6 +16,9 @@ PEER_COLOURS = ["#000000", "#666666", "#a0a0a0"]
 MARKERS = "osD^vPX*<"
 DIFFERENCE_FACTOR = 4  # of difference images: full red or blue is a difference of a quarter of the reference's mean
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+DPI = 100
+GAP, LABEL = 4, 22  # pixels between tiles, height of a label
+QUALITY = {"quality": 88, "optimize": True}  # of JPEG files
 
 
 def style(case, index, peer_index):
@@ -103,3 +106,28 @@ def difference_colours(difference, full=1 / DIFFERENCE_FACTOR):
 
 def difference_picture(radiance, reference):
     return png_uri(difference_colours(relative_difference(radiance, reference)))
+
+
+def sheet(path, rows):
+    """Rows of pairs (label, pixels in [0, 1]) side by side, pixel for pixel."""
+    height, width = rows[0][0][1].shape[:2]
+    columns = max(map(len, rows))
+    size = np.array([columns * (width + GAP) + GAP, len(rows) * (height + LABEL + GAP)])
+    figure = pyplot.figure(figsize=size / DPI)
+    for j, row in enumerate(rows):
+        for i, (label, pixels) in enumerate(row):
+            corner = np.array([GAP + i * (width + GAP), size[1] - (j + 1) * (height + LABEL) - j * GAP])
+            axis = figure.add_axes([*corner / size, *np.array([width, height]) / size])
+            axis.imshow(pixels, interpolation="nearest")
+            axis.axis("off")
+            figure.text(*(corner + [0, height + 6]) / size, label, fontsize=9)
+    save_figure(figure, path, DPI, **({"pil_kwargs": QUALITY} if path.suffix == ".jpg" else {}))
+
+
+def right_and_wrong(path, right, wrong):
+    """Two images of a scene beside each other, and where the wrong one is too bright (red) or too dark (blue). Colours are full
+    where a report's are, or where only one pixel in ten differs more."""
+    difference = relative_difference(wrong, right)
+    full = max(1 / DIFFERENCE_FACTOR, np.quantile(np.abs(difference), 0.9))
+    sheet(path, [[("right", encode_srgb(right)), ("wrong", encode_srgb(wrong)),
+                  ("red: too bright, blue: too dark", difference_colours(difference, full))]])

@@ -1,0 +1,51 @@
+"""The rooms in common/README.md: no source includes a room above its own, and the picture shows what is included."""
+
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+from program import PROJECT  # first: it finds the tools
+from docs import rooms
+
+FILES = {
+    "common/README.md": "| `tools/upper/` | |\n| `common/lower/` | |\n| `chapters/` | |\n",
+    "common/lower/room.h": "", "tools/upper/program.cpp": '#include "lower/room.h"\n',
+    "chapters/01_a/path_trace.glsl": "", "chapters/02_b/path_trace.glsl": '#include "../01_a/path_trace.glsl"\n',
+}
+
+
+class RoomsTest(unittest.TestCase):
+    def upward(self, changed):
+        """What goes upwards in a small tree with these files."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name).resolve()
+            for file, text in {**FILES, **changed}.items():
+                (folder / file).parent.mkdir(parents=True, exist_ok=True)
+                (folder / file).write_text(text, encoding="utf-8")
+            with mock.patch.object(rooms, "ROOT", folder):
+                return rooms.upward()
+
+    def test_nothing_includes_a_room_above_its_own(self):
+        self.assertEqual(rooms.upward(), [])
+
+    def test_what_goes_upwards_is_named(self):
+        self.assertEqual(self.upward({}), [])
+        self.assertEqual(self.upward({"common/lower/room.h": '#include "../../tools/upper/program.cpp"\n'}),
+                         ["common/lower/room.h includes tools/upper/program.cpp"])
+        self.assertEqual(self.upward({"chapters/01_a/path_trace.glsl": '#include "../02_b/path_trace.glsl"\n'}),
+                         ["chapters/01_a/path_trace.glsl includes chapters/02_b/path_trace.glsl"])
+
+    def test_every_folder_is_a_room(self):
+        listed = set(rooms.read_rooms())
+        for parent in ("common", "tools"):
+            for folder in (PROJECT / parent).iterdir():
+                if any(path.suffix in rooms.SUFFIXES for path in folder.rglob("*")):
+                    self.assertIn(f"{parent}/{folder.name}", listed)
+
+    def test_the_picture_shows_what_is_included(self):
+        self.assertTrue(rooms.picture() == rooms.DIAGRAM.read_text(encoding="utf-8"), "run `python3 tools rooms`")
+
+
+if __name__ == "__main__":
+    unittest.main()
