@@ -17,12 +17,6 @@ def direction(theta, phi):
     return (math.sin(theta) * math.sin(phi), math.cos(theta), math.sin(theta) * math.cos(phi))
 
 
-def rotate_y(degrees, a):
-    """Rotates counter-clockwise seen from above."""
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return (c * a[0] + s * a[2], a[1], c * a[2] - s * a[0])
-
-
 @dataclass
 class Part:
     """Triangles of one material. Normals, if any, go with positions; texture coordinates have triangles of
@@ -33,28 +27,7 @@ class Part:
     normals: list = field(default_factory=list)
     texture_coordinates: list = field(default_factory=list)
     texture_triangles: list = field(default_factory=list)
-
-
-def quad(material, corners, texture_size=(1, 1)):
-    """Two triangles; corners counter-clockwise from the front. The first is at texture coordinates (0,0), the
-    second along +u, the third at texture_size."""
-    (u, v), triangles = texture_size, [(0, 1, 2), (0, 2, 3)]
-    return Part(material, corners, triangles, [], [(0, 0), (u, 0), (u, v), (0, v)], triangles)
-
-
-def box(material, centre, size, degrees=0):
-    """A closed box facing outwards, turned about the vertical through its centre: six quads."""
-    faces = []
-    for axis, side in [(a, s) for a in range(3) for s in (-1, 1)]:
-        # The up of an upright face is +Y, so that its texture stands upright.
-        up = (0, 0, -side) if axis == 1 else (0, 1, 0)
-        outwards = tuple(side if i == axis else 0 for i in range(3))
-        right = cross(up, outwards)  # as seen from outside
-        corners = [add(outwards, add(scale(s, right), scale(t, up)))
-                   for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        sized = [tuple(x * s / 2 for x, s in zip(corner, size)) for corner in corners]
-        faces.append(quad(material, [add(centre, rotate_y(degrees, corner)) for corner in sized]))
-    return faces
+    times_around: int = 0  # of the texture; 0 where there is none
 
 
 def globe(material, columns, rows, point):
@@ -87,9 +60,10 @@ def globe(material, columns, rows, point):
     return part
 
 
-def sphere(material):
+def sphere(material, times_around=0):
     """The unit sphere."""
     part = globe(material, 64, 32, lambda s, t: direction(math.pi * s, 2 * math.pi * t))
+    part.times_around = times_around
     part.normals = part.positions
     return part
 
@@ -120,3 +94,53 @@ def smooth(part):
             sums[vertex] = add(sums[vertex], scale(angle, normalize(cross(a, b))))
     part.normals = [normalize(n) for n in sums]
     return part
+
+
+def heart_radius(d):
+    """Distance from the centre to Taubin's heart (x^2 + y^2 + 9/4 z^2 - 1)^3 = x^2 y^3 + 9/80 z^2 y^3 in the
+    unit direction d. Along a ray it is a r^2 - 1 = b r^(5/3), which has one positive solution."""
+    a = d[0]**2 + d[1]**2 + 9 / 4 * d[2]**2
+    b = (d[0]**2 + 9 / 80 * d[2]**2)**(1 / 3) * d[1]
+    low, high = 0, 2
+    for _ in range(50):
+        r = (low + high) / 2
+        low, high = (r, high) if a * r * r - 1 < b * r**(5 / 3) else (low, r)
+    return r
+
+
+def heart():
+    """A heart in parts glow_0 to glow_15: what faces +Z is to glow whiter, in steps. Rings lie closest together at the cleft, where
+    the surface is steep: areas differ by a factor of 1,600."""
+    def point(s, t):
+        d = direction(math.pi * s**1.6, 2 * math.pi * t)
+        return scale(heart_radius(d), d)
+
+    whole, steps = globe("", 72, 48, point), 16
+    parts = [Part(f"glow_{k}") for k in range(steps)]
+    for triangle in whole.triangles:
+        a, b, c = (whole.positions[v] for v in triangle)
+        facing = abs(normalize(cross(subtract(b, a), subtract(c, a)))[2])
+        part = parts[min(steps - 1, int(steps * facing))]
+        part.triangles.append(tuple(len(part.positions) + k for k in range(3)))
+        part.positions += [a, b, c]
+    return parts
+
+
+def pumpkin(grooves, height):
+    """A pumpkin and its stem, 20,056 triangles. Its grooves are twisted and its stem is bent, so its mirror image differs."""
+    def skin(s, t):
+        theta, phi = math.pi * s, 2 * math.pi * t + 0.3 * math.cos(math.pi * s)
+        x, y, z = direction(theta, phi)
+        side = math.sin(theta)
+        groove = side * (0.17 * math.cos(grooves / 2 * phi)**8 + 0.03 * math.sin(2 * phi + 1))
+        dimple = 0.27 * math.exp(-(side / 0.35)**2) * y
+        return ((1 - groove) * x, height * y * (1 - 0.4 * groove) - dimple, (1 - groove) * z)
+
+    def stem(s, t):  # bent, wider towards its lower end inside the skin
+        along = math.cos(math.pi / 2 * s)
+        x, _, z = direction(math.pi / 2, 2 * math.pi * t)
+        width = (0.1 + 0.12 * (1 - along)**2) * math.sqrt(math.sin(math.pi * s))
+        width *= 1 + 0.12 * math.cos(10 * math.pi * t)
+        return (width * x + 0.3 * along**3, height - 0.4 + 0.55 * along, width * z + 0.1 * along**2)
+
+    return [smooth(globe("skin", 140, 70, skin)), smooth(globe("stem", 23, 17, stem))]
