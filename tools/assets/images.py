@@ -3,7 +3,7 @@ direction to linear radiance."""
 import math
 from colorsys import hsv_to_rgb
 
-from assets.shapes import add, cross, direction, dot, normalize, scale
+from assets.shapes import add, cross, dot, normalize, scale
 
 # Digits of three columns and five rows, row by row from the top.
 DIGITS = ["111101101101111", "010110010010111", "111001111100111", "111001111001111", "101101111001001",

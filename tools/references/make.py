@@ -17,7 +17,7 @@ import signal
 import time
 from pathlib import Path
 
-from references.mitsuba import MAX_BATCH_PATHS, make_mitsuba_scene, mi, np, run_mitsuba  # isort: skip
+from references.mitsuba_scene import MAX_BATCH_PATHS, make_mitsuba_scene, mi, np, run_mitsuba  # isort: skip
 
 from project import ROOT, VARIANTS, Parser, UserError, number, show_progress
 from references.exr import read_attributes, rgb_channels, write_exr

@@ -8,7 +8,7 @@ import math
 import time
 from pathlib import Path
 
-from references.mitsuba import MAX_BATCH_PATHS, dr, make_mitsuba_scene, mi, np, run_mitsuba  # isort: skip
+from references.mitsuba_scene import MAX_BATCH_PATHS, dr, make_mitsuba_scene, mi, np, run_mitsuba  # isort: skip
 
 from project import GPU_VARIANT, SAMPLERS, VARIANTS, Parser, write_json
 from references.exr import rgb_channels, write_exr
