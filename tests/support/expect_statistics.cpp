@@ -9,7 +9,7 @@
 
 namespace lab {
 
-// Adds a p-value to the file that LAB_TEST_P_VALUES names, for tests/false_alarms.py.
+// Adds a p-value to the file that LAB_TEST_P_VALUES names, for tests/measure/false_alarms.py.
 static void record_p_value(const std::string& what, double p_value) {
     const char* file = std::getenv("LAB_TEST_P_VALUES");
     if (!file) return;

@@ -4,7 +4,7 @@ and <!-- end of table --> is replaced by that table, and blocks of code are fill
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
 --peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass 5 7 9 10`, whose report.json belongs into
-docs/records/peers, `tests/mistakes/learn.py confusion`, `tests/measure.py` and `./lab device --output
+docs/records/peers, `tests/mistakes/learn.py confusion`, `tests/measure/hard_cases.py` and `./lab device --output
 docs/records/devices/DEVICE.json`.
 """
 import math

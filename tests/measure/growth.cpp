@@ -1,8 +1,8 @@
-#include "hardware/growth.h"
+#include "measure/growth.h"
 
 #include <cmath>
 
-#include "benchmark/box_scene.h"
+#include "measure/box_scene.h"
 #include "support/chapters.h"
 #include "support/dielectric_scenes.h"
 #include "support/meshes.h"

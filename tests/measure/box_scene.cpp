@@ -1,4 +1,4 @@
-#include "benchmark/box_scene.h"
+#include "measure/box_scene.h"
 
 #include <array>
 #include <numbers>

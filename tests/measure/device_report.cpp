@@ -1,16 +1,13 @@
 // ./lab device: how exact this device's arithmetic is, next to what Vulkan guarantees. The tests take their
 // tolerances from the same measurement.
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "files/file.h"
+#include "measure/measurement.h"
 #include "support/device_arithmetic.h"
 
 namespace lab {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 json report_functions(const Device& device) {
     json rows = json::array();
@@ -61,18 +58,17 @@ json report_hit_points(const Device& device) {
     return rows;
 }
 
-void run(const std::string& choice, const std::filesystem::path& output) {
+int run(const std::string& choice, const std::filesystem::path& output) {
     const Device device({choice});
     const auto& description = device.description();
     std::printf("%s, %s: largest errors against double\n", description.name.c_str(),
                 description.driver.c_str());
-    json record{{"device", description.name},
-                {"driver", description.driver},
-                {"api_version", description.api_version}};
+    json record = record_of(device);
     record["functions"] = report_functions(device);
     record["samplers"] = report_samplers(device);
     record["hit_points"] = report_hit_points(device);
     if (!output.empty()) write_file(output, record.dump(2) + "\n");
+    return 0;
 }
 
 }  // namespace
@@ -84,12 +80,5 @@ int main(int argument_count, char** arguments) {
     std::filesystem::path output;
     app.add_option("--device", device, "Number or part of the name of a device");
     app.add_option("--output", output, "JSON file to write");
-    CLI11_PARSE(app, argument_count, arguments);
-    try {
-        lab::run(device, output);
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "error: %s\n", error.what());
-        return 1;
-    }
+    return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(device, output); });
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the statistical tests with other seeds: none may fail, and their p-values together must be uniform.
 
-    tests/false_alarms.py [SEEDS] [JOBS]        default: 5 seeds, 1 at a time
+    tests/measure/false_alarms.py [SEEDS] [JOBS]        default: 5 seeds, 1 at a time
 
 Counts the first p-value of each test and seed, since others of a test may come from the same paths. Prints how many
 p-values a run has, which gives the rate of false alarms that it was designed for.
@@ -15,7 +15,8 @@ from pathlib import Path
 
 from scipy.stats import kstest
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "tools"))
+TESTS = Path(__file__).resolve().parents[1]
+sys.path += [str(TESTS), str(TESTS.parent / "tools")]
 import test_report  # noqa: E402  (found by the line above)
 from project import BINARIES  # noqa: E402
 

@@ -3,7 +3,6 @@
 // not.
 #include <malloc.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,12 +11,12 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "error.h"
 #include "files/file.h"
 #include "files/hash.h"
 #include "files/project_folder.h"
+#include "measure/measurement.h"
 #include "rendering/renderer.h"
 #include "rendering/settings.h"
 #include "support/chapters.h"
@@ -161,8 +160,8 @@ double growth(const std::vector<Memory>& rounds, double Memory::*figure) {
 }
 
 // At most 24 of the rounds, evenly chosen, for the record.
-nlohmann::ordered_json chosen(const std::vector<Memory>& rounds, double Memory::*figure) {
-    auto list = nlohmann::ordered_json::array();
+json chosen(const std::vector<Memory>& rounds, double Memory::*figure) {
+    auto list = json::array();
     const size_t count = std::min<size_t>(rounds.size(), 24);
     for (size_t i = 0; i < count; ++i)
         list.push_back(std::round(10 * rounds[i * rounds.size() / count].*figure) / 10);
@@ -201,19 +200,19 @@ int run(double seconds, const std::string& commit, const std::filesystem::path& 
                                                                     2 * tolerated_growth_per_picture_mib;
     const double resident_growth = growth(rounds, &Memory::resident_mib);
     const bool film_is_right = film.is_right();
-    const nlohmann::ordered_json record = {{"commit", commit},
-                                           {"device", device.description().name},
-                                           {"seconds", std::round(elapsed())},
-                                           {"rounds", rounds.size()},
-                                           {"pictures", soak.picture_count()},
-                                           {"wrong_pictures", soak.wrong_picture_count()},
-                                           {"patient_film_is_right", film_is_right},
-                                           {"used_growth_mib", std::round(100 * used_growth) / 100},
-                                           {"tolerated_growth_mib", tolerated_used_growth},
-                                           {"resident_growth_mib", std::round(100 * resident_growth) / 100},
-                                           {"tolerated_resident_growth_mib", tolerated_resident_growth_mib},
-                                           {"used_mib", chosen(rounds, &Memory::used_mib)},
-                                           {"resident_mib", chosen(rounds, &Memory::resident_mib)}};
+    const json record = {{"commit", commit},
+                         {"device", device.description().name},
+                         {"seconds", std::round(elapsed())},
+                         {"rounds", rounds.size()},
+                         {"pictures", soak.picture_count()},
+                         {"wrong_pictures", soak.wrong_picture_count()},
+                         {"patient_film_is_right", film_is_right},
+                         {"used_growth_mib", std::round(100 * used_growth) / 100},
+                         {"tolerated_growth_mib", tolerated_used_growth},
+                         {"resident_growth_mib", std::round(100 * resident_growth) / 100},
+                         {"tolerated_resident_growth_mib", tolerated_resident_growth_mib},
+                         {"used_mib", chosen(rounds, &Memory::used_mib)},
+                         {"resident_mib", chosen(rounds, &Memory::resident_mib)}};
     std::printf("%s\n", record.dump(1).c_str());
     if (!record_file.empty()) write_file(record_file, record.dump(1) + "\n");
     const bool is_flat =
@@ -232,11 +231,6 @@ int main(int argument_count, char** arguments) {
     app.add_option("--seconds", seconds, "How long")->capture_default_str();
     app.add_option("--commit", commit, "For the record: what is tested");
     app.add_option("--record", record, "JSON file to write");
-    CLI11_PARSE(app, argument_count, arguments);
-    try {
-        return lab::run(seconds, commit, record);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "error: %s\n", error.what());
-        return 1;
-    }
+    return lab::run_measurement(app, argument_count, arguments,
+                                [&] { return lab::run(seconds, commit, record); });
 }

@@ -1,22 +1,19 @@
 // Measures the backends of a device and writes a JSON record for docs/results.md: paths and rays per second
 // of the benchmark's estimator on three sizes of scene and of the last chapter on two shipped scenes, and the
 // bare rate at which each backend traces the very same rays.
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
-#include "benchmark/box_scene.h"
-#include "benchmark/rates.h"
 #include "files/file.h"
 #include "files/project_folder.h"
-#include "hardware/recorded_ray.h"
+#include "measure/box_scene.h"
+#include "measure/measurement.h"
+#include "measure/rates.h"
+#include "measure/recorded_ray.h"
 #include "rendering/settings.h"
 #include "scene/scene_file.h"
 
 namespace lab {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 // Index of the path in the order of the film's blocks, as each backend's main program knows it. The n-th rays
 // of neighbouring paths are neighbours in memory.
@@ -41,7 +38,7 @@ Subject benchmark_subject(uint32_t size, uint32_t segments, uint32_t rings) {
     const RenderParameters parameters = default_parameters(scene, uvec2(size));
     return {"box with a sphere",
             std::move(scene),
-            {project_folder() / "tests/benchmark/path_trace.glsl"},
+            {project_folder() / "tests/measure/path_trace.glsl"},
             parameters};
 }
 
@@ -71,7 +68,7 @@ json measure(const Device& device, const Subject& subject) {
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
     {
         const auto structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-        Estimator record{tests / "hardware/record_rays.glsl", path_defines(Backend::compute, path_count),
+        Estimator record{tests / "measure/record_rays.glsl", path_defines(Backend::compute, path_count),
                          estimator.file};
         record.defines.insert(record.defines.end(), estimator.defines.begin(), estimator.defines.end());
         Renderer recorder(device, *structure, record, parameters, {&ray_binding, 1});
@@ -87,7 +84,7 @@ json measure(const Device& device, const Subject& subject) {
         if (!device.description().supports(backend)) continue;
         const auto structure = build_acceleration_structure(backend, device, gpu_scene);
         Renderer path_tracer(device, *structure, estimator, parameters);
-        const Estimator replay{tests / "hardware/replay_rays.glsl", path_defines(backend, path_count)};
+        const Estimator replay{tests / "measure/replay_rays.glsl", path_defines(backend, path_count)};
         Renderer replayer(device, *structure, replay, parameters, {&ray_binding, 1});
         const auto runs = measure_in_turns({&path_tracer, &replayer}, 0.5);
         const Rates rates = median(runs[0]), bare = median(runs[1]);
@@ -111,22 +108,20 @@ json measure(const Device& device, const Subject& subject) {
     return result;
 }
 
-void run(const std::string& choice, uint32_t size, const std::filesystem::path& output) {
+int run(const std::string& choice, uint32_t size, const std::filesystem::path& output) {
     check_writable(output, {".json"});  // before minutes are spent
     const Device device({choice});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), size, size);
-    json record{{"device", description.name},
-                {"driver", description.driver},
-                {"api_version", description.api_version},
-                {"size", size},
-                {"scenes", json::array()}};
+    json record = record_of(device);
+    record["size"] = size;
     constexpr std::pair<uint32_t, uint32_t> spheres[] = {{5, 3}, {200, 100}, {1400, 700}};
     for (const auto& [segments, rings] : spheres)
         record["scenes"].push_back(measure(device, benchmark_subject(size, segments, rings)));
     for (const char* scene : {"cornell_box", "heart_light"})
         record["scenes"].push_back(measure(device, chapter_subject(size, scene)));
     write_file(output, record.dump(2) + "\n");
+    return 0;
 }
 
 }  // namespace
@@ -142,12 +137,6 @@ int main(int argument_count, char** arguments) {
         ->check(CLI::Range(8, 4096))
         ->capture_default_str();
     app.add_option("--output", output, "JSON file to write")->capture_default_str();
-    CLI11_PARSE(app, argument_count, arguments);
-    try {
-        lab::run(device, size, output);
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "error: %s\n", error.what());
-        return 1;
-    }
+    return lab::run_measurement(app, argument_count, arguments,
+                                [&] { return lab::run(device, size, output); });
 }

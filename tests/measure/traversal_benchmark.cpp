@@ -1,16 +1,16 @@
 // Paths per second of the `compute` backend, next to a native twin of the same estimator that uses Embree.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <vector>
 
-#include "benchmark/box_scene.h"
 #include "error.h"
 #include "files/project_folder.h"
+#include "measure/box_scene.h"
+#include "measure/measurement.h"
 #include "rendering/renderer.h"
 #ifdef EMBREE_VERSION
-#include "embree_twin.h"
+#include "measure/embree_twin.h"
 #endif
 
 namespace lab {
@@ -56,7 +56,7 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
 
     const GpuScene gpu_scene(device, scene);
     const auto acceleration_structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-    Renderer renderer(device, *acceleration_structure, {project_folder() / "tests/benchmark/path_trace.glsl"},
+    Renderer renderer(device, *acceleration_structure, {project_folder() / "tests/measure/path_trace.glsl"},
                       parameters);
     renderer.set_dispatch_seconds(1);
 #ifdef EMBREE_VERSION
@@ -88,12 +88,13 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
 #endif
 }
 
-void run(const Options& options) {
+int run(const Options& options) {
     const Device device({.choice = options.device});
     std::printf("%s, %s\n", device.description().name.c_str(), device.description().driver.c_str());
     compare(device, options, 5, 3);
     compare(device, options, 200, 100);
     compare(device, options, 1400, 700);
+    return 0;
 }
 
 }  // namespace
@@ -113,11 +114,5 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     app.add_option("--device", options.device, "Index or part of the name of a Vulkan device");
-    CLI11_PARSE(app, argc, argv);
-    try {
-        lab::run(options);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
+    return lab::run_measurement(app, argc, argv, [&] { return lab::run(options); });
 }

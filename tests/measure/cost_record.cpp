@@ -1,16 +1,15 @@
 // Measures what each feature of a scene costs and how cost grows with triangles, lights and so on, and writes
 // a JSON record for docs/results.md.
-#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "benchmark/box_scene.h"
-#include "benchmark/rates.h"
 #include "error.h"
 #include "files/file.h"
 #include "files/project_folder.h"
-#include "hardware/growth.h"
+#include "measure/box_scene.h"
+#include "measure/growth.h"
+#include "measure/measurement.h"
+#include "measure/rates.h"
 #include "support/meshes.h"
 #include "support/render.h"
 #include "support/scene_features.h"
@@ -18,8 +17,6 @@
 
 namespace lab {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 struct Options {
     std::string device;
@@ -165,21 +162,17 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
             {"rows", rows}};
 }
 
-void run(const Options& options) {
+int run(const Options& options) {
     check_writable(options.output, {".json"});  // before minutes are spent
     const Device device({options.device});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size,
                 options.size);
-    json record{{"device", description.name},
-                {"driver", description.driver},
-                {"api_version", description.api_version},
-                {"cpu_threads", std::thread::hardware_concurrency()},
-                {"size", options.size},
-                {"seconds_per_run", options.seconds},
-                {"scenes", describe_shipped_scenes(device)},
-                {"features", json::array()},
-                {"growth", json::array()}};
+    json record = record_of(device);
+    record["cpu_threads"] = std::thread::hardware_concurrency();
+    record["size"] = options.size;
+    record["seconds_per_run"] = options.seconds;
+    record["scenes"] = describe_shipped_scenes(device);
     for (const Backend backend : all_backends)
         if (description.supports(backend))
             record["features"].push_back(measure_features(device, backend, options));
@@ -188,6 +181,7 @@ void run(const Options& options) {
             if (description.supports(backend))
                 record["growth"].push_back(measure_growth(device, backend, growth, options));
     write_file(options.output, record.dump(1) + "\n");
+    return 0;
 }
 
 }  // namespace
@@ -207,12 +201,5 @@ int main(int argument_count, char** arguments) {
     app.add_option("--largest", options.largest, "Largest number of triangles, pixels and so on")
         ->capture_default_str();
     app.add_option("--output", options.output, "JSON file to write")->capture_default_str();
-    CLI11_PARSE(app, argument_count, arguments);
-    try {
-        lab::run(options);
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "error: %s\n", error.what());
-        return 1;
-    }
+    return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(options); });
 }

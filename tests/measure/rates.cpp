@@ -1,4 +1,4 @@
-#include "benchmark/rates.h"
+#include "measure/rates.h"
 
 #include <algorithm>
 

@@ -8,7 +8,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "tools"))
+TESTS = Path(__file__).resolve().parents[1]
+sys.path += [str(TESTS), str(TESTS.parent / "tools")]
 import project  # noqa: E402  (found by the line above)
 import test_report  # noqa: E402
 from docs.numerics import load_cases  # noqa: E402
@@ -58,7 +59,7 @@ def run_python(test):
 
 
 def main():
-    Parser("tests/measure.py", __doc__).parse_args()
+    Parser("tests/measure/hard_cases.py", __doc__).parse_args()
     cited, measured, device = cited_tests(), {}, {}
     for kind in PROGRAMS:
         binary = BINARIES / f"{kind}_tests"

@@ -1,4 +1,4 @@
-#include "embree_twin.h"
+#include "measure/embree_twin.h"
 
 #if EMBREE_VERSION == 4
 #include <embree4/rtcore.h>

@@ -1,0 +1,19 @@
+// What the programs of this folder share.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "gpu/device.h"
+
+namespace lab {
+
+using json = nlohmann::ordered_json;
+
+// The device, as every record begins.
+json record_of(const Device& device);
+
+// Reads the command line and measures. Returns the program's exit code.
+int run_measurement(CLI::App& app, int argument_count, char** arguments, const std::function<int()>& measure);
+
+}  // namespace lab
