@@ -1,5 +1,6 @@
 #include "platform.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <string>
 #include <thread>
@@ -32,6 +33,19 @@ static std::string variable(const char* name) {
     const char* value = std::getenv(name);
     return value ? value : "";
 }
+
+static volatile std::sig_atomic_t interrupted = 0;
+
+void install_interrupt_handler() {
+    const auto handler = [](int signal) {
+        interrupted = 1;
+        std::signal(signal, SIG_DFL);
+    };
+    std::signal(SIGINT, handler);
+    std::signal(SIGTERM, handler);
+}
+
+bool is_interrupted() { return interrupted != 0; }
 
 #ifdef __linux__
 std::vector<WindowSystem> window_systems() {

@@ -47,4 +47,9 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 // How to get a Vulkan driver here, in words that follow "install ".
 extern const char* const vulkan_driver;
 
+// From now on the first Ctrl-C (or SIGTERM) only makes is_interrupted() true; the second one ends the
+// program.
+void install_interrupt_handler();
+bool is_interrupted();
+
 }  // namespace lab

@@ -1,4 +1,4 @@
-#include "app/headless.h"
+#include "app/run_chapter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,9 @@
 #include "clock.h"
 #include "error.h"
 #include "platform.h"
-#include "rendering/interrupt.h"
+#include "rendering/build.h"
 #include "rendering/numbers_text.h"
 #include "rendering/outputs.h"
-#include "rendering/report.h"
 #include "rendering/scene_reference.h"
 
 namespace lab {

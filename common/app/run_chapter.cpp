@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <iostream>
 
-#include "app/headless.h"
 #include "error.h"
 #include "files/file.h"
-#include "gpu/failure.h"
+#include "gpu/device.h"
 #include "platform.h"
+#include "rendering/build.h"
 #include "rendering/settings.h"
 #include "viewer/viewer.h"
 

@@ -32,4 +32,14 @@ std::string size_text(const uvec2& size);
 // The samples of `whole` that came after those of `first`, an earlier state of the same film.
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole);
 
+// How numbers become colours. Views of normals, depth and the like are not radiance.
+enum class DisplayTransform {
+    exposure,  // times 2^exposure, clamped, sRGB-encoded
+    maximum,   // divided by the largest finite value of the image
+    as_is,     // clamped; already a colour
+};
+
+// Pixels with invalid samples are magenta.
+Texture to_display(const FilmImage& film, DisplayTransform transform, float exposure);
+
 }  // namespace lab

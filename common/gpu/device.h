@@ -123,4 +123,11 @@ void wait_for_writes(const vk::raii::CommandBuffer& commands);
 // All devices of this machine in the order of their indices. Throws DeviceError if there is no Vulkan driver.
 std::vector<DeviceDescription> list_devices();
 
+// What an exception means to a user of a program or a window.
+struct Failure {
+    int exit_code;        // as error.h says
+    std::string message;  // one line
+};
+Failure failure_of(const std::exception& error);
+
 }  // namespace lab

@@ -30,13 +30,13 @@ std::string deflate_all(std::string_view bytes, int window_bits, int flush) {
 
 const Bytef* to_bytes(std::string_view bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
 
-}  // namespace
-
 std::string big_endian(uint32_t number) {
     std::string bytes;
     for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 255);
     return bytes;
 }
+
+}  // namespace
 
 std::string compress(std::string_view bytes) { return deflate_all(bytes, MAX_WBITS, Z_FINISH); }
 
@@ -62,10 +62,6 @@ std::string compress_in_parallel(std::string_view bytes) {
         checksum = adler32_combine(checksum, pieces[i].checksum, static_cast<z_off_t>(size));
     }
     return stream + big_endian(static_cast<uint32_t>(checksum));
-}
-
-uint32_t crc(std::string_view bytes) {
-    return static_cast<uint32_t>(crc32_z(crc32_z(0, nullptr, 0), to_bytes(bytes), bytes.size()));
 }
 
 }  // namespace lab

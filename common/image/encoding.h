@@ -7,8 +7,6 @@
 
 namespace lab {
 
-std::string big_endian(uint32_t number);
-
 // Of the number's own size.
 template <typename Number>
 std::string little_endian(Number number) {
@@ -21,8 +19,5 @@ std::string compress(std::string_view bytes);
 
 // One zlib stream as well, made by all threads: it consists of pieces that know nothing of each other.
 std::string compress_in_parallel(std::string_view bytes);
-
-// The checksum of PNG.
-uint32_t crc(std::string_view bytes);
 
 }  // namespace lab

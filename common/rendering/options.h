@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "film/display.h"
+#include "film/film_image.h"
 #include "rendering/chapter.h"
 #include "scene/scene.h"
 

@@ -1,9 +1,14 @@
 // The files that a render leaves behind.
 #pragma once
 #include <functional>
+#include <filesystem>
+#include <optional>
+#include <vector>
 
 #include "film/film_file.h"
 #include "rendering/options.h"
+#include "statistics/error_metrics.h"
+#include "tracing/tracer.h"
 
 namespace lab {
 
@@ -20,5 +25,22 @@ void write_picture(const std::filesystem::path& file, const FilmImage& film, con
 // Writes all files, also those after one that cannot be written; then throws the first UserError, if any.
 void write_each(const std::vector<std::filesystem::path>& files,
                 const std::function<void(const std::filesystem::path&)>& write);
+
+struct ReportRow {
+    uint32_t samples = 0;       // a pixel
+    double seconds = 0;         // that a user waits for while it renders, without those of making rows
+    double device_seconds = 0;  // that the device was busy in this run
+    uint64_t rays = 0;
+    std::array<double, 3> mean{};  // radiance of the image
+    std::optional<ErrorMetrics> error;
+};
+
+// What the errors of a report are: against a reference, or estimated from two halves of the samples.
+enum class ErrorSource { reference, halves };
+
+// Writes .json or .csv, by the file's ending.
+void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
+                  const AccelerationStructure& acceleration_structure, ErrorSource source,
+                  const std::vector<ReportRow>& rows);
 
 }  // namespace lab

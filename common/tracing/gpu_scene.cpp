@@ -5,7 +5,6 @@
 
 #include "error.h"
 #include "scene/light_table.h"
-#include "scene/probe_table.h"
 
 namespace lab {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/failure.h"
+#include "gpu/device.h"
 #include "gpu/vulkan.h"
 
 namespace lab {

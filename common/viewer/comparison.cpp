@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "error.h"
-#include "statistics/noise.h"
+#include "statistics/error_metrics.h"
 
 namespace lab {
 namespace {

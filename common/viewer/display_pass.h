@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "film/display.h"
+#include "film/film_image.h"
 #include "gpu/compute_kernel.h"
 #include "rendering/film.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statistics/noise.h"
+#include "statistics/error_metrics.h"
 #include "viewer/inside_drawing.h"
 
 namespace lab {

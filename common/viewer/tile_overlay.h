@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "clock.h"
-#include "statistics/noise.h"
+#include "statistics/error_metrics.h"
 #include "viewer/screen.h"
 #include "viewer/session.h"
 

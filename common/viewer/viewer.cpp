@@ -6,9 +6,8 @@
 
 #include <cstdio>
 
-#include "rendering/interrupt.h"
+#include "platform.h"
 #include "viewer/comparison_panel.h"
-#include "viewer/frame_pacing.h"
 
 namespace lab {
 namespace {

@@ -1,5 +1,6 @@
 // The window of a chapter: shows the picture while it is rendered, and lets its user change everything.
 #pragma once
+#include <algorithm>
 #include "clock.h"
 #include "viewer/camera_control.h"
 #include "viewer/comparison.h"
@@ -51,5 +52,17 @@ class Viewer {
 // without a window does. Throws DeviceFailure if the device is lost, after writing what was last read from
 // it.
 void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
+
+// Seconds of a frame that rendering may take, after frames that took `interface_seconds` for everything else
+// but waiting. A fast device fills what is left of the display's period. Where the interface itself is slow,
+// as on a CPU, a frame takes longer than a period, so that most of the time goes into the picture, but not so
+// long that there are fewer than 5 frames a second, while the interface leaves that choice.
+inline double rendering_seconds(double refresh_seconds, double interface_seconds) {
+    constexpr double slowest_frame = 0.16;  // leaves some room for blocks that take longer than expected
+    constexpr double shortest = 0.002;
+    const double frame =
+        std::clamp(4 * interface_seconds, refresh_seconds, std::max(refresh_seconds, slowest_frame));
+    return std::max(frame - interface_seconds, shortest);
+}
 
 }  // namespace lab

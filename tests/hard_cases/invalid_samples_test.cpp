@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "files/project_folder.h"
-#include "film/display.h"
+#include "film/film_image.h"
 #include "film/film_file.h"
 #include "support/gpu_test.h"
 #include "support/pcg2d.h"

@@ -6,7 +6,7 @@
 
 #include "files/project_folder.h"
 #include "rendering/renderer.h"
-#include "scene/alias_table.h"
+#include "scene/light_table.h"
 #include "support/bounce.h"
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"

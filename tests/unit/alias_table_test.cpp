@@ -1,6 +1,5 @@
 // The alias table's probabilities, recomputed from its integers, and the table of lights that is built with
 // it.
-#include "scene/alias_table.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rendering/settings.h"
-#include "viewer/frame_pacing.h"
+#include "viewer/viewer.h"
 
 namespace lab {
 namespace {

@@ -1,5 +1,5 @@
 // How far off an image is: against a reference, and told by its own samples.
-#include "statistics/noise.h"
+#include "statistics/error_metrics.h"
 
 #include <gtest/gtest.h>
 

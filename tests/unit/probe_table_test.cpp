@@ -1,5 +1,5 @@
 // The cells of a light probe that light samples choose from.
-#include "scene/probe_table.h"
+#include "scene/light_table.h"
 
 #include <gtest/gtest.h>
 
