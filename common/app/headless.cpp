@@ -1,9 +1,8 @@
-#include "app/run_chapter.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "app/run_chapter.h"
 #include "clock.h"
 #include "error.h"
 #include "platform.h"

@@ -137,8 +137,8 @@ std::string with_advice(const std::string& line) {
     return line;
 }
 
-// The errors in a log of glslang as lines "file:line: text": the first of each line of source, since the others
-// follow from it. The commonest say what to do.
+// The errors in a log of glslang as lines "file:line: text": the first of each line of source, since the
+// others follow from it. The commonest say what to do.
 std::string readable_errors(const std::string& log) {
     std::istringstream lines(log);
     std::string line, text, place;

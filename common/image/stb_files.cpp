@@ -113,7 +113,8 @@ Texture read_texture(const std::filesystem::path& file) {
 }
 
 void write_png(const std::filesystem::path& file, const Texture& image) {
-    stbi_write_force_png_filter = 4;  // Paeth's suits rendered pictures; trying all five takes five times as long
+    stbi_write_force_png_filter =
+        4;  // Paeth's suits rendered pictures; trying all five takes five times as long
     std::string bytes;
     const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
     check_written(stbi_write_png_to_func(append, &bytes, width, height, 4, image.pixels.data(), 0), file);

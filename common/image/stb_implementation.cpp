@@ -7,7 +7,8 @@
 
 // For PNG: the threads that stb does not use.
 static unsigned char* compress_for_stb(unsigned char* data, int size, int* compressed_size, int) {
-    const std::string bytes = lab::compress_in_parallel({reinterpret_cast<const char*>(data), static_cast<size_t>(size)});
+    const std::string bytes =
+        lab::compress_in_parallel({reinterpret_cast<const char*>(data), static_cast<size_t>(size)});
     auto* result = static_cast<unsigned char*>(std::malloc(bytes.size()));
     if (result) std::memcpy(result, bytes.data(), bytes.size());
     *compressed_size = static_cast<int>(bytes.size());

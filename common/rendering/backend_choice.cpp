@@ -45,16 +45,11 @@ std::optional<Backend> find_backend(const std::string& name) {
     return std::nullopt;
 }
 
-// Whether the device can hold the tree of the `compute` backend, which has every triangle of every instance.
-bool fits_compute(const Device& device, const Scene& scene) {
-    const uint64_t count = instanced_triangle_count(scene);
-    const MemoryNeed need = GpuBvh::memory_need(device, count);
-    try {
-        require_memory(device, {&need, 1});
-        return count <= max_triangle_count;
-    } catch (const DeviceFailure&) {
-        return false;
-    }
+bool fits_compute(const Device& device, const Scene& scene) try {
+    GpuBvh::require_room(device, scene);
+    return true;
+} catch (const std::runtime_error&) {
+    return false;
 }
 
 Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {

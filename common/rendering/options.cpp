@@ -35,83 +35,81 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
             meaning};
 }
 
-void add_image_options(CLI::App& app, Options& options) {
+// The options of every chapter, in the order of --help.
+void add_options(CLI::App& app, Options& options, std::string& view) {
+    auto& [scene, estimator, image, camera, light, samples, appearance, run] = options;
     constexpr uint32_t max_count = 4294967295u;
-    app.add_option("--width", options.image.width, "Pixels in a row")
-        ->transform(whole_number(1, max_image_extent));
-    app.add_option("--height", options.image.height, "Pixels in a column")
-        ->transform(whole_number(1, max_image_extent));
-    app.add_option("--samples", options.appearance.sample_count, "Samples a pixel")
-        ->transform(whole_number(1, max_count));
-    app.add_option("--seed", options.samples.seed, "Chooses the random numbers")
-        ->transform(whole_number(0, max_count));
-    app.add_option("--first-sample", options.samples.first_sample,
-                   "Index of the first sample: splits a render into ranges")
-        ->transform(whole_number(0, max_count));
-    app.add_option("--max-path-length", options.light.max_path_length,
-                   "Bounces after which a path ends; 0: emission only")
-        ->transform(whole_number(0, path_length_limit));
-    app.add_option("--only-path-length", options.light.only_path_length,
-                   "Show only light after exactly this many bounces")
-        ->transform(whole_number(0, path_length_limit));
-    app.add_option("--target-error", options.run.target_error,
-                   "Stop when the relative error is below this: 0.01 is 1 %")
-        ->check(within(1e-12, 1e12, "a positive number"));
-    app.add_option("--time-limit", options.run.time_limit, "Stop after this many seconds")
-        ->check(within(1e-3, 1e9, "a positive number of seconds"));
-}
-
-void add_scene_options(CLI::App& app, Options& options) {
-    const auto vector = [&](const char* name, std::optional<vec3>& value, const char* help) {
-        using Numbers = std::array<float, 3>;
-        const auto set = [&value](const Numbers& given) { value = {given[0], given[1], given[2]}; };
-        return app.add_option_function<Numbers>(name, set, help)->delimiter(',');
+    const auto whole = [&](const char* name, auto& value, uint32_t low, uint32_t high, const char* help) {
+        app.add_option(name, value, help)->transform(whole_number(low, high));
+    };
+    const auto number = [&](const char* name, auto& value, double low, double high, const char* meaning,
+                            const char* help) {
+        app.add_option(name, value, help)->check(within(low, high, meaning));
+    };
+    const auto vector = [&](const char* name, std::optional<vec3>& value, double low, const char* meaning,
+                            const char* type, const char* help) {
+        const auto set = [&value](const std::array<float, 3>& given) {
+            value = {given[0], given[1], given[2]};
+        };
+        app.add_option_function<std::array<float, 3>>(name, set, help)
+            ->delimiter(',')
+            ->check(within(low, 1e30, meaning))
+            ->type_name(type);
     };
     const auto place = [&](const char* name, std::optional<vec3>& value, const char* help) {
-        vector(name, value, help)->check(within(-1e30, 1e30, "a finite number"))->type_name("X,Y,Z");
+        vector(name, value, -1e30, "a finite number", "X,Y,Z", help);
     };
-    place("--camera-position", options.camera.position, "Where the camera stands");
-    place("--camera-target", options.camera.target, "What it looks at");
-    place("--camera-up", options.camera.up, "What it holds upwards");
-    app.add_option("--vertical-fov", options.camera.vertical_fov,
-                   "Angle between the picture's top and bottom in degrees")
-        ->check(within(1e-6, 179.999, "an angle between 0 and 180 degrees"));
-    vector("--background", options.light.background, "Radiance of the sky; with a light probe its factor")
-        ->check(within(0, 1e30, "a radiance (finite and not negative)"))
-        ->type_name("R,G,B");
-    app.add_flag("--specular", options.scene.specular, "Use the Phong lobe Ks, Ns of the materials");
-}
+    std::vector<std::string> view_names;
+    for (const auto& known : views()) view_names.push_back(known.name);
 
-void add_output_options(CLI::App& app, Options& options, std::string& view) {
-    std::vector<std::string> names;
-    for (const auto& known : views()) names.push_back(known.name);
-    app.add_option("--view", view, "Show something else than radiance")->check(CLI::IsMember(names));
-    app.add_option("--output", options.run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
+    whole("--width", image.width, 1, max_image_extent, "Pixels in a row");
+    whole("--height", image.height, 1, max_image_extent, "Pixels in a column");
+    whole("--samples", appearance.sample_count, 1, max_count, "Samples per pixel");
+    whole("--seed", samples.seed, 0, max_count, "Chooses the random numbers");
+    whole("--first-sample", samples.first_sample, 0, max_count,
+          "Index of the first sample: splits a render into ranges");
+    whole("--max-path-length", light.max_path_length, 0, path_length_limit,
+          "Bounces after which a path ends; 0: emission only");
+    whole("--only-path-length", light.only_path_length, 0, path_length_limit,
+          "Show only light after exactly this many bounces");
+    number("--target-error", run.target_error, 1e-12, 1e12, "a positive number",
+           "Stop when the relative error is below this: 0.01 is 1 %");
+    number("--time-limit", run.time_limit, 1e-3, 1e9, "a positive number of seconds",
+           "Stop after this many seconds");
+    place("--camera-position", camera.position, "Where the camera stands");
+    place("--camera-target", camera.target, "What it looks at");
+    place("--camera-up", camera.up, "What it holds upwards");
+    number("--vertical-fov", camera.vertical_fov, 1e-6, 179.999, "an angle between 0 and 180 degrees",
+           "Angle between the picture's top and bottom in degrees");
+    vector("--background", light.background, 0, "a radiance (finite and not negative)", "R,G,B",
+           "Radiance of the sky; with a light probe its factor");
+    app.add_flag("--specular", scene.specular, "Use the Phong lobe Ks, Ns of the materials");
+    app.add_option("--view", view, "Show something else than radiance")->check(CLI::IsMember(view_names));
+    app.add_option("--output", run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
         ->allow_extra_args(false);
-    app.add_option("--exposure", options.appearance.exposure, "Brightness of PNG and JPG in stops")
-        ->check(within(-100, 100, "a number from -100 to 100"));
-    app.add_option("--reference", options.run.reference, "EXR to compare with");
-    app.add_option("--report", options.run.report, "Error against samples and seconds (.json or .csv)");
-    app.add_option("--resume", options.run.resume, "EXR of an earlier run to continue");
-    app.add_option("--save-every", options.run.save_every, "Write the outputs every so many seconds")
-        ->check(within(1e-3, 1e9, "a positive number of seconds"));
-}
-
-void add_device_options(CLI::App& app, Options& options) {
-    app.add_option("--backend", options.run.backend, "How rays are traced")
+    number("--exposure", appearance.exposure, -100, 100, "a number from -100 to 100",
+           "Brightness of PNG and JPG in stops");
+    app.add_option("--reference", run.reference, "EXR to compare with");
+    app.add_option("--report", run.report, "Error against samples and seconds (.json or .csv)");
+    app.add_option("--resume", run.resume, "EXR of an earlier run to continue");
+    number("--save-every", run.save_every, 1e-3, 1e9, "a positive number of seconds",
+           "Write the outputs every so many seconds");
+    app.add_option("--backend", run.backend, "How rays are traced")
         ->check(CLI::IsMember({"auto", "pipeline", "query", "compute"}));
-    app.add_option("--device", options.run.device, "Number or part of the name of the device");
-    app.add_flag("--list-devices", options.run.list_devices, "Show the devices and what they lack");
-    auto* headless = app.add_flag_callback(
-        "--headless", [&] { options.run.window = WindowChoice::never; }, "Render without a window");
-    app.add_flag_callback(
-           "--window", [&] { options.run.window = WindowChoice::always; },
-           "Open a window, as happens by itself where there are a display and a terminal, but not with "
-           "--report, --reference, --target-error, --time-limit, --save-every or --quiet")
+    app.add_option("--device", run.device, "Number or part of the name of the device");
+    app.add_flag("--list-devices", run.list_devices, "Show the devices and what they lack");
+    const auto window = [&](const char* name, WindowChoice choice, const char* help) {
+        return app.add_flag_callback(
+            name, [&run = run, choice] { run.window = choice; }, help);
+    };
+    auto* headless = window("--headless", WindowChoice::never, "Render without a window");
+    window("--window", WindowChoice::always,
+           "Open a window. This is the default at a terminal with a display, unless --report, --reference, "
+           "--target-error, "
+           "--time-limit, --save-every or --quiet is given")
         ->excludes(headless);
-    app.add_flag("--validation", options.run.validation,
-                 "Check the use of Vulkan; any complaint is an error");
-    app.add_flag("--quiet", options.run.quiet, "Print errors only");
+    app.add_flag("--validation", run.validation, "Check the use of Vulkan; any complaint is an error");
+    app.add_flag("--quiet", run.quiet, "Print errors only");
 }
 
 // What only some chapters have.
@@ -176,10 +174,7 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
     app.set_version_flag("--version", chapter.name + " " LAB_VERSION);
     app.add_option("scene", scene, "Scene file (.json or .obj) or the name of one in assets/scenes")
         ->capture_default_str();
-    add_image_options(app, options);
-    add_scene_options(app, options);
-    add_output_options(app, options, view);
-    add_device_options(app, options);
+    add_options(app, options, view);
     add_chapter_options(app, chapter, options);
     try {
         app.parse(argument_count, arguments);

@@ -1,6 +1,7 @@
+#include "rendering/outputs.h"
+
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include "rendering/outputs.h"
 
 #include "error.h"
 #include "files/file.h"

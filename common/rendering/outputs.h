@@ -1,7 +1,7 @@
 // The files that a render leaves behind.
 #pragma once
-#include <functional>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 

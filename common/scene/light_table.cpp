@@ -1,14 +1,14 @@
 #include "scene/light_table.h"
 
 #include <algorithm>
-#include <numeric>
-#include <utility>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "error.h"
-#include "scene/coincident_lights.h"
 #include "parallel.h"
+#include "scene/coincident_lights.h"
 
 namespace lab {
 

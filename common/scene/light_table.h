@@ -1,11 +1,11 @@
 // All emissive triangles of a scene, for next event estimation.
 #pragma once
-#include <vector>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "scene/scene.h"
 #include "image/image.h"
+#include "scene/scene.h"
 #include "shaders/interface.h"
 
 namespace lab {

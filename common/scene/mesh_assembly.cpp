@@ -1,5 +1,3 @@
-#include "scene/mesh_assembly.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +7,7 @@
 #include "error.h"
 #include "image/image_checks.h"
 #include "scene/coincident_lights.h"
+#include "scene/obj_file.h"
 
 namespace lab {
 namespace {

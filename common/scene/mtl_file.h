@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/source_files.h"
+#include "scene/text_lines.h"
 #include "shaders/interface.h"
 
 namespace lab {

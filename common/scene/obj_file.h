@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "scene/mtl_file.h"
+#include "scene/scene.h"
 
 namespace lab {
 
@@ -31,5 +32,13 @@ struct ObjFile {
 // fewer than 3 or more than 256 corners. Faces without a material, or with one that is nowhere, get a grey
 // one (Kd 0.5), with a warning.
 ObjFile read_obj(const std::filesystem::path& file, SourceFiles& files, std::vector<std::string>& warnings);
+
+// Fills the scene's vertices, triangles, materials, textures and meshes (one a file). Corners with the same
+// position, normal and texture coordinates become one vertex; triangles without area are left out, and so are
+// materials without triangles. Calls resolve_coincident_lights() for each mesh. Reads the textures. UserError
+// for damaged textures and for files in which no triangle has an area. Returns the line of its file for each
+// of the scene's triangles.
+std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources,
+                                      Scene& scene);
 
 }  // namespace lab

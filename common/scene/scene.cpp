@@ -7,7 +7,7 @@
 #include "image/image_checks.h"
 #include "scene/coincident_lights.h"
 #include "scene/features.h"
-#include "scene/mesh_assembly.h"
+#include "scene/obj_file.h"
 #include "scene/scene_file.h"
 #include "scene/warnings.h"
 

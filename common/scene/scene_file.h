@@ -1,7 +1,7 @@
 // Scene descriptions in JSON.
 #pragma once
 #include "scene/scene.h"
-#include "scene/source_files.h"
+#include "scene/text_lines.h"
 
 namespace lab {
 

@@ -1,11 +1,31 @@
-// Text files line by line, for the checks that tinyobjloader leaves out: it reads what is not a number as 0.
+// The files that a scene is read from, and text line by line, for the checks that tinyobjloader leaves out: it reads
+// what is not a number as 0.
 #pragma once
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "files/file.h"
+#include "files/hash.h"
+
 namespace lab {
+
+// Reads files and hashes their contents in reading order, to recognise changed scenes.
+class SourceFiles {
+  public:
+    // As read_file().
+    std::string read(const std::filesystem::path& file, uint64_t max_bytes) {
+        std::string bytes = read_file(file, max_bytes);
+        hash_ = hash_text(bytes, hash_);
+        return bytes;
+    }
+
+    uint64_t hash() const { return hash_; }
+
+  private:
+    uint64_t hash_ = hash_text("");
+};
 
 // Throws the UserError "<file>:<line>: <reason>"; lines count from 1.
 [[noreturn]] void fail_at_line(const std::string& file, size_t line, const std::string& reason);

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "image/image.h"
 #include "film/film_image.h"
+#include "image/image.h"
 
 namespace lab {
 

@@ -66,8 +66,11 @@ struct Bvh {
     double build_seconds = 0;
 };
 
-// World-space triangles of all instances; positions are transformed in double. Throws UserError for more than
-// 2^28 triangles and for coordinates beyond 1e18, whose products would overflow in the triangle test.
+// Triangles of all instances. Throws UserError for more than references to leaves can count: 2^28 - 1.
+uint64_t countable_triangles(const Scene& scene);
+
+// World-space triangles of all instances; positions are transformed in double. Throws UserError for too many,
+// and for coordinates beyond 1e18, whose products would overflow in the triangle test.
 LargeArray<BvhTriangle> world_triangles(const Scene& scene);
 
 // Binned surface area heuristic (up to 32 bins, 3 axes; all ways to divide up to 4 triangles, which may be a

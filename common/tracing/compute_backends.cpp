@@ -44,18 +44,12 @@ class QueryBackend : public SceneTree<HardwareBvh, ComputeTracer> {
     }
 };
 
-// The tree, unless the device cannot hold it: building it in vain would take minutes.
-Bvh build(const Device& device, const Scene& scene) {
-    const uint64_t count = instanced_triangle_count(scene);
-    const MemoryNeed need = GpuBvh::memory_need(device, count);
-    if (count <= max_triangle_count) require_memory(device, {&need, 1});  // else world_triangles() refuses it
-    return build_bvh(world_triangles(scene));
-}
-
 }  // namespace
 
 std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& device, const GpuScene& scene) {
-    return std::make_unique<ComputeBackend>(device, scene, GpuBvh(device, build(device, scene.scene())));
+    GpuBvh::require_room(device, scene.scene());
+    return std::make_unique<ComputeBackend>(device, scene,
+                                            GpuBvh(device, build_bvh(world_triangles(scene.scene()))));
 }
 
 std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device, const GpuScene& scene) {

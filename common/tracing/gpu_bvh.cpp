@@ -29,9 +29,10 @@ GpuBvh::Texels::Texels(const Device& device, const LargeArray<T>& data, Usage us
                                                           0, VK_WHOLE_SIZE)};
 }
 
-MemoryNeed GpuBvh::memory_need(const Device& device, uint64_t triangle_count) {
-    const size_t bytes = triangle_count * sizeof(BvhTriangle);
-    return {"triangles of all instances", bytes, usage_for(device, bytes)};
+void GpuBvh::require_room(const Device& device, const Scene& scene) {
+    const size_t bytes = countable_triangles(scene) * sizeof(BvhTriangle);
+    const MemoryNeed need{"triangles of all instances", bytes, usage_for(device, bytes)};
+    require_memory(device, {&need, 1});
 }
 
 GpuBvh::GpuBvh(const Device& device, const Bvh& bvh)

@@ -7,8 +7,9 @@ namespace lab {
 
 class GpuBvh {
   public:
-    // Of a tree, before it is built: its triangles alone.
-    static MemoryNeed memory_need(const Device& device, uint64_t triangle_count);
+    // Checks before minutes of building whether the device can hold the scene's triangles. Throws UserError
+    // for more than the tree can count, DeviceFailure for more than fit.
+    static void require_room(const Device& device, const Scene& scene);
 
     // Throws DeviceFailure if the device cannot hold or address it. The device must outlive the result.
     GpuBvh(const Device& device, const Bvh& bvh);

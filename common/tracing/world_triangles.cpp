@@ -7,12 +7,16 @@ namespace lab {
 // The triangle test multiplies two coordinates.
 static constexpr float largest_coordinate = 1e18f;
 
-LargeArray<BvhTriangle> world_triangles(const Scene& scene) {
+uint64_t countable_triangles(const Scene& scene) {
     const uint64_t count = instanced_triangle_count(scene);
     if (count > max_triangle_count)
         throw UserError(scene.file.string() + ": its instances have " + std::to_string(count) +
                         " triangles together, more than 2^28 - 1; remove instances or use another backend");
-    LargeArray<BvhTriangle> triangles(count);
+    return count;
+}
+
+LargeArray<BvhTriangle> world_triangles(const Scene& scene) {
+    LargeArray<BvhTriangle> triangles(countable_triangles(scene));
     size_t first = 0;  // of the instance
     for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
         const glm::dmat4x3 object_to_world(scene.instances[instance].object_to_world);

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "error.h"
+#include "files/file.h"
+#include "files/hash.h"
 #include "files/project_folder.h"
 #include "rendering/outputs.h"
 #include "rendering/scene_reference.h"
 #include "rendering/settings.h"
-#include "files/file.h"
-#include "files/hash.h"
 
 namespace lab {
 namespace {

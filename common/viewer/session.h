@@ -1,12 +1,12 @@
 // What a window renders, and the changes that its user makes to it.
 #pragma once
-#include <variant>
 #include <set>
+#include <variant>
 
 #include "clock.h"
+#include "rendering/build.h"
 #include "statistics/live_verdict.h"
 #include "viewer/background_work.h"
-#include "rendering/build.h"
 #include "viewer/display_pass.h"
 
 namespace lab {

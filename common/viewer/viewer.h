@@ -1,6 +1,7 @@
 // The window of a chapter: shows the picture while it is rendered, and lets its user change everything.
 #pragma once
 #include <algorithm>
+
 #include "clock.h"
 #include "viewer/camera_control.h"
 #include "viewer/comparison.h"

@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "files/project_folder.h"
-#include "film/film_image.h"
 #include "film/film_file.h"
+#include "film/film_image.h"
 #include "support/gpu_test.h"
 #include "support/pcg2d.h"
 #include "support/render.h"

@@ -1,6 +1,3 @@
-// How far off an image is: against a reference, and told by its own samples.
-#include "statistics/error_metrics.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

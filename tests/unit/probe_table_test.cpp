@@ -1,11 +1,11 @@
 // The cells of a light probe that light samples choose from.
-#include "scene/light_table.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <random>
+
+#include "scene/light_table.h"
 
 namespace lab {
 namespace {

@@ -15,7 +15,7 @@ from references.meshes import Material, ObjFile, triangle_normals
 
 
 class SourceFiles:
-    """Reads files and hashes their contents in reading order (FNV-1a, 64 bits), as common/scene/source_files.h."""
+    """Reads files and hashes their contents in reading order (FNV-1a, 64 bits), as common/scene/text_lines.h."""
 
     def __init__(self):
         self.hash = 0xCBF29CE484222325
