@@ -84,7 +84,7 @@ json measure(const Device& device, const Subject& subject) {
         if (!device.description().supports(backend)) continue;
         const auto structure = build_acceleration_structure(backend, device, gpu_scene);
         Renderer path_tracer(device, *structure, estimator, parameters);
-        const Estimator replay{tests / "measure/replay_rays.glsl", path_defines(backend, path_count)};
+        const Estimator replay{tests / "measure/replay/path_trace.glsl", path_defines(backend, path_count)};
         Renderer replayer(device, *structure, replay, parameters, {&ray_binding, 1});
         const auto runs = measure_in_turns({&path_tracer, &replayer}, 0.5);
         const Rates rates = median(runs[0]), bare = median(runs[1]);

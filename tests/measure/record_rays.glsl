@@ -1,5 +1,5 @@
 // An estimator which also writes down the rays that it traces: those of one path of every pixel.
-#include "recorded_ray.h"
+#include "replay/recorded_ray.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) buffer RecordedRays { RecordedRay recorded_rays[]; };
 uint next_segment = 0u;

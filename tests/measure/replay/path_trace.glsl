@@ -9,8 +9,7 @@ layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) readonly buffer Recorde
 // sample, as in the ray tracing pipeline, that made the rate look half as high.
 uint replayed_paths = 0u;
 
-// A thread whose path has ended replays its next one at once: no rate of an estimator is bounded by waiting.
-#define PATH_REGENERATION
+// What replaying a path keeps from ray to ray.
 struct Path {
     vec3 radiance;
     uint index;
