@@ -2,6 +2,7 @@
 import argparse
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -52,6 +53,16 @@ def original(number):
 def course():
     """The numbers of all chapters that are no copies of another."""
     return [number for number in CHAPTERS if original(number) == number]
+
+
+def shaders_of(number):
+    """The shaders that a chapter consists of: those in its folder, and what they include of other chapters."""
+    shaders = sorted((ROOT / "chapters" / CHAPTERS[number]).glob("*.glsl"))
+    for shader in shaders:  # which grows
+        for name in re.findall(r'^#include "(.*)"', shader.read_text(encoding="utf-8"), re.MULTILINE):
+            files = [folder / name for folder in (shader.parent, ROOT / "chapters")]
+            shaders += [file for file in files if file.is_file() and file not in shaders][:1]
+    return shaders
 
 
 def has_low_discrepancy(program):

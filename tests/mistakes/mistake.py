@@ -25,7 +25,7 @@ def load():
     """Mistakes that have a test, by name, with the shader that they are planted in; the others are there for ./lab check only."""
     everything, mistakes = records(), {}
     for chapter, record in ((chapter, record) for chapter, those in everything.items() for record in those if "test" in record):
-        file = record["file"] if "file" in record else shader_of(chapter, record).relative_to(ROOT).as_posix()
+        file = shader_of(chapter, record).relative_to(ROOT).as_posix()
         mistakes.setdefault(record["name"], complete(record, everything) | {"file": file})
     return mistakes
 

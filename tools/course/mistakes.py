@@ -1,13 +1,13 @@
 """The mistakes that chapters know, mistakes.json in their folders, and how they are planted into the chapters' shaders.
 
-A record replaces the text `find`, which is there exactly once, by `replace`: in a shader of its chapter's folder, or in `file`. A chapter
-that can have the mistake of an earlier one has a record of its own with the same name. What is said of a mistake need be said in one
+A record replaces the text `find`, which is there exactly once, by `replace`: in a shader of its chapter's folder, in one that these
+include from other chapters, or in `file`. A chapter that can have the mistake of an earlier one has a record of its own with that name. What is said of a mistake need be said in one
 record only: its "explanation"; "hint" and "slide", with which ./lab check is to know it; the "test" that is red where it is planted.
 """
 from dataclasses import dataclass
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, UserError, course, original, read_json
+from project import CHAPTERS, ROOT, UserError, course, original, read_json, shaders_of
 
 NO_QUESTION = "Where do the two pictures differ, and which line decides that?"
 SAID_ONCE = ("explanation", "hint", "slide", "test")
@@ -21,7 +21,7 @@ class Stale(UserError):
 
 @dataclass
 class Bug:
-    """A mistake in a chapter: its record, and a shader of the chapter's folder with it."""
+    """A mistake in a chapter: its record, and one of the chapter's shaders with it."""
     chapter: int
     mistake: dict
     file: Path
@@ -56,9 +56,11 @@ def complete(record, everything):
 
 
 def shader_of(chapter, record):
-    """The shader in a chapter's folder that has the text to be replaced, or else the estimator."""
-    shaders = sorted(own_shader(chapter).parent.glob("*.glsl"))
-    return next((file for file in shaders if record["find"] in file.read_text(encoding="utf-8")), own_shader(chapter))
+    """The shader that has the text to be replaced, or else the estimator."""
+    if "file" in record:
+        folders = [own_shader(chapter).parent, ROOT] if chapter else [ROOT]
+        return next((folder / record["file"] for folder in folders if (folder / record["file"]).exists()), ROOT / record["file"])
+    return next((file for file in shaders_of(chapter) if record["find"] in file.read_text(encoding="utf-8")), own_shader(chapter))
 
 
 def planted(chapter, mistake):
