@@ -49,8 +49,12 @@ def settings(chapter, plan, scenes=None):
 
 def level_digest(chapter, scenes):
     """Of what the levels of a chapter depend on."""
-    shaders = [own_shader(number).read_text(encoding="utf-8") for number in (chapter, GAINS_OVER.get(chapter)) if number]
-    return digest(settings(chapter, LEVELS, scenes), *shaders)
+    return digest(settings(chapter, LEVELS, scenes), *(own_text(number) for number in (chapter, GAINS_OVER.get(chapter)) if number))
+
+
+def own_text(chapter):
+    """All that a chapter's own shaders say."""
+    return "".join(shader.read_text(encoding="utf-8") for shader in project.shaders_of(chapter))
 
 
 def digest(*parts):
@@ -68,12 +72,12 @@ class Workshop:
         return {"backend": self.options.backend, "device": self.options.device, "time_limit": 600, "runs": plan["runs"],
                 "samples": samples, "first_seed": plan["first_seed"] + seed, "is_quiet": True}
 
-    def judge(self, chapter, name, text, plan, levels, scenes, seed=0):
-        """Judges a shader of a chapter's folder, with this name."""
+    def judge(self, chapter, shader, text, plan, levels, scenes, seed=0):
+        """Judges a text in place of one of a chapter's shaders."""
         with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / name
+            file = Path(folder) / "path_trace.glsl"
             file.write_text(text, encoding="utf-8")
-            return grading.judge(chapter, file, self.settings(chapter, plan, seed), levels, scenes)[0]
+            return grading.judge(chapter, file, self.settings(chapter, plan, seed), levels, scenes, shader=shader)[0]
 
     def levels(self, chapter, scenes):
         """Those of the chapter's own shader, with what it gains over the one that chapter.json names."""
@@ -164,7 +168,7 @@ def learn(workshop, name, scenes, is_anew):
     def learn_mistake(item):
         bug, entry = item
         levels = knowledge[bug.chapter]["levels"]
-        result = workshop.judge(bug.chapter, bug.file.name, bug.text, LEARNING, levels, scenes[bug.chapter])
+        result = workshop.judge(bug.chapter, bug.file, bug.text, LEARNING, levels, scenes[bug.chapter])
         with lock:
             entry["scenes"] = written(result)
             write(bug.chapter)
@@ -180,8 +184,7 @@ def planned_trials():
     planned = {}
     for key, trial in trials().items():
         scenes = OTHER_SCENES[trial.chapter] if trial.is_elsewhere else None
-        own = own_shader(trial.chapter).read_text(encoding="utf-8")
-        planned[key] = trial, scenes, digest(settings(trial.chapter, TRYING, scenes), trial.text, trial.seed, own)
+        planned[key] = trial, scenes, digest(settings(trial.chapter, TRYING, scenes), trial.text, trial.seed, own_text(trial.chapter))
     return planned
 
 
@@ -196,7 +199,7 @@ def confusion(workshop, is_anew):
     def try_naming(item):
         key, (trial, scenes, measured) = item
         knowledge = (others if scenes else own)[trial.chapter]
-        result = workshop.judge(trial.chapter, trial.file, trial.text, TRYING, knowledge["levels"], scenes, TRYING["runs"] * trial.seed)
+        result = workshop.judge(trial.chapter, trial.shader, trial.text, TRYING, knowledge["levels"], scenes, TRYING["runs"] * trial.seed)
         answer = {"mistake": trial.mistake, "verdict": result["verdict"], "named": [], "is_sure": False, "measured": measured, **effect(result)}
         if result["verdict"] != "correct":
             found = surprises(signature(result), read_signatures(knowledge["mistakes"]))

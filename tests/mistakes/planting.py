@@ -1,5 +1,6 @@
 """Shaders with mistakes planted in them: those that ./lab check is to know, and those that it is tried with."""
 from dataclasses import dataclass
+from pathlib import Path
 from zlib import crc32
 
 from check.grading import DESCRIPTIONS
@@ -14,21 +15,21 @@ CORRECT_CHECKS = 7  # of each correct shader, with other seeds
 
 @dataclass
 class Trial:
-    """A shader that is to be judged: `file` of its chapter's folder with this text."""
+    """A shader that is to be judged: this text in place of the file `shader`."""
     chapter: int
     mistake: str  # its name, or None
     text: str
-    file: str = "path_trace.glsl"
+    shader: Path
     seed: int = 0
     is_elsewhere: bool = False  # on OTHER_SCENES
 
 
 def variants():
-    """(chapter, file, record) for all estimators that are written in another way than their chapter's own."""
+    """(chapter, file, shader in whose place it is, mistakes) for all shaders that are written in another way than their chapter's own."""
     for chapter in course():
         folder = own_shader(chapter).with_name("variants")
         for variant in read_json(folder / "variants.json") if folder.exists() else []:
-            yield chapter, folder / variant["file"], variant
+            yield chapter, folder / variant["file"], folder.with_name(variant.get("shader", "path_trace.glsl")), variant["mistakes"]
 
 
 def is_tried_elsewhere(bug):
@@ -39,17 +40,17 @@ def is_tried_elsewhere(bug):
 def trials():
     """What check is tried with: condition/chapter/mistake -> Trial. All mistakes with new seeds, every fifth on other scenes, those of
     each variant, and each correct shader several times."""
-    result, correct = {}, [(chapter, "its own", own_shader(chapter)) for chapter in course()]
+    result, correct = {}, [(chapter, "its own", own_shader(chapter), own_shader(chapter)) for chapter in course()]
     for is_elsewhere, condition in enumerate(("new seeds", "other scenes")):
         for bug in catalogue():
             if not is_elsewhere or is_tried_elsewhere(bug):
                 result[f"{condition}/{name_of(bug.chapter)}/{bug.mistake['name']}"] = Trial(
-                    bug.chapter, bug.mistake["name"], bug.text, bug.file.name, is_elsewhere=bool(is_elsewhere))
-    for chapter, file, variant in variants():
+                    bug.chapter, bug.mistake["name"], bug.text, bug.file, is_elsewhere=bool(is_elsewhere))
+    for chapter, file, shader, mistakes in variants():
         text = file.read_text(encoding="utf-8")
-        correct.append((chapter, file.stem, file))
-        for mistake in variant["mistakes"]:
+        correct.append((chapter, file.stem, file, shader))
+        for mistake in mistakes:
             wrong = plant(text, mistake["find"], mistake["replace"], f"{mistake['name']} in {file.name}")
-            result[f"variants/{name_of(chapter)}/{file.stem}/{mistake['name']}"] = Trial(chapter, mistake["name"], wrong)
-    return result | {f"correct/{name_of(chapter)}/{what}/seed {seed}": Trial(chapter, None, file.read_text(encoding="utf-8"), seed=seed)
-                     for chapter, what, file in correct for seed in range(CORRECT_CHECKS)}
+            result[f"variants/{name_of(chapter)}/{file.stem}/{mistake['name']}"] = Trial(chapter, mistake["name"], wrong, shader)
+    return result | {f"correct/{name_of(chapter)}/{what}/seed {seed}": Trial(chapter, None, file.read_text(encoding="utf-8"), shader, seed)
+                     for chapter, what, file, shader in correct for seed in range(CORRECT_CHECKS)}

@@ -23,14 +23,14 @@ SETTINGS = {
     (): [("cornell_box", "--max-path-length 5"), ("cornell_box", "--max-path-length 4 --only-path-length 2"),
          (HERE / "under_the_sky.json", "--max-path-length 3"), ("textured", "--max-path-length 3"), ("glossy", "--max-path-length 4"),
          ("furnace", "--max-path-length 4")],
-    ("light_sampling",): [("furnace", "--max-path-length 4 --light-sampling off"), ("heart_light", "--max-path-length 4"),
-                          ("cornell_box", "--max-path-length 3 --light-sampling off")],
+    ("bounces",): [("furnace", "--max-path-length 4 --strategy bounces"), ("heart_light", "--max-path-length 4"),
+                   ("cornell_box", "--max-path-length 3 --strategy bounces")],
     ("--splitting-factor",): [(HERE / "under_the_sky.json", "--max-path-length 2 --splitting-factor 1"),
                               ("cornell_box", "--max-path-length 1 --splitting-factor 3")],
     ("--splitting-factor", "--survival-cap"): [
         ("cornell_box", "--max-path-length 40 --splitting-factor 3 --survival-cap 0.6 --roulette-start 2")],
     ("dielectrics",): [("glass", "--max-path-length 8"), ("glass", "--max-path-length 6 --only-path-length 3")],
-    ("strategies", "--survival-cap"): [
+    ("both", "--survival-cap"): [
         ("plates", "--max-path-length 2"), ("heart_light", "--max-path-length 2 --strategy light"),
         ("cornell_box", "--max-path-length 40 --survival-cap 0.6 --roulette-start 2")],
     ("light_probe_sampling",): [("sunny", "--max-path-length 3"), ("studio", "--max-path-length 3"),
@@ -41,7 +41,7 @@ SETTINGS = {
 def settings_of(chapter):
     """The scenes and options that a chapter handles."""
     says = DESCRIPTIONS[chapter]
-    abilities = {key for key, value in says.items() if value is True} | {*says.get("options", [])}
+    abilities = {key for key, value in says.items() if value is True} | {*says.get("options", []), *says.get("strategies", [])}
     return [setting for needed, those in SETTINGS.items() if abilities.issuperset(needed) for setting in those]
 
 
@@ -49,18 +49,18 @@ def samples_of(chapter):
     return SAMPLES_OF_CHECKS * SCENES[chapter][0]
 
 
-def render(chapter, shader, scene, options, seeds):
-    """Images [seed, row, column, channel] and rays a sample, by a chapter's program with this file as its shader."""
+def render(chapter, file, shader, scene, options, seeds):
+    """Images [seed, row, column, channel] and rays per sample, by a chapter's program with this file in place of its shader."""
     images, rays = [], 0
     with tempfile.TemporaryDirectory() as folder:
-        program, _ = make_tree(CHAPTERS[chapter], shader, Path(folder))
+        program, _ = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         picture, report = Path(folder) / "a.exr", Path(folder) / "a.json"
         for seed in seeds:
             command = [program, scene, *options.split(), "--width", SIZE, "--height", SIZE, "--samples", samples_of(chapter),
                        "--seed", seed, "--output", picture, "--report", report, "--headless", "--quiet", "--backend", "compute"]
             ended = run_program(command)
             if ended.returncode != 0:
-                sys.exit(f"error: {shader} {scene}: {ended.stderr.strip()}")
+                sys.exit(f"error: {file} {scene}: {ended.stderr.strip()}")
             images.append(read_rgb(picture))
             rays += read_json(report)["rows"][-1]["rays"]
     return np.array(images), rays / (len(images) * SIZE**2 * samples_of(chapter))
@@ -93,14 +93,14 @@ def main():
     options = parser.parse_args()
     first, count = options.first_seed, options.seeds
     files = [file.resolve() for file in options.files]
-    chosen = [(chapter, file) for chapter, file, _ in variants() if file in files or not files]
+    chosen = [(chapter, file, shader) for chapter, file, shader, _ in variants() if file in files or not files]
     started, own, is_near = time.monotonic(), {}, True
-    for done, (chapter, file) in enumerate(chosen, 1):
+    for done, (chapter, file, shader) in enumerate(chosen, 1):
         results = {}
         for setting in settings_of(chapter):
             if (chapter, *setting) not in own:
-                own[chapter, *setting] = render(chapter, own_shader(chapter), *setting, range(first + count, first + 2 * count))
-            rendered = render(chapter, file, *setting, range(first, first + count))
+                own[chapter, *setting] = render(chapter, own_shader(chapter), None, *setting, range(first + count, first + 2 * count))
+            rendered = render(chapter, file, shader, *setting, range(first, first + count))
             results[" ".join([Path(setting[0]).stem, setting[1]])] = compare(*rendered, *own[chapter, *setting])
         worst = {kind: max(results, key=lambda setting: abs(results[setting][kind])) for kind in LIMITS}
         is_near &= all(abs(results[setting][kind]) < LIMITS[kind] for kind, setting in worst.items())

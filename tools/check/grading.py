@@ -52,22 +52,25 @@ def knowledge_file(chapter, name=KNOWLEDGE):
     return ROOT / "chapters" / CHAPTERS[chapter] / name
 
 
-def stands_for(chapter, file):
-    """The name of the chapter's shader that a file is graded as: the one that it has itself, or else the estimator."""
-    shaders = {shader.name for shader in (ROOT / "chapters" / chapter).glob("*.glsl")}
-    return file.name if file.name in shaders else "path_trace.glsl"
+def shader_like(chapter, file):
+    """The shader of a chapter's folder that a file is graded as: the one with its name, or else the estimator."""
+    folder = ROOT / "chapters" / chapter
+    return folder / file.name if (folder / file.name).exists() else folder / "path_trace.glsl"
 
 
-def make_tree(chapter, file, tree):
-    """Copies what a chapter's program reads, with `file` as one of its shaders; returns the program there and that shader."""
+def make_tree(chapter, file, tree, shader=None):
+    """Copies what a chapter's program reads, with `file` in place of a shader that it includes or that has its name; returns the
+    program there and the file's copy."""
     shutil.copytree(ROOT / "shaders", tree / "shaders")
-    shutil.copytree(ROOT / "chapters" / chapter, tree / "chapters" / chapter)
-    shader = Path(shutil.copy(file, tree / "chapters" / chapter / stands_for(chapter, file)))
+    for source in (*ROOT.glob("chapters/*/*.glsl"), *ROOT.glob("chapters/*/chapter.json")):
+        (tree / source.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, tree / source.relative_to(ROOT))
+    copy = Path(shutil.copy(file, tree / (shader or shader_like(chapter, file)).relative_to(ROOT)))
     share(ROOT / "assets", tree / "assets")
     if (libraries := BINARIES.parent / "lib").exists():  # of an archive that ./lab package made
         share(libraries, tree / "lib")
     (tree / "bin").mkdir()
-    return shutil.copy(program_file(chapter), tree / "bin"), shader  # a program looks for shaders above itself
+    return shutil.copy(program_file(chapter), tree / "bin"), copy  # a program looks for shaders above itself
 
 
 def share(folder, place):
@@ -76,12 +79,13 @@ def share(folder, place):
 
 
 @contextmanager
-def program_with(chapter, text, name="path_trace.glsl"):
-    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as one of its shaders."""
+def program_with(chapter, text, shader=None):
+    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as one of its shaders: as
+    its estimator, unless said otherwise."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / name
+        file = Path(folder) / "path_trace.glsl"
         file.write_text(text, encoding="utf-8")
-        yield make_tree(chapter, file, Path(folder) / "tree")[0]
+        yield make_tree(chapter, file, Path(folder) / "tree", shader)[0]
 
 
 def regions(image):
@@ -102,13 +106,13 @@ def reference_regions(file):
             "freedom": reference.freedom}
 
 
-def render(chapter, file, settings, scenes=None, watch=lambda cases: None):
+def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shader=None):
     """Cases with their runs, each a row with the means of the regions. `settings`: backend, device, time_limit, memory_limit,
     runs, samples, first_seed and is_quiet; `scenes` are names of references; `watch` is called after the first EARLY_RUNS."""
     samples, own_scenes = SCENES[chapter]
     samples, started = settings["samples"] or samples, time.monotonic()
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(JOBS) as pool:
-        program, shader = make_tree(CHAPTERS[chapter], file, Path(folder))
+        program, copy = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         cases = [new_case(*pair, f"chapter {chapter}", program, OPTIONS[chapter])
                  for pair in find_references(scenes or own_scenes)]
         for case in cases:
@@ -146,7 +150,7 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None):
         except BaseException as error:
             pool.shutdown(cancel_futures=True)
             if isinstance(error, UserError):
-                raise UserError(str(error).replace(str(shader.resolve()), printable(file))) from None
+                raise UserError(str(error).replace(str(copy.resolve()), printable(file))) from None
             raise
     return cases
 
@@ -208,10 +212,10 @@ def early_bias(cases):
     return None, max(test["detectable"] for test, _ in tests)
 
 
-def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None):
+def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None):
     """The verdict on a shader and on each scene, and the mean picture of each scene; UserError where there is none."""
     levels = levels or read_levels(chapter)
-    cases = render(chapter, file, settings, scenes, watch)
+    cases = render(chapter, file, settings, scenes, watch, shader)
     results = [grade(case, levels[case["scene"]], len(cases)) for case in cases]
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
     return {"chapter": chapter, "file": printable(file), "verdict": verdict, "runs": settings["runs"],

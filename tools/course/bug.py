@@ -170,8 +170,8 @@ def main():
     if options.answer:
         answer(bug)
         return
-    chapter, own, name = CHAPTERS[bug.chapter], bug.file.read_text(encoding="utf-8"), bug.file.name
-    with program_with(chapter, own, name) as right, program_with(chapter, bug.text, name) as wrong:
+    chapter, own = CHAPTERS[bug.chapter], bug.file.read_text(encoding="utf-8")
+    with program_with(chapter, own, bug.file) as right, program_with(chapter, bug.text, bug.file) as wrong:
         scene = options.scene or telling_scene(bug.chapter, (right, wrong), options)
         if options.window:
             open_window(bug, scene, wrong, options)

@@ -48,7 +48,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         vec3 omega = get_shading_space(s.normal) * get_direction(theta, phi);
         bool is_scattered = is_above_surface(s, -ray.direction) && is_above_surface(s, omega);
         if (bounces < parameters.max_path_length && is_scattered) {
-            vec3 brdf = get_pi_brdf(s, omega, -ray.direction) / PI;
+            vec3 brdf = get_brdf(s, omega);
             call.factor = PI * PI * sin(theta) * brdf * cos(theta);
         }
         calls[count++] = call;

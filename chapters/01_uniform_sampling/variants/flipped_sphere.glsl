@@ -34,7 +34,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         vec3 outgoing = -ray.direction;
         if (is_above_surface(s, incoming) && is_above_surface(s, outgoing)) {
             // brdf · cosine / density
-            vec3 brdf = get_pi_brdf(s, incoming, outgoing) / PI;
+            vec3 brdf = get_brdf(s, incoming);
             weight *= brdf * dot(s.normal, incoming) / density;
             ray = get_ray_from_surface(s, incoming);
             --bounces_left;

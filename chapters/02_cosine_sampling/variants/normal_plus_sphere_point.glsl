@@ -35,7 +35,7 @@ vec3 advance(inout Path path, inout uvec2 seed) {
                        !is_above_surface(s, -direction) || !is_above_surface(s, next);
     if (path.is_finished) return found;
 
-    path.throughput *= get_pi_brdf(s, next, -direction);
+    path.throughput *= PI * get_brdf(s, next);
     path.ray = get_ray_from_surface(s, next);
     ++path.bounces;
     return found;

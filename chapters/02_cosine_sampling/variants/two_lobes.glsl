@@ -48,7 +48,7 @@ vec3 sample_direction(ShadingData s, vec3 out_direction, inout uvec2 seed, out v
     float lobe = cos_alpha > 0.0 ? pow(cos_alpha, s.specular_exponent) : 0.0;
     density_over_cosine += lobe_probability * (s.specular_exponent + 1.0) / (2.0 * PI) * lobe / cos_theta;
 #endif
-    weight = get_pi_brdf(s, omega, out_direction) / (PI * density_over_cosine);
+    weight = get_brdf(s, omega) / density_over_cosine;
     return omega;
 }
 

@@ -1,7 +1,7 @@
 // Next event estimation with resampling (Talbot, Cline and Egbert 2005): of three candidates y_i with density p_i one
 // is kept with probability proportional to w_i = t(y_i) / p_i, where t is the luminance of what it brings if nothing
 // is in between. The estimate f(y) / t(y) · mean(w_i) has the right expectation, and needs a single shadow ray.
-#include "sampling.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
 
 const uint CANDIDATES = 3u;
 
@@ -16,7 +16,7 @@ vec3 get_unshadowed(ShadingData s, vec3 out_direction, LightPoint y) {
     if (!(cos_light > 0.0)) return vec3(0.0);
     if (!is_above_surface(s, omega)) return vec3(0.0);
     float cos_surface = dot(s.normal, omega);
-    return get_pi_brdf(s, omega, out_direction) / PI * y.emission * cos_surface * cos_light / squared_distance;
+    return get_brdf(s, omega) * y.emission * cos_surface * cos_light / squared_distance;
 }
 
 vec3 get_direct_light(ShadingData s, vec3 out_direction, inout uvec2 seed) {
@@ -54,14 +54,14 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     vec3 out_direction = -ray.direction;
     for (uint k = 1u; k <= parameters.max_path_length && is_above_surface(s, out_direction); ++k) {
         bool shows_length = is_counted(k);
-        if (LIGHT_SAMPLING) {
+        if (STRATEGY != STRATEGY_BOUNCES) {
             vec3 direct = get_direct_light(s, out_direction, seed);
             if (shows_length) radiance += throughput * direct;
         }
-        bool needs_ray = !LIGHT_SAMPLING || HAS_BACKGROUND || k < parameters.max_path_length;
+        bool needs_ray = STRATEGY == STRATEGY_BOUNCES || HAS_BACKGROUND || k < parameters.max_path_length;
         vec3 omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
         if (!needs_ray || !is_above_surface(s, omega)) break;
-        throughput *= get_pi_brdf(s, omega, out_direction);
+        throughput *= PI * get_brdf(s, omega);
 
         if (!trace_ray(get_ray_from_surface(s, omega), NO_LIMIT, hit)) {
             if (shows_length) radiance += throughput * get_background_radiance(omega);
@@ -69,7 +69,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         }
         s = get_shading_data(hit, omega);
         out_direction = -omega;
-        if (!LIGHT_SAMPLING && shows_length) radiance += throughput * s.emission;
+        if (STRATEGY == STRATEGY_BOUNCES && shows_length) radiance += throughput * s.emission;
     }
     return radiance;
 }

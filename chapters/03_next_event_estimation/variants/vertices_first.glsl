@@ -1,6 +1,6 @@
 // Next event estimation in two passes: first the path's vertices are laid down, then each of them asks the lights.
 // Ten vertices at a time, so that paths of any length fit.
-#include "sampling.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
 
 struct Vertex {
     ShadingData s;
@@ -26,7 +26,7 @@ vec3 gather_direct_light(Vertex vertex, inout uvec2 seed) {
     if (!is_lit || is_occluded(get_ray_to_point(vertex.s, y.position_in_front), 1.0)) return vec3(0.0);
     float density = r * r / cos_light / light.inverse_density;
     float cos_surface = dot(vertex.s.normal, omega);
-    return get_pi_brdf(vertex.s, omega, vertex.out_direction) / PI * y.emission * cos_surface / density;
+    return get_brdf(vertex.s, omega) * y.emission * cos_surface / density;
 }
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
@@ -47,23 +47,23 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
                 break;
             }
             ShadingData s = get_shading_data(hit, ray.direction);
-            bool is_new = path_length == 0u || !LIGHT_SAMPLING;
+            bool is_new = path_length == 0u || STRATEGY == STRATEGY_BOUNCES;
             if (is_new && is_counted(path_length)) radiance += throughput * s.emission;
             if (path_length == parameters.max_path_length || !is_above_surface(s, -ray.direction)) break;
             vertices[count] = Vertex(s, -ray.direction, throughput);
             ++count;
             ++path_length;
             // The last vertex only asks the lights. A sky is found by a ray.
-            if (LIGHT_SAMPLING && !HAS_BACKGROUND && path_length == parameters.max_path_length) break;
+            if (STRATEGY != STRATEGY_BOUNCES && !HAS_BACKGROUND && path_length == parameters.max_path_length) break;
 
             vec3 omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
             if (!is_above_surface(s, omega)) break;
-            throughput *= get_pi_brdf(s, omega, -ray.direction);
+            throughput *= PI * get_brdf(s, omega);
             ray = get_ray_from_surface(s, omega);
             goes_on = true;
         }
         // Second pass: light that arrives at vertex i has been reflected first_length + i + 1 times.
-        if (!LIGHT_SAMPLING) continue;
+        if (STRATEGY == STRATEGY_BOUNCES) continue;
         for (uint i = 0u; i < count; ++i) {
             vec3 direct_light = gather_direct_light(vertices[i], seed);
             if (is_counted(first_length + i + 1u)) radiance += vertices[i].throughput * direct_light;

@@ -1,6 +1,6 @@
 // Splitting in a single loop: whenever a branch ends, the next one starts at the first hit, until none is left.
-#include "sampling.glsl"
-#include "direct_light.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "03_next_event_estimation/direct_light.glsl"
 
 struct Branch {
     ShadingData s;
@@ -25,12 +25,12 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     vec3 reflected = vec3(0.0);
     while (branches_left > 0u) {
         ShadingData s = branch.s;
-        if (LIGHT_SAMPLING) {
-            vec3 direct_light = sample_direct_light(s, branch.out_direction, seed);
+        if (STRATEGY != STRATEGY_BOUNCES) {
+            vec3 direct_light = sample_direct_light(s, seed);
             if (is_counted(branch.k)) reflected += branch.throughput * direct_light;
         }
         // Each step below must be possible for the branch to reach another hit.
-        bool is_at_end = LIGHT_SAMPLING && !HAS_BACKGROUND && branch.k == parameters.max_path_length;
+        bool is_at_end = STRATEGY != STRATEGY_BOUNCES && !HAS_BACKGROUND && branch.k == parameters.max_path_length;
         bool goes_on = !is_at_end;
         vec3 omega;
         if (goes_on) {
@@ -38,14 +38,14 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
             goes_on = is_above_surface(s, omega);
         }
         if (goes_on) {
-            branch.throughput *= get_pi_brdf(s, omega, branch.out_direction);
+            branch.throughput *= PI * get_brdf(s, omega);
             goes_on = trace_ray(get_ray_from_surface(s, omega), NO_LIMIT, hit);
             if (!goes_on && is_counted(branch.k)) reflected += branch.throughput * get_background_radiance(omega);
         }
         if (goes_on) {
             branch.s = get_shading_data(hit, omega);
             branch.out_direction = -omega;
-            if (!LIGHT_SAMPLING && is_counted(branch.k)) reflected += branch.throughput * branch.s.emission;
+            if (STRATEGY == STRATEGY_BOUNCES && is_counted(branch.k)) reflected += branch.throughput * branch.s.emission;
             ++branch.k;
             goes_on = branch.k <= parameters.max_path_length && is_above_surface(branch.s, branch.out_direction);
         }

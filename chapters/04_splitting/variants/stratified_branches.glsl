@@ -1,7 +1,7 @@
 // Splitting with stratified branches: at the first hit branch b of s takes its azimuth from the b-th of s equal
 // sectors, and its point on the light from the b-th of s strips of equal area. Over all branches together the numbers
 // are still uniform, so the mean of the branches has the same expectation.
-#include "sampling.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
 
 // Direct light by one point, for u uniform in [0,1)² on the chosen triangle.
 vec3 reflect_light(ShadingData s, vec3 out_direction, vec2 u, inout uvec2 seed) {
@@ -14,7 +14,7 @@ vec3 reflect_light(ShadingData s, vec3 out_direction, vec2 u, inout uvec2 seed) 
     float cos_light = -dot(y.normal, omega);
     if (cos_light <= 0.0 || !is_above_surface(s, omega)) return vec3(0.0);
     if (is_occluded(get_ray_to_point(s, y.position_in_front), 1.0)) return vec3(0.0);
-    vec3 brdf = get_pi_brdf(s, omega, out_direction) / PI;
+    vec3 brdf = get_brdf(s, omega);
     return brdf * y.emission * light.inverse_density * dot(s.normal, omega) * cos_light / squared_distance;
 }
 
@@ -31,7 +31,7 @@ vec3 follow_branch(uint branch, ShadingData s, vec3 out_direction, inout uvec2 s
     vec3 throughput = vec3(1.0);
     for (uint k = 1u; k <= parameters.max_path_length; ++k) {
         if (!is_above_surface(s, out_direction)) return light;
-        if (LIGHT_SAMPLING) {
+        if (STRATEGY != STRATEGY_BOUNCES) {
             vec2 point_numbers = get_stratified_numbers(k, branch, count, seed);
             vec3 direct_light = reflect_light(s, out_direction, point_numbers, seed);
             if (is_counted(k)) light += throughput * direct_light;
@@ -42,7 +42,7 @@ vec3 follow_branch(uint branch, ShadingData s, vec3 out_direction, inout uvec2 s
         vec2 direction_numbers = get_stratified_numbers(k, branch, count, seed);
         vec3 omega = get_shading_space(s.normal) * sample_hemisphere(direction_numbers);
         if (!is_above_surface(s, omega)) return light;
-        throughput *= get_pi_brdf(s, omega, out_direction);
+        throughput *= PI * get_brdf(s, omega);
 
         Hit hit;
         if (!trace_ray(get_ray_from_surface(s, omega), NO_LIMIT, hit)) {
@@ -50,7 +50,7 @@ vec3 follow_branch(uint branch, ShadingData s, vec3 out_direction, inout uvec2 s
         }
         s = get_shading_data(hit, omega);
         out_direction = -omega;
-        if (!LIGHT_SAMPLING && is_counted(k)) light += throughput * s.emission;
+        if (STRATEGY == STRATEGY_BOUNCES && is_counted(k)) light += throughput * s.emission;
     }
     return light;
 }

@@ -1,6 +1,6 @@
 // Russian roulette from the second bounce on, by the latest factor alone: a path survives with the probability with
 // which the surface would have kept a photon. The throughput then stays what it was, apart from its colour.
-#include "direct_light.glsl"
+#include "03_next_event_estimation/direct_light.glsl"
 
 // Density cos θ / π: Shirley and Chiu's map of the square to the disk, lifted.
 vec3 sample_lifted_disk(vec2 u) {
@@ -34,15 +34,15 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         uint path_length = 1u;
         while (path_length <= parameters.max_path_length && is_above_surface(s, out_direction)) {
             bool is_shown = is_counted(path_length);
-            if (LIGHT_SAMPLING) {
-                vec3 direct_light = sample_direct_light(s, out_direction, seed);
+            if (STRATEGY != STRATEGY_BOUNCES) {
+                vec3 direct_light = sample_direct_light(s, seed);
                 if (is_shown) radiance += throughput * direct_light;
             }
-            if (LIGHT_SAMPLING && !HAS_BACKGROUND && path_length == parameters.max_path_length) break;
+            if (STRATEGY != STRATEGY_BOUNCES && !HAS_BACKGROUND && path_length == parameters.max_path_length) break;
 
             vec3 omega = get_shading_space(s.normal) * sample_lifted_disk(get_random_numbers(seed));
             if (!is_above_surface(s, omega)) break;
-            vec3 factor = get_pi_brdf(s, omega, out_direction);
+            vec3 factor = PI * get_brdf(s, omega);
             if (path_length >= FIRST_ROULETTE) factor = play_roulette(factor, seed);
             if (factor == vec3(0.0)) break;
             throughput *= factor;
@@ -53,7 +53,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
             }
             s = get_shading_data(hit, omega);
             out_direction = -omega;
-            if (!LIGHT_SAMPLING && is_shown) radiance += throughput * s.emission;
+            if (STRATEGY == STRATEGY_BOUNCES && is_shown) radiance += throughput * s.emission;
             ++path_length;
         }
     }

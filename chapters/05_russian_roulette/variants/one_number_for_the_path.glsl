@@ -3,8 +3,8 @@
 //
 // S_k = min(max β_k, cap · S_{k-1}) with the plain product β_k of all factors π ρ: as if at every bounce a new number
 // were compared with S_k / S_{k-1}.
-#include "sampling.glsl"
-#include "direct_light.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "03_next_event_estimation/direct_light.glsl"
 
 // Uniform in [0,1) with 48 bits: 24 would be too few for paths that hardly anyone survives.
 float get_fine_random_number(inout uvec2 seed) {
@@ -20,15 +20,15 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
     for (uint k = 1u; k <= parameters.max_path_length; ++k) {
         bool is_shown = is_counted(k);
         if (!is_above_surface(s, out_direction)) break;
-        if (LIGHT_SAMPLING) {
-            vec3 direct_light = sample_direct_light(s, out_direction, seed);
+        if (STRATEGY != STRATEGY_BOUNCES) {
+            vec3 direct_light = sample_direct_light(s, seed);
             if (is_shown) radiance += product / alive * direct_light;
         }
-        if (LIGHT_SAMPLING && !HAS_BACKGROUND && k == parameters.max_path_length) break;
+        if (STRATEGY != STRATEGY_BOUNCES && !HAS_BACKGROUND && k == parameters.max_path_length) break;
 
         vec3 omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
         if (!is_above_surface(s, omega)) break;
-        product *= get_pi_brdf(s, omega, out_direction);
+        product *= PI * get_brdf(s, omega);
         if (k >= parameters.roulette_start) alive = min(max_component(product), parameters.survival_cap * alive);
         if (fate >= alive) break;
 
@@ -40,7 +40,7 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
         }
         s = get_shading_data(hit, omega);
         out_direction = -omega;
-        if (!LIGHT_SAMPLING && is_shown) radiance += product / alive * s.emission;
+        if (STRATEGY == STRATEGY_BOUNCES && is_shown) radiance += product / alive * s.emission;
     }
     return radiance;
 }

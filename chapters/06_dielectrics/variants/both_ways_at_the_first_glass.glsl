@@ -1,8 +1,8 @@
 // Dielectrics: where the camera sees glass, the first of several branches is the reflection, with weight F, and all
 // others share the refraction, with weight 1 - F. Nothing is left to chance there. At all later glass, and where there
 // is only one branch, one of the two ways is chosen with the probabilities F and 1 - F.
-#include "sampling.glsl"
-#include "direct_light.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "03_next_event_estimation/direct_light.glsl"
 
 // Share of reflected light. The index is that beyond the surface over that before it; 1 where nothing can be refracted.
 float get_reflectance(float cos_theta, float index) {
@@ -39,7 +39,7 @@ vec3 trace_branch(Branch b, uint choice, inout uvec2 seed) {
     for (uint k = 1u; k <= parameters.max_path_length; ++k) {
         if (!is_above_surface(b.s, b.out_direction)) break;
         bool is_shown = is_counted(k);
-        bool samples_lights = LIGHT_SAMPLING && !b.s.is_dielectric;
+        bool samples_lights = STRATEGY != STRATEGY_BOUNCES && !b.s.is_dielectric;
         vec3 omega;
         if (b.s.is_dielectric) {
             float reflectance = get_reflectance(dot(b.s.normal, b.out_direction), b.s.relative_index);
@@ -48,13 +48,13 @@ vec3 trace_branch(Branch b, uint choice, inout uvec2 seed) {
             if (!leave_glass(b, reflects, omega)) break;
         } else {
             if (samples_lights) {
-                vec3 direct_light = sample_direct_light(b.s, b.out_direction, seed);
+                vec3 direct_light = sample_direct_light(b.s, seed);
                 if (is_shown) radiance += b.scale * b.throughput * direct_light;
                 if (k == parameters.max_path_length && !HAS_BACKGROUND) break;
             }
             omega = get_shading_space(b.s.normal) * sample_hemisphere(get_random_numbers(seed));
             if (!is_above_surface(b.s, omega)) break;
-            b.throughput *= get_pi_brdf(b.s, omega, b.out_direction);
+            b.throughput *= PI * get_brdf(b.s, omega);
         }
         if (k >= parameters.roulette_start) {
             float q = min(max_component(b.throughput), parameters.survival_cap);

@@ -1,6 +1,6 @@
 // Dielectrics with the formulas of the textbooks and GLSL's own reflect() and refract().
-#include "sampling.glsl"
-#include "direct_light.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "03_next_event_estimation/direct_light.glsl"
 
 // For unpolarised light: the mean of both polarisations, from the two cosines and the indices on both sides (only their
 // ratio matters). r_s = (n₁ c₁ - n₂ c₂) / (n₁ c₁ + n₂ c₂), r_p = (n₂ c₁ - n₁ c₂) / (n₂ c₁ + n₁ c₂).
@@ -30,7 +30,7 @@ vec3 trace_branch(ShadingData s, vec3 incident, inout uvec2 seed) {
     float scale = 1.0;  // 1/n² of the medium in which the path is; survival does not depend on it
     for (uint k = 1u; k <= parameters.max_path_length; ++k) {
         if (!is_above_surface(s, -incident)) break;
-        bool was_sampled = !s.is_dielectric && LIGHT_SAMPLING;
+        bool was_sampled = !s.is_dielectric && STRATEGY != STRATEGY_BOUNCES;
         vec3 next;
         if (s.is_dielectric) {
             float factor;
@@ -39,14 +39,14 @@ vec3 trace_branch(ShadingData s, vec3 incident, inout uvec2 seed) {
             if (dot(next, s.normal) * dot(next, s.geometric_normal) <= 0.0) break;
             scale *= factor;
         } else {
-            if (LIGHT_SAMPLING) {
-                vec3 direct_light = sample_direct_light(s, -incident, seed);
+            if (STRATEGY != STRATEGY_BOUNCES) {
+                vec3 direct_light = sample_direct_light(s, seed);
                 if (is_counted(k)) radiance += scale * throughput * direct_light;
                 if (!HAS_BACKGROUND && k == parameters.max_path_length) break;
             }
             next = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
             if (!is_above_surface(s, next)) break;
-            throughput *= get_pi_brdf(s, next, -incident);
+            throughput *= PI * get_brdf(s, next);
         }
 
         if (k >= parameters.roulette_start) {

@@ -1,7 +1,7 @@
 // The mixture has another probability of the lobe, and the bounce is made from the first hit on: what it finds belongs to the
 // hit that it starts from, as the light sample does. Densities are carried over the cosine, where a Lambertian surface has 1/π.
-#include "dielectrics.glsl"
-#include "sampling.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "06_dielectrics/dielectric.glsl"
 
 float get_share_of_the_lobe(ShadingData s) {
 #ifdef FEATURE_SPECULAR
@@ -16,7 +16,7 @@ float get_share_of_the_lobe(ShadingData s) {
 float get_density(ShadingData s, vec3 omega, vec3 eye) {
     float of_cosine = dot(s.normal, omega) / PI, of_lobe = 0.0, share = get_share_of_the_lobe(s);
 #ifdef FEATURE_SPECULAR
-    of_lobe = (s.specular_exponent + 1.0) * get_lobe(s, omega, eye) / (2.0 * PI);
+    of_lobe = (s.specular_exponent + 1.0) * get_lobe(s, omega) / (2.0 * PI);
 #endif
     return (1.0 - share) * of_cosine + share * of_lobe;
 }
@@ -46,8 +46,8 @@ vec3 sample_lights(ShadingData s, vec3 eye, inout uvec2 seed) {
     vec3 omega = (y.position - s.position) / r;
     if (!is_above_surface(s, omega) || !(dot(omega, y.normal) < 0.0)) return vec3(0.0);
     float geometry = -dot(omega, y.normal) / (r * r);
-    float p_bounce = BOUNCES_FIND_LIGHTS ? get_density(s, omega, eye) : 0.0;
-    vec3 f = get_pi_brdf(s, omega, eye) / PI * dot(s.normal, omega) * y.emission;
+    float p_bounce = STRATEGY != STRATEGY_LIGHT ? get_density(s, omega, eye) : 0.0;
+    vec3 f = get_brdf(s, omega) * dot(s.normal, omega) * y.emission;
     if (is_occluded(get_ray_to_point(s, y.position_in_front), 1.0)) return vec3(0.0);
     return f * geometry / (1.0 / light.inverse_density + geometry * p_bounce);
 }
@@ -69,20 +69,21 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     float scale = 1.0;  // 1/η² for each medium entered
     for (uint k = 1u; k <= parameters.max_path_length; ++k) {
         if (!is_above_surface(s, eye)) break;
-        bool is_smooth = s.is_dielectric, has_sample = LIGHT_SAMPLING && !is_smooth;
+        bool is_smooth = s.is_dielectric, has_sample = STRATEGY != STRATEGY_BOUNCES && !is_smooth;
         if (has_sample && is_counted(k)) radiance += scale * throughput * sample_lights(s, eye, seed);
 
         vec3 omega;
         float p_bounce = 0.0;
         if (is_smooth) {
-            omega = sample_dielectric(s, eye, seed);
-            if (dot(s.normal, omega) * dot(s.geometric_normal, omega) <= 0.0) break;
-            if (dot(s.normal, omega) < 0.0) scale /= s.relative_index * s.relative_index;
+            BsdfSample at_glass = sample_dielectric(s, seed);
+            if (at_glass.weight == vec3(0.0)) break;
+            omega = at_glass.direction;
+            scale *= at_glass.radiance_scale;
         } else {
             omega = choose_direction(s, eye, seed);
             if (!is_above_surface(s, omega)) break;
             p_bounce = get_density(s, omega, eye);
-            throughput *= get_pi_brdf(s, omega, eye) * (dot(s.normal, omega) / PI) / p_bounce;
+            throughput *= get_brdf(s, omega) * dot(s.normal, omega) / p_bounce;
         }
         if (k >= parameters.roulette_start) {
             float q = min(max_component(throughput), parameters.survival_cap);
@@ -97,7 +98,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         s = get_shading_data(hit, omega);
         eye = -omega;
         throughput *= s.transmittance;
-        float weight = has_sample ? get_share_of_the_bounce(s, hit.distance, omega, BOUNCES_FIND_LIGHTS ? p_bounce : 0.0) : 1.0;
+        float weight = has_sample ? get_share_of_the_bounce(s, hit.distance, omega, STRATEGY != STRATEGY_LIGHT ? p_bounce : 0.0) : 1.0;
         if (is_counted(k)) radiance += scale * weight * throughput * s.emission;
     }
     return radiance;

@@ -1,7 +1,8 @@
 // The power heuristic: weights in proportion to the squares of the densities. Both are written as a quotient of densities,
 // q = the other one's over one's own: 1 / (1 + q²).
-#include "brdf_sampling.glsl"
-#include "dielectrics.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "06_dielectrics/dielectric.glsl"
+#include "sample_bsdf.glsl"
 
 float get_weight(float own, float other) {
     if (other == 0.0) return 1.0;
@@ -30,8 +31,8 @@ vec3 gather_light(Vertex v, inout uvec2 seed) {
     float cosine = -dot(y.normal, omega);
     if (!(cosine > 0.0) || !is_above_surface(v.s, omega)) return vec3(0.0);
     float p_light = get_light_density(1.0 / triangle.inverse_density, squared_distance, cosine);
-    float p_bounce = BOUNCES_FIND_LIGHTS ? get_brdf_density(v.s, omega, v.to_eye) : 0.0;
-    vec3 brdf_cosine = get_pi_brdf(v.s, omega, v.to_eye) * dot(v.s.normal, omega) / PI;
+    float p_bounce = STRATEGY != STRATEGY_LIGHT ? get_bsdf_density(v.s, omega) : 0.0;
+    vec3 brdf_cosine = get_brdf(v.s, omega) * dot(v.s.normal, omega);
     vec3 found = get_weight(p_light, p_bounce) * brdf_cosine / p_light * y.emission;
     return is_occluded(get_ray_to_point(v.s, y.position_in_front), 1.0) ? vec3(0.0) : found;
 }
@@ -55,27 +56,19 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         if (is_counted(bounces)) sum += scale * weight * beta * v.s.emission;
         if (bounces == parameters.max_path_length || !is_above_surface(v.s, v.to_eye)) return sum;
 
-        vec3 omega;
-        if (v.s.is_dielectric) {
-            shares = false;
-            omega = sample_dielectric(v.s, v.to_eye, seed);
-            bool is_refracted = dot(v.s.normal, omega) < 0.0;
-            if (is_refracted != (dot(v.s.geometric_normal, omega) < 0.0)) return sum;
-            if (is_refracted) scale /= v.s.relative_index * v.s.relative_index;
-        } else {
-            shares = LIGHT_SAMPLING;
-            if (shares && is_counted(bounces + 1u)) sum += scale * beta * gather_light(v, seed);
-            omega = sample_brdf(v.s, v.to_eye, seed);
-            if (!is_above_surface(v.s, omega)) return sum;
-            float density = get_brdf_density(v.s, omega, v.to_eye);
-            beta *= get_pi_brdf(v.s, omega, v.to_eye) * (dot(v.s.normal, omega) / PI / density);
-            p_bounce = BOUNCES_FIND_LIGHTS ? density : 0.0;
-        }
+        shares = STRATEGY != STRATEGY_BOUNCES;
+        if (v.s.is_dielectric) shares = false;
+        if (shares && is_counted(bounces + 1u)) sum += scale * beta * gather_light(v, seed);
+        BsdfSample next = sample_bsdf(v.s, seed);
+        if (next.weight == vec3(0.0)) return sum;
+        beta *= next.weight;
+        scale *= next.radiance_scale;
+        p_bounce = STRATEGY != STRATEGY_LIGHT ? next.density : 0.0;
         if (bounces + 1u >= parameters.roulette_start) {
             float q = min(max_component(beta), parameters.survival_cap);
             if (!happens(q, seed)) return sum;
             beta /= q;
         }
-        ray = get_ray_from_surface(v.s, omega);
+        ray = get_ray_from_surface(v.s, next.direction);
     }
 }

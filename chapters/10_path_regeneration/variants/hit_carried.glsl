@@ -1,12 +1,13 @@
 // A path carries the surface that it has reached instead of a ray: a call scatters there and traces the next ray. So what
 // light samples leave to a bounce is decided within the call.
-#define PATH_REGENERATION
-#include "light_probe_sampling.glsl"
-#include "low_discrepancy.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "06_dielectrics/dielectric.glsl"
+#include "07_multiple_importance_sampling/sample_bsdf.glsl"
+#include "07_multiple_importance_sampling/weights.glsl"
+#include "08_light_probes/light_probe_sampling.glsl"
 
 struct Path {
     ShadingData s;  // x_k
-    vec3 out_direction;
     vec3 radiance;
     vec3 throughput;
     float radiance_scale;
@@ -22,18 +23,17 @@ void arrive(inout Path path, Ray ray, bool is_light_sampled, float bounce_densit
     bool is_hit = trace_ray(ray, NO_LIMIT, hit);
     if (is_hit) {
         path.s = get_shading_data(hit, ray.direction);
-        path.out_direction = -ray.direction;
         path.throughput *= path.s.transmittance;
         emission = path.s.emission;
         if (is_light_sampled)
-            light_density = to_solid_angle(path.s.light_density, hit.distance, dot(path.s.geometric_normal, path.out_direction));
+            light_density = to_solid_angle(path.s.light_density, hit.distance, dot(path.s.geometric_normal, path.s.out_direction));
     } else {
         emission = get_background_radiance(ray.direction);
-        if (is_light_sampled) light_density = get_light_probe_density(ray.direction);
+        if (is_light_sampled) light_density = get_background_density(ray.direction);
     }
     if (is_counted(path.path_length))
         path.radiance += path.radiance_scale * path.throughput * get_bounce_part(light_density, bounce_density) * emission;
-    path.goes_on = is_hit && path.path_length < parameters.max_path_length && is_above_surface(path.s, path.out_direction);
+    path.goes_on = is_hit && path.path_length < parameters.max_path_length && is_above_surface(path.s, path.s.out_direction);
 }
 
 Path start_path(Ray ray) {
@@ -49,32 +49,23 @@ Path start_path(Ray ray) {
 bool extend_path(inout Path path, inout uvec2 seed) {
     if (!path.goes_on) return false;
     ShadingData s = path.s;
-    bool is_light_sampled = (LIGHT_SAMPLING || LIGHT_PROBE_SAMPLING) && !s.is_dielectric;
+    bool is_light_sampled = STRATEGY != STRATEGY_BOUNCES && !s.is_dielectric;
     if (is_light_sampled) {
-        vec3 direct_light = sample_direct_light(s, path.out_direction, seed);
+        vec3 direct_light = sample_direct_light(s, seed);
         if (is_counted(path.path_length + 1u)) path.radiance += path.radiance_scale * path.throughput * direct_light;
     }
-    vec3 omega;
-    float bounce_density = 0.0;
-    if (s.is_dielectric) {
-        omega = sample_dielectric(s, path.out_direction, seed);
-        bool is_refracted = dot(s.normal, omega) < 0.0;
-        if (is_refracted != (dot(s.geometric_normal, omega) < 0.0)) return false;
-        if (is_refracted) path.radiance_scale /= s.relative_index * s.relative_index;
-    } else {
-        omega = sample_brdf(s, path.out_direction, seed);
-        if (!is_above_surface(s, omega)) return false;
-        float density = get_brdf_density(s, omega, path.out_direction);
-        path.throughput *= get_pi_brdf(s, omega, path.out_direction) * (dot(s.normal, omega) / PI / density);
-        if (BOUNCES_FIND_LIGHTS) bounce_density = density;
-    }
+    BsdfSample next = sample_bsdf(s, seed);
+    if (next.weight == vec3(0.0)) return false;
+    path.throughput *= next.weight;
+    path.radiance_scale *= next.radiance_scale;
+    float bounce_density = STRATEGY == STRATEGY_LIGHT ? 0.0 : next.density;
     ++path.path_length;
     if (path.path_length >= parameters.roulette_start) {
         float survival_probability = min(max_component(path.throughput), parameters.survival_cap);
         if (!happens(survival_probability, seed)) return false;
         path.throughput /= survival_probability;
     }
-    arrive(path, get_ray_from_surface(s, omega), is_light_sampled, bounce_density);
+    arrive(path, get_ray_from_surface(s, next.direction), is_light_sampled, bounce_density);
     return path.goes_on;
 }
 

@@ -1,7 +1,9 @@
 // A path's last decision of a bounce, Russian roulette, is the first one of the next call. Bounces are counted down.
-#define PATH_REGENERATION
-#include "light_probe_sampling.glsl"
-#include "low_discrepancy.glsl"
+#include "02_cosine_sampling/sample_hemisphere.glsl"
+#include "06_dielectrics/dielectric.glsl"
+#include "07_multiple_importance_sampling/sample_bsdf.glsl"
+#include "07_multiple_importance_sampling/weights.glsl"
+#include "08_light_probes/light_probe_sampling.glsl"
 
 struct Path {
     vec3 radiance;
@@ -44,38 +46,27 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     Hit hit;
     if (!trace_ray(path.ray, NO_LIMIT, hit)) {
         find(path, get_background_radiance(path.ray.direction),
-             has_light_sample ? get_light_probe_density(path.ray.direction) : 0.0);
+             has_light_sample ? get_background_density(path.ray.direction) : 0.0);
         return false;
     }
     ShadingData s = get_shading_data(hit, path.ray.direction);
-    vec3 out_direction = -path.ray.direction;
     path.beta *= s.transmittance;
     find(path, s.emission,
-         has_light_sample ? to_solid_angle(s.light_density, hit.distance, dot(s.geometric_normal, out_direction)) : 0.0);
-    if (path.bounces_left == 0u || !is_above_surface(s, out_direction)) return false;
+         has_light_sample ? to_solid_angle(s.light_density, hit.distance, dot(s.geometric_normal, s.out_direction)) : 0.0);
+    if (path.bounces_left == 0u || !is_above_surface(s, s.out_direction)) return false;
     --path.bounces_left;
 
-    vec3 omega;
-    if (s.is_dielectric) {
-        path.p_bounce = -1.0;
-        omega = sample_dielectric(s, out_direction, seed);
-        bool is_refracted = dot(s.normal, omega) < 0.0;
-        if (is_refracted != (dot(s.geometric_normal, omega) < 0.0)) return false;
-        if (is_refracted) path.scale /= s.relative_index * s.relative_index;
-    } else {
-        has_light_sample = LIGHT_SAMPLING || LIGHT_PROBE_SAMPLING;
-        if (has_light_sample) {
-            vec3 direct_light = sample_direct_light(s, out_direction, seed);
-            if (is_counted(parameters.max_path_length - path.bounces_left))
-                path.radiance += path.scale * path.beta * direct_light;
-        }
-        omega = sample_brdf(s, out_direction, seed);
-        if (!is_above_surface(s, omega)) return false;
-        float density = get_brdf_density(s, omega, out_direction);
-        path.beta *= get_pi_brdf(s, omega, out_direction) * (dot(s.normal, omega) / PI / density);
-        path.p_bounce = has_light_sample ? (BOUNCES_FIND_LIGHTS ? density : 0.0) : -1.0;
+    has_light_sample = STRATEGY != STRATEGY_BOUNCES && !s.is_dielectric;
+    if (has_light_sample) {
+        vec3 direct_light = sample_direct_light(s, seed);
+        if (is_counted(parameters.max_path_length - path.bounces_left)) path.radiance += path.scale * path.beta * direct_light;
     }
-    path.ray = get_ray_from_surface(s, omega);
+    BsdfSample next = sample_bsdf(s, seed);
+    if (next.weight == vec3(0.0)) return false;
+    path.beta *= next.weight;
+    path.scale *= next.radiance_scale;
+    path.p_bounce = has_light_sample ? (STRATEGY == STRATEGY_LIGHT ? 0.0 : next.density) : -1.0;
+    path.ray = get_ray_from_surface(s, next.direction);
     return true;
 }
 
