@@ -32,7 +32,7 @@ float later = 1.0;
 ```
 <!-- end of code -->
 """
-TEACHERS = ["exercise.json", "mistakes.json", "other_scenes.json", "variants"]  # in a chapter's folder
+TEACHERS = ["exercise.json", "mistakes.json", "other_scenes.json", "solutions", "solutions.md", "tests.json", "variants"]  # in a chapter's folder
 FOR_TEACHERS = ["docs/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
 
 

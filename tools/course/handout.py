@@ -4,7 +4,6 @@ It has neither later chapters nor the tests, which name solutions, nor the histo
 the tree configures, and that its chapter fails ./lab check before the solution is filled in and passes with it.
 """
 import os
-import re
 import shutil
 import sys
 import tempfile
@@ -21,7 +20,7 @@ FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile"
 # What only teachers need: it holds or names solutions, or makes what belongs to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/numerics.md", "docs/measuring.md", "docs/solutions", "docs/bugs*", "docs/pictures/bug*",
             "docs/records/check", "docs/grading", "chapters/*/exercise.json", "chapters/*/mistakes.json", "chapters/*/other_scenes.json",
-            "chapters/*/variants", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
+            "chapters/*/tests.json", "chapters/*/solutions*", "chapters/*/variants", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -50,16 +49,9 @@ def take_out(text, exercise):
     return text[:begin] + f"\n{indent}".join(exercise["placeholder"]) + text[end:], text[begin:end]
 
 
-def included(chapters):
-    """Files of shaders/ that the shaders of chapters include."""
-    return {name for chapter in chapters for shader in (ROOT / "chapters" / chapter).glob("*.glsl")
-            for name in re.findall(r'#include "(.*)"', shader.read_text(encoding="utf-8"))}
-
-
 def write_handout(chapter, folder):
     """The student's tree in `folder`, which must not exist."""
     kept = [name for n, name in CHAPTERS.items() if n <= chapter]
-    later = [name for n, name in CHAPTERS.items() if n > chapter]
     ignore = shutil.ignore_patterns("__pycache__")
     for name in [*FOLDERS, *(f"chapters/{name}" for name in kept)]:
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
@@ -67,12 +59,6 @@ def write_handout(chapter, folder):
         shutil.copy(ROOT / name, folder / name)
     for path in [path for pattern in TEACHERS for path in folder.glob(pattern)]:
         shutil.rmtree(path) if path.is_dir() else path.unlink()
-    # Shared shaders that only later chapters include hold what this one asks for.
-    for name in included(later) - included(kept):
-        (folder / "shaders" / name).unlink()
-    # Splitting at every hit repeats the estimators of the chapters that have it.
-    if any("split_every_hit" in description(name) for n, name in CHAPTERS.items() if n >= chapter):
-        (folder / "shaders/path_trace_every_hit.glsl").unlink()
     exercise = read_json(exercise_file(chapter))
     shader = folder / "chapters" / CHAPTERS[chapter] / exercise["file"]
     text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
