@@ -1,5 +1,5 @@
-"""Makes what follows from formulas in assets/: smooth meshes, textures and light probes. Scenes, materials and meshes of a few
-triangles are files to be edited by hand.
+"""Computes the files in assets/ that follow from formulas: smooth meshes, textures and light probes. Scenes, materials and meshes of
+a few triangles are edited by hand.
 
 The same meshes come out on every machine: numbers are rounded to few decimals.
 """
@@ -72,7 +72,7 @@ def encode_hdr(width, height, radiance):
             rgb = radiance(direction(math.pi * (y + 0.5) / height, azimuth))
             exponent = math.frexp(max(rgb))[1]
             pixels.append([min(255, round(c * 2**(8 - exponent))) for c in rgb] + [exponent + 128])
-        content += struct.pack(">BBH", 2, 2, width)  # a row: four planes, each in runs of at most 128 bytes
+        content += struct.pack(">BBH", 2, 2, width)  # each row is four planes, in runs of at most 128 bytes
         for plane in zip(*pixels):
             for run in (plane[k:k + 128] for k in range(0, width, 128)):
                 content += bytes([len(run), *run])
@@ -87,7 +87,7 @@ def make_files():
 
 
 def is_same(file, content):
-    """Whether a file holds this, images by their pixels: what zlib compresses to depends on its version."""
+    """Whether a file has this content. PNG files are compared by their pixels, since compressed bytes depend on zlib's version."""
     if file.suffix == ".png" and file.is_file():
         return np.array_equal(*(np.asarray(Image.open(stream).convert("RGB")) for stream in (file, io.BytesIO(content))))
     return file.is_file() and file.read_bytes() == content

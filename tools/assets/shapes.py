@@ -109,7 +109,7 @@ def heart_radius(d):
 
 
 def heart():
-    """A heart in parts glow_0 to glow_15: what faces +Z is to glow whiter, in steps. Rings lie closest together at the cleft, where
+    """A heart in parts glow_0 to glow_15: triangles that face +Z glow whiter, in 16 steps. Rings lie closest together at the cleft, where
     the surface is steep: areas differ by a factor of 1,600."""
     def point(s, t):
         d = direction(math.pi * s**1.6, 2 * math.pi * t)

@@ -1,5 +1,5 @@
-"""Builds the book, all pages as a site to be read from the disk: output/book/index.html. It needs no server and loads nothing
-from elsewhere. It says which pages have sentences that are too long (tools/book/readability.py).
+"""Builds the book, a site of all pages that opens from the disk: output/book/index.html. It needs no server and loads nothing
+from elsewhere. It also lists the pages whose sentences are too long (tools/book/readability.py).
 """
 import json
 import re
@@ -15,7 +15,7 @@ HERE = Path(__file__).parent
 KATEX = Path("/usr/share/javascript/katex")  # of Debian's libjs-katex
 READABILITY = "docs/readability.md"
 SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.js"
-SECTIONS = {  # of the navigation; what is not there is left out
+SECTIONS = {  # of the navigation; pages that do not exist are left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
     "Explore": ["docs/window.md", "docs/scenes.md"],
@@ -34,7 +34,7 @@ def title_of(path):
 
 
 def navigation(is_teacher):
-    """[title, paths] of each section; the first has no title. Pages of docs that no section names come before the teachers'."""
+    """[title, paths] of each section; the first has no title. Pages of docs/ in no section come before those for teachers."""
     sections = {"": START} | {title: list(paths) for title, paths in SECTIONS.items()}
     known = {path for paths in sections.values() for path in paths}
     others = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").glob("*.md"))]
@@ -50,8 +50,8 @@ def write(folder, path, text):
 
 
 def collect(folder, sections, is_teacher):
-    """Writes the pages, what they link to and their pictures, each where it stands in the project. Returns the pages, and the
-    sources as they are named in the site."""
+    """Writes the pages, the files that they link to, and their pictures, at their paths in the project. Returns the pages, and the
+    names of the sources in the site."""
     def is_included(path):
         return (ROOT / path).is_file() and (is_teacher or not str(path).startswith(SOLUTIONS))
 
@@ -100,8 +100,8 @@ def write_settings(file, folder, sections):
 
 
 def finish(site, sources):
-    """Makes the search's index a script, which pages from the disk may load, and removes what only servers need. Version 8 of
-    the theme, Debian 12's, looks for the index in __search, later ones in __index."""
+    """Turns the search index into a script, which pages from the disk may load, and removes files that only servers need. Version 8
+    of the theme (Debian 12) looks for the index in __search, later ones in __index."""
     index = read_json(site / SEARCH_INDEX)
     index["docs"] = [entry for entry in index["docs"] if entry["location"].split("#")[0] not in sources]
     write(site, SEARCH_SCRIPT, f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index)}};\n")

@@ -1,4 +1,4 @@
-"""Code on the pages, filled from its source. In a page, what stands between the lines
+"""Fills the code on the pages from its source. In a page, the text between the lines
 
 <!-- code: FILE | first phrase | last phrase -->
 ```glsl
@@ -6,8 +6,8 @@
 ```
 <!-- end of code -->
 
-is replaced by lines of FILE, a path from the project's root. They start with the one line that contains the first phrase and end
-with the first line from there on that contains the last one. The first line's indentation is taken off.
+is replaced by lines of FILE, a path from the project's root. The excerpt begins with the only line that contains the first phrase and ends
+with the next line that contains the last phrase. The indentation of its first line is removed.
 """
 import re
 

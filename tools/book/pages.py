@@ -1,4 +1,4 @@
-"""Pages as they stand in the repository, made ready for MkDocs: links, lists and comparisons of pictures."""
+"""Converts the repository's pages for MkDocs: links, lists and comparisons of pictures."""
 import os
 import re
 from pathlib import Path
@@ -8,7 +8,7 @@ from project import CHAPTERS, ROOT, description
 PICTURES = {".jpg", ".png", ".svg", ".gif", ".webp"}
 LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".glsl": "glsl", ".comp": "glsl", ".rgen": "glsl", ".rchit": "glsl", ".rmiss": "glsl",
              ".py": "python", ".json": "json", "": "bash"}
-LARGEST_SOURCE = 100_000  # bytes; what is larger is data, which nobody reads
+LARGEST_SOURCE = 100_000  # bytes; larger files are data
 CODE = r"```.*?```|`[^`\n]+`|(?<=\n\n) {4}[^\n]*"
 LINK = re.compile(rf"({CODE})|(?<!!)\[((?:`[^`\n]*`|[^\[\]]|!\[[^\[\]]*\]\([^()]*\))*)\]\(([^()\s]+)\)", re.DOTALL)
 PICTURE = re.compile(r"!\[[^\[\]]*\]\(([^()\s]+)\)|<img [^<>]*src=\"([^\"]+)\"")
@@ -23,7 +23,7 @@ class Page:
         self.path, self.is_included = Path(path), is_included
         self.linked = []  # pages and sources
         text = re.sub(r"<!-- .*? -->\n?", "", (ROOT / path).read_text(encoding="utf-8"))
-        text = text.replace("<details>", '<details markdown="1">')  # else its text would not be read as Markdown
+        text = text.replace("<details>", '<details markdown="1">')  # else MkDocs leaves its text as it is
         self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
         self.text = self.with_comparison(with_lists(LINK.sub(self.link, text)))
 
@@ -48,7 +48,7 @@ class Page:
         return f"[{text}]({name}{'' if path.suffix == '.md' else '.md'}{hash_sign}{anchor})"
 
     def with_comparison(self, text):
-        """Where a chapter shows its picture of the scene that the chapter before renders as well, a slider compares the two."""
+        """If the chapter before renders the same scene, replaces the chapter's picture by a slider between both."""
         names = list(CHAPTERS.values())
         index = names.index(self.path.parent.name) if self.path.parent.name in names else 0
         before, now = (Path(f"docs/pictures/{names[i]}.png") for i in (max(index - 1, 0), index))
@@ -65,7 +65,7 @@ class Page:
 
 
 def is_source(path):
-    """Whether this is a text that readers want to see. MkDocs leaves out what is hidden."""
+    """Whether this is a text file for readers. MkDocs leaves out hidden files."""
     file = ROOT / path
     if any(part.startswith(".") for part in path.parts):
         return False
@@ -82,8 +82,8 @@ def source_page(path):
 
 
 def with_lists(text):
-    """What belongs to a list item is indented by four spaces. A list, and an item after one of several paragraphs, has an empty
-    line before it. GitHub needs neither."""
+    """Indents the content of list items by four spaces, and puts an empty line before a list and after an item of several
+    paragraphs. MkDocs needs both, GitHub neither."""
     lines, width, is_code, has_paragraphs, before = [], 0, False, False, ""
     for line in text.split("\n"):
         is_code ^= line.lstrip().startswith("```")

@@ -1,6 +1,6 @@
-"""How long the sentences of pages are: python3 tools/book/readability.py PAGE.md ... prints the median of the words per sentence
-and the sentences that are too long. Code, tables, headings and formulas on lines of their own do not count; code and formulas
-inside a sentence are one word each.
+"""Measures sentences: python3 tools/book/readability.py PAGE.md ... prints the median of words per sentence and the sentences that
+are too long. Code, tables, headings and formulas on lines of their own do not count; code and formulas inside a sentence count
+as one word.
 """
 import re
 import sys
@@ -8,7 +8,7 @@ from pathlib import Path
 from statistics import median
 
 MEDIAN_GOAL, LONGEST_GOAL = 17, 40  # words per sentence
-LABEL = 2  # so few words are a label, as "Fill in."
+LABEL = 2  # a sentence with at most so many words is a label, as "Fill in."
 NO_TEXT = [r"^( *)(```|~~~)(?s:.*?)^\1\2 *$", r"<!--(?s:.*?)-->", r"^ *\$\$(?s:.*?)\$\$ *$", r"^#.*$", r"^ *\|.*$",
            r"^!\[.*?\]\(.*?\)$", r"(?<=\n\n)(?: {4}.*\n|\n(?= {4}))+"]
 ONE_WORD = [r"`[^`]+`", r"\$[^$\n]+\$"]

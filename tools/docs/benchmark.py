@@ -1,11 +1,10 @@
 """Measures how fast this machine renders and prints a table that can be posted and compared; also in output/benchmark.json.
 
-Every backend of the device renders the Cornell box, a scene lit by a mesh and one of glass, by chapter 6 without splitting:
-five runs of each, in turns. Seconds to 1 % error are those from the command to a picture whose root of the relative mean squared
-error against the reference is 0.01; where the runs are too short for that, the error is taken to fall as one over the root of
-the samples. Paths and rays per second are those of the device; a GPU is measured with a picture of 1024 x 1024 pixels, since
-that of the reference is too small to fill it. Takes less than two minutes. Ctrl-C keeps what was measured; the same command
-then goes on.
+Every backend of the device renders the Cornell box, a scene lit by a mesh and one of glass, by the chapter whose
+measure.json says how: five runs of each, interleaved. "Seconds to 1 % error" is the time from the command to a picture with a
+relative error of 0.01 (the root of rel_mse). Shorter runs are extrapolated: the error falls as one over the root of the samples.
+Paths and rays per second are measured by the device's clock. GPUs render 1024 x 1024 pixels, because the reference's size is too
+small to fill them. Takes less than two minutes. Ctrl-C keeps what was measured; the same command then goes on.
 """
 import os
 import platform
@@ -38,7 +37,7 @@ def parse():
 
 
 def system_text():
-    """Operating system, processor and memory, without a name of the machine."""
+    """Operating system, processor and memory, without the machine's name."""
     try:
         name = platform.freedesktop_os_release()["PRETTY_NAME"]
     except OSError:
@@ -54,7 +53,7 @@ def backends_of(device):
 
 
 def benchmark_cases(scenes, backends, is_cpu):
-    """For every scene and backend a case with the reference, for the error, and on a GPU a large one for the speed."""
+    """For each scene and backend, a case with the reference for the error, and on a GPU a large one for the speed."""
     cases = []
     for scene, reference in scenes:
         for backend in backends:

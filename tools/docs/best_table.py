@@ -1,4 +1,4 @@
-"""The first table of docs/results.md: of each scene the chapter with which the same error takes the least time."""
+"""The first table of docs/results.md: for each scene, the chapter that reaches the same error in the least time."""
 from docs.peer_table import gains_of
 from project import load_records, scene_of, table
 from report.numbers import errors, paired_ratio, with_interval
@@ -20,14 +20,14 @@ def against_peers(record):
     for scene in record["scenes"]:
         ours = {pair: gain for pair, gain in gains_of(scene).items() if gain[0] and pair[0].startswith("chapter ")}
         if ours:
-            # The best of us is the same against all of them, and the best of them is the one that we gain least over.
+            # Our best chapter is the same against all peers; the best peer is the one over which it gains least.
             best = max(ours, key=lambda pair: ours[pair][0])[0]
             peer = min((pair for pair in ours if pair[0] == best), key=lambda pair: ours[pair][0])[1]
             yield (scene_of(scene["scene"]), scene["width"], scene["height"]), [best, peer, with_interval(ours[best, peer])]
 
 
 def best_table():
-    """The Markdown table of all devices."""
+    """The Markdown table for all devices."""
     chapters, peers = {}, {}
     for cells, folder, pairs_of in ((chapters, "chapters", among_chapters), (peers, "peers", against_peers)):
         for record in load_records(folder):

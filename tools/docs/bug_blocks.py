@@ -1,4 +1,4 @@
-"""The bugs that docs/bugs.md shows, and what it says of each from the catalogue of mistakes."""
+"""The bugs in docs/bugs.md, with the texts of the catalogue of mistakes."""
 import textwrap
 
 from course.bug import caught_by, changes
@@ -19,7 +19,7 @@ def find_bug(name):
 
 
 def bug_block(name):
-    """The picture, the question, and as the begin of a folded answer what is wrong, the lines, and what catches it."""
+    """The picture and the question, and the start of a folded answer: the changed lines, the explanation, and the test that catches it."""
     bug, index = find_bug(name)
     rows = [(mark, line) for mark, line, _ in changes(bug) if mark != " "]
     lines = textwrap.dedent("\n".join(line for _, line in rows)).split("\n")

@@ -1,4 +1,4 @@
-"""What docs/results.md shows of ./lab check: how often it finds mistakes and names them right."""
+"""The part of docs/results.md on ./lab check: how often it finds mistakes and names them correctly."""
 from project import CHAPTERS, name_of, table
 from scipy.stats import binomtest
 
@@ -8,7 +8,7 @@ LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
 
 class Rate:
-    """Counts of trials. `right` and `near` are of those found: named first, or among the first two."""
+    """Counts of trials. `right` counts the mistakes that were named first, `near` those among the first two names."""
 
     def __init__(self, trials):
         large = [trial for trial in trials if trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE]
@@ -20,7 +20,7 @@ class Rate:
 
 
 def rates(record, key_of=lambda key: key.split("/")[0]):
-    """A Rate for each condition, or for each value of another function of a trial's name; None leaves the trial out."""
+    """A Rate for each value of key_of(name of the trial), by default its condition; trials with None are left out."""
     groups = {}
     for key, trial in record["trials"].items():
         groups.setdefault(key_of(key), []).append(trial)
@@ -28,7 +28,7 @@ def rates(record, key_of=lambda key: key.split("/")[0]):
 
 
 def part(count, of):
-    """A rate with its interval."""
+    """A rate with its 95 % interval."""
     if of == 0:
         return "–"
     interval = binomtest(count, of).proportion_ci()
@@ -41,7 +41,7 @@ def row(words, rate):
 
 
 def confusion_table(record):
-    """A table of the rates, one for each chapter, and a list of what was not found or took another name."""
+    """A table of rates by condition, one by chapter, and a list of mistakes that were missed or misnamed."""
     head = ["tried", "large ones found", "found", "named right", "among the first two", "right where it is sure"]
     conditions = rates(record)
     correct = conditions.pop("correct")

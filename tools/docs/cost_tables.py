@@ -1,4 +1,4 @@
-"""The part of docs/results.md on what features cost and how cost grows, from records of build/bin/cost_record."""
+"""The part of docs/results.md on the cost of features and its growth, from records of build/bin/cost_record."""
 import math
 from statistics import linear_regression, median
 
@@ -21,7 +21,7 @@ def seconds_text(seconds):
 
 
 def time_text(row, base):
-    """Time of a path relative to another row's."""
+    """Time per path relative to that of the row `base`."""
     if row is base:
         return f"1 = {seconds_text(1 / median(row['paths_per_second']))}"
     return with_range([b / a for a, b in zip(row["paths_per_second"], base["paths_per_second"])])
@@ -33,7 +33,7 @@ def device_heading(record):
 
 
 def feature_table(record):
-    """What each feature costs on a device, a pair of columns for each backend."""
+    """The cost of each feature on a device, with two columns for each backend."""
     measured = record["features"]
     head = ["", "buffers"]
     for backend in measured:
@@ -53,7 +53,7 @@ def buffers_text(sizes):
 
 
 def scene_table(record):
-    """The memory of the shipped scenes."""
+    """The memory that the shipped scenes take."""
     rows = [[f"`{scene['scene']}`", buffers_text(scene["bytes"]), f"{scene['triangles']:,}", f"{scene['instances']:,}"]
             for scene in record["scenes"]]
     return "The shipped scenes:\n\n" + table(["scene", "buffers", "triangles", "instances"], rows, left=2)
@@ -64,7 +64,7 @@ def memory_of(row):
 
 
 def exponent(rows, quantity):
-    """Slope of the logarithms, for what is never 0."""
+    """Slope of the logarithms, for quantities above 0."""
     counts = [math.log(row["count"]) for row in rows]
     if len(rows) < 2:
         return "-"
@@ -73,7 +73,7 @@ def exponent(rows, quantity):
 
 
 def growth_table(measured):
-    """How cost follows one quantity on all backends of a device."""
+    """How the cost grows with one quantity, on all backends of a device."""
     first = measured[0]
     grows = memory_of(first["rows"][0]) != memory_of(first["rows"][-1])
     builds = first["rows"][0]["structure_bytes"] != first["rows"][-1]["structure_bytes"]
@@ -107,7 +107,7 @@ def growth_tables(record):
 
 
 def build_rate(record):
-    """How fast our own tree is built, from the largest scene."""
+    """How fast our own tree is built, measured in the largest scene."""
     for growth in record["growth"]:
         if growth["quantity"] == "triangles" and growth["backend"] == "compute":
             row = growth["rows"][-1]

@@ -1,4 +1,4 @@
-"""The figures of the pages, made of images, reports and points of samplers."""
+"""Draws the figures of the pages from images, reports and points of samplers."""
 import shutil
 
 import matplotlib
@@ -14,7 +14,7 @@ from report.plots import COLOURS, LABEL, MARKERS, QUALITY, encode_srgb, right_an
 
 
 def plot(path, size, draw, **labels):
-    """A plot with logarithmic axes, drawn by a function of its axis."""
+    """A plot with logarithmic axes; draw(axis) fills it."""
     figure, axis = pyplot.subplots(figsize=size, layout="constrained")
     draw(axis)
     style_axis(axis, xscale="log", yscale="log", **labels)
@@ -61,7 +61,7 @@ def hero(folder, renders):
 
 
 def path_lengths(folder, renders):
-    """Light after at most, and after exactly, k bounces; exact ones are brightened as much as their label says."""
+    """Light after at most k bounces, and after exactly k; the latter are brightened by the factor in their label."""
     exact = [render.image for render in renders]
     factors = [1, 1, 2, 4, 4, 8, 16, 16, 32, 32]
     for name, tiles in (
@@ -133,7 +133,7 @@ def sampler_points(folder, renders):
 
 
 def mean_errors(terms, exact, sizes):
-    """Root of the mean squared error of estimates from N terms, over as many of them as there are."""
+    """Root mean squared error of estimates from n terms each, for each n in `sizes`."""
     return [np.sqrt(((terms[: len(terms) // n * n].reshape(-1, n).mean(axis=1) - exact) ** 2).mean()) for n in sizes]
 
 
@@ -172,7 +172,7 @@ def grid_and_random(folder, renders):
 
 
 def random_numbers(folder, renders):
-    """A small corner of the unit square, so that single values show."""
+    """A small corner of the unit square, where single values can be seen."""
     figure, axes = pyplot.subplots(1, 2, figsize=(8, 4.2), layout="constrained")
     for axis, name, title in zip(axes, ("numbers", "blog-hash"), ("PCG2D", "frac(sin(dot(p, …)) · 43758.5)")):
         playground = sample.PLAYGROUNDS[name]
@@ -185,7 +185,7 @@ def random_numbers(folder, renders):
 
 
 def window(output, renders):
-    """What the test of the window has seen: a chapter in it, and the same after a mistake was made in its shader."""
+    """Screenshots by the test of the window: a chapter, and the same chapter after a mistake in its shader."""
     command = ["tests/support/with_display.sh", BINARIES / "viewer_tests", "--gtest_filter=ViewerTest.ShowsThePicture*"]
     process = run_program(command)
     if process.returncode != 0 or "SKIPPED" in process.stdout:

@@ -1,5 +1,5 @@
 """Renders and plots all pictures of the pages into docs/pictures, then fills the tables of the pages from the records. Ctrl-C
-keeps what is there; the same command goes on.
+keeps finished renders; the same command goes on.
 """
 import hashlib
 import os
@@ -44,7 +44,7 @@ class Render:
     tone: str = field(default="srgb", repr=False)  # srgb, linear, or relative to the largest value
 
     def file(self, folder):
-        """The file of the image. Its name changes with whatever is rendered."""
+        """The file of the image; its name depends on all settings of the render."""
         return folder / f"{self.name}_{hashlib.sha256(repr(self).encode()).hexdigest()[:8]}.exr"
 
     def run(self, folder):
@@ -92,7 +92,7 @@ def renders_of_pictures(key, size, name_of):
 
 
 def renders_of_bugs():
-    """Each bug of the gallery beside the right picture, as ./lab bug renders them but with less noise."""
+    """Each bug of the gallery and the right picture, as ./lab bug renders them but with less noise."""
     renders = []
     for name, (chapter, scene) in GALLERY.items():
         bug, _ = find_bug(name)
@@ -112,7 +112,7 @@ def renders_of_noise_and_bias():
 
 
 def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
-    """Takes the samples that fit into SECONDS by the first record of docs/records/chapters, whatever else runs now."""
+    """As many samples as fit into SECONDS according to the first record in docs/records/chapters, whatever else runs now."""
     renders = []
     for case in load_records("chapters")[0]["cases"]:
         if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):

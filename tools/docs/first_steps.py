@@ -10,7 +10,7 @@ BREAK_IT = re.compile(r"\*Break it:\* change `([^`]+)` to `([^`]+)`")
 
 
 def shaders(text):
-    """The shaders in the text of the page: of each step by its number, and "N broken" with the mistake that step N asks for."""
+    """Name -> shader in the text of the page: "N" for step N, and "N broken" with the mistake that this step asks for."""
     found = {}
     for number, step in STEP.findall(text):
         blocks = SHADER.findall(step)

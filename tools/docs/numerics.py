@@ -7,7 +7,7 @@ SMALLEST_ERROR = "errors_found_from"  # recorded by tests/support/expect_statist
 
 
 def load_cases():
-    """The rows of the table, by the number of the trap in section 3 of our research; those without one come last."""
+    """The hard cases in the order of section 3 of our research; those that are not in it come last."""
     cases = read_json(ROOT / "tests/hard_cases/cases.json")
 
     def order(case):
@@ -17,23 +17,23 @@ def load_cases():
 
 
 def short_name(record):
-    """The device without what its driver adds in brackets."""
+    """The device's name without the driver's addition in brackets."""
     return record["device"].split("(")[0].strip()
 
 
 def label(instance):
-    """Short for the parameter of a test: "chapter 5" for "chapter_05_russian_roulette"."""
+    """A short name for the parameter of a test: "chapter 5" for "chapter_05_russian_roulette"."""
     chapter = re.fullmatch(r"chapter_0?(\d+)_.*", instance)
     return f"chapter {chapter[1]}" if chapter else instance
 
 
 def figures(instances):
-    """What the instances of a test recorded, as text; numbers that agree are told once."""
+    """The numbers that a test's instances recorded, as text; equal numbers are given once."""
     values = {}  # name -> value -> the instances that have it
     for instance, properties in instances.items():
         for name, value in properties.items():
             if name == SMALLEST_ERROR:
-                continue  # one number tells for all tests of a case
+                continue  # measured_text() gives the largest of a case
             values.setdefault(name, {}).setdefault(value, []).append(label(instance))
     texts = []
     for name, by_value in values.items():
@@ -60,7 +60,7 @@ def measured_text(case, record):
 
 
 def case_table():
-    """The table of hard cases, a column for each device that has been measured."""
+    """The table of hard cases, with a column for each measured device."""
     records = load_records("hard_cases")
     rows = []
     for case in load_cases():
@@ -73,7 +73,7 @@ def case_table():
 
 
 def device_tables():
-    """Largest errors of every device that ./lab device has recorded."""
+    """The largest errors of each device recorded by ./lab device."""
     records = load_records("devices")
     names = [short_name(record) for record in records]
     rows = []

@@ -1,4 +1,4 @@
-"""What docs/results.md shows of Mitsuba and us: the report.json of ./lab report --peer mitsuba."""
+"""The comparison with Mitsuba in docs/results.md, from the report.json of ./lab report --peer mitsuba."""
 import math
 
 from project import scene_of, table
@@ -6,12 +6,12 @@ from report.numbers import TARGET_ERROR, short, with_interval
 
 
 def gains_of(scene):
-    """{(case, peer): times that the case is faster, with its interval}."""
+    """{(case, peer): how many times faster the case is, with its interval}."""
     return {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
 
 
 def samplers(scenes):
-    """{peer: times that it is faster than the same variant with independent samples, in the geometric mean over the scenes}."""
+    """{peer: how many times faster it is than the same variant with independent samples, as geometric mean over the scenes}."""
     logarithms = {}
     for scene in scenes:
         for (case, peer), (value, _, _) in gains_of(scene).items():
@@ -21,7 +21,7 @@ def samplers(scenes):
 
 
 def sampler_text(scenes):
-    """Which of the samplers that were tried is Mitsuba's best."""
+    """Names Mitsuba's best sampler among those that were measured."""
     found = samplers(scenes)
     if not found:
         return "\nMitsuba's sampler is `independent`.\n"
@@ -32,7 +32,7 @@ def sampler_text(scenes):
 
 
 def size_table(scenes):
-    """The Markdown table of scenes of one size. Columns are Mitsuba with independent samples, and with its best sampler."""
+    """The Markdown table for scenes of one size, with columns for Mitsuba with independent samples and with its best sampler."""
     cases = [case["case"] for scene in scenes for case in scene["cases"] if case["is_peer"]]
     found = samplers(scenes)
     best = max(found, key=found.get, default=None)
@@ -53,7 +53,7 @@ def size_table(scenes):
 
 
 def peer_table(report):
-    """The Markdown tables of one device."""
+    """The Markdown tables for one device."""
     sizes = {}
     for scene in report["scenes"]:
         if scene["gains"]:

@@ -1,5 +1,5 @@
-"""Fills the tables of the pages from the records in docs/records. In a page, what stands between the lines <!-- table: NAME -->
-and <!-- end of table --> is replaced by that table, and blocks of code are filled from their sources (book/code_blocks.py).
+"""Fills the tables of the pages from the records in docs/records. The text between the lines <!-- table: NAME --> and
+<!-- end of table --> is replaced by that table, and blocks of code are filled from their sources (book/code_blocks.py).
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
@@ -37,7 +37,7 @@ def kind_of(case):
 
 
 def kind_tables(record):
-    """The rows of each kind and scene on one device: {(kind, scene): rows}. A row begins with the name of its case."""
+    """{(kind, scene): rows} for one device. A row begins with the name of its case."""
     tables, bases = {}, {}
     for case in record["cases"]:
         key = kind_of(case), case["scene"]
@@ -72,7 +72,7 @@ def chapter_tables(record):
 
 
 def page_table(name, record):
-    """What a page shows of one device: a kind of cases, or of kind "chapter" one and the row before it."""
+    """The table of a page for one device: all cases of a kind, or for "chapter N" that chapter and the row before it."""
     kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
     tables, rows = kind_tables(record), []
     if kind not in {other for other, _ in tables}:
@@ -81,17 +81,17 @@ def page_table(name, record):
         if other == kind:
             chosen = cases
             if number:
-                # Where another chapter is measured against this one, the row has none before it.
-                places = [i for i, row in enumerate(cases) if row[0] == name and (i > 0 or number == "1")]
+                # Only the first case of all is shown without a row before it.
+                places = [i for i, row in enumerate(cases) if row[0] == name and (i > 0 or name == record["cases"][0]["case"])]
                 chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
-            if number and chosen:  # the first row is the one to compare with
+            if number and chosen:  # the other is compared with the first row
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
             rows += [[f"`{scene_of(scene)}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]
     return table(["scene", "", *COLUMNS], rows, left=2)
 
 
 def expected_table():
-    """For each device, the seconds and the error of the Cornell box at the default resolution and number of samples."""
+    """Seconds and error of the Cornell box on each device, at the default resolution and number of samples."""
     rows, pixels, samples = [], 512 * 512, 64
     for record in load_records("chapters"):
         cases = [case for case in record["cases"] if kind_of(case) == "chapter" and case["scene"].startswith("cornell_box")]
@@ -111,22 +111,23 @@ def expected_table():
 
 
 def headline_table():
-    """Whether each chapter pays in the Cornell box, and how much faster the best one is, on each device."""
+    """On each device, error × time of all chapters in the Cornell box, and how much faster the best one is."""
     devices, rows, text = [], {}, ""
     for record in load_records("chapters"):
         device = record["environment"]["device"]
         devices.append(device)
         scene = next(case["scene"] for case in record["cases"] if case["scene"].startswith("cornell_box"))
-        for cells in kind_tables(record)["chapter", scene]:
+        chapters = kind_tables(record)["chapter", scene]
+        for cells in chapters:
             rows.setdefault(cells[0], {})[device] = cells[-1]
         best, gain = next(texts for (scene, _, _), texts in among_chapters(record) if scene == "cornell_box")
-        text += f"On {device}, {best} is {gain} times as fast as chapter 1.\n"
+        text += f"On {device}, {best} is {gain} times as fast as {chapters[0][0]}.\n"
     rows = [[name, *(cells.get(device, "") for device in devices)] for name, cells in rows.items()]
     return table(["error × time", *devices], rows) + "\n" + text
 
 
 def over_bare(rates):
-    """Rays per second over the bare rate: the median of runs in turns and its range, or what older records tell."""
+    """Rays per second over the bare rate: the median of interleaved runs and their range. Older records have one number."""
     if "runs" not in rates:
         return f"{rates['rays_per_second'] / rates['bare_rays_per_second']:.2f}"
     ratios = [a / b for a, b in zip(rates["runs"]["rays_per_second"], rates["runs"]["bare_rays_per_second"])]
@@ -145,13 +146,13 @@ def backend_table(record):
 
 
 def of_records(folder, text_of):
-    """A function for the text of each record of a folder."""
+    """A function that joins the texts of all records of a folder."""
     return lambda: "".join(map(text_of, load_records(folder)))
 
 
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
-    # Those of docs/results.md show all devices.
+    # Tables of docs/results.md are for all devices.
     "best chapters": best_table, "chapters": of_records("chapters", chapter_tables), "backends": of_records("backends", backend_table),
     "differences": lambda: "".join(f"- {text}\n" for text in DIFFERENCES), "peers": of_records("peers", peer_table),
     "features": of_records("cost", feature_table), "growth": of_records("cost", growth_tables),
@@ -160,7 +161,7 @@ OWN_TABLES = {
 
 
 def page_tables(name, page):
-    """The table of the first device, with what it says."""
+    """The text of a table: its own, or that of the first device with its explanation."""
     if name in OWN_TABLES:
         return OWN_TABLES[name]()
     if name.startswith("bug "):
@@ -173,7 +174,7 @@ def page_tables(name, page):
 
 
 def write_pages(is_check=False):
-    """Writes all pages, or only looks whether they are up to date."""
+    """Writes all pages, or only checks that they are up to date."""
     for page in PAGES:
         before = page.read_text(encoding="utf-8")
         text = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3], before)

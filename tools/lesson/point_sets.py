@@ -1,8 +1,8 @@
-"""Sets of points in the unit square, each as one pixel of a render would have it: their spectra, and how the errors of what
-they estimate fall. The random ones and Sobol's come from the shaders."""
+"""Sets of points in the unit square, as pixels of a render have them: their spectra, and how fast the errors of estimates fall.
+The random ones and Sobol's come from the shaders."""
 import numpy as np
 
-PIXELS, SIZE = 64, 4096  # sets of a kind, and points of each
+PIXELS, SIZE = 64, 4096  # number of sets of each kind, and points per set
 SPECTRUM_SIZE, FREQUENCIES = 256, 40  # points of a set whose spectrum is shown, and its largest frequency
 SIZES = [4**k for k in range(7)]
 
@@ -14,7 +14,7 @@ def grid(side, dimensions, offset):
 
 
 def first_points(sets, name, size):
-    """The first points of each set; a grid has to be another one for each size."""
+    """The first points of each set; a grid differs for each size."""
     return grid(round(size**0.5), 2, 0.5)[None] if name == "grid" else sets[name][:, :size]
 
 
@@ -50,7 +50,7 @@ def slope(values):
 
 
 def report(sets, integrals):
-    """The errors as text, a table for each name of an integral."""
+    """The errors as text, with a table for each integral."""
     lines = []
     for title, integral in integrals.items():
         table = errors(sets, integral)

@@ -1,5 +1,5 @@
 """A playground before pixels: points of the lab's own samplers against their density, and the integrals that they
-estimate, as text and as a picture. The points come from the shaders of the chapters: what is changed there shows here.
+estimate, as text and as a picture. The points come from the chapters' shaders, so a change there shows here.
 """
 import math
 import sys
@@ -15,7 +15,7 @@ from report.studies import measures
 
 PROGRAM = program_file("sample_points")
 BINS = 16
-CHANCE = 4.5  # standard errors that the largest of BINS deviations hardly ever exceeds
+CHANCE = 4.5  # in standard errors: the largest of BINS deviations hardly ever exceeds it
 
 
 @dataclass
@@ -30,17 +30,17 @@ class Playground:
     title: str
     sampler: str  # of the program sample_points
     integrals: list
-    coordinate: str  # what the histogram is of
+    coordinate: str  # that the histogram shows
     coordinates: Callable = lambda points: points[:, 0]
     cumulative: Callable = lambda x: x  # the distribution function of that coordinate
     dimensions: int = 2
     kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
     is_pixel: bool = False  # whether the points are samples of one pixel, and not the first ones of as many
-    chapter: str = next(iter(CHAPTERS.values()))  # whose shader samples
+    chapter: str = next(iter(CHAPTERS.values()))  # whose shader makes the points
 
 
 def drop_lost(points):
-    """Directions that the estimator has not dropped."""
+    """The directions that the estimator traced."""
     return points[np.any(points[:, :3] != 0, axis=1)]
 
 
@@ -94,7 +94,7 @@ def draw(playground, count, seed, dimensions, device=None, samples=1):
 
 
 def draw_sets(seed, device=None):
-    """Name -> points [pixel, index, axis] of many pixels: random ones, a chapter's, and what that one scrambles."""
+    """Name -> points [pixel, index, axis] of many pixels: random ones, Sobol's, and a chapter's, which are scrambled."""
     points = next(playground for playground in PLAYGROUNDS.values() if playground.is_pixel)
     kinds = {"random": PLAYGROUNDS["numbers"], "Sobol": replace(points, sampler="sobol"), "scrambled": points}
     return {name: draw(kind, point_sets.PIXELS * point_sets.SIZE, seed, 2, device, point_sets.SIZE).reshape(point_sets.PIXELS, -1, 2)
@@ -102,14 +102,14 @@ def draw_sets(seed, device=None):
 
 
 def histogram(playground, points):
-    """Edges of bins, the number of points in each and how many are expected."""
+    """Edges of bins, and the observed and expected numbers of points in them."""
     values = playground.coordinates(points)
     counts, edges = np.histogram(values, BINS, (0, 1))
     return edges, counts, np.diff(playground.cumulative(edges)) * len(values)
 
 
 def estimates(terms):
-    """Rows (N, mean, half of the 95 % interval) for N = 1, 4, 16, …; one term tells nothing about its spread."""
+    """Rows (N, mean, half of the 95 % interval) for N = 1, 4, 16, …; a single term has no interval."""
     rows, sizes = [(1, terms[0], math.nan)], [4**k for k in range(1, 16) if 4**k <= len(terms)]
     for n in sizes:
         rows.append((n, terms[:n].mean(), two_sided(CONFIDENCE, n - 1) * terms[:n].std(ddof=1) / math.sqrt(n)))
@@ -183,7 +183,7 @@ def main():
         sets = draw_sets(options.seed, options.device)
         print("\n".join(point_sets.report(sets, COMPARED)))
     output = options.output or ROOT / f"output/sample_{options.name}.png"
-    from lesson import sample_plots  # only here: Matplotlib takes longer to begin than all other modules together
+    from lesson import sample_plots  # imported late: Matplotlib takes longer to load than everything else
     try:
         if playground.is_pixel:
             sample_plots.save_point_sets(output, sets, COMPARED)

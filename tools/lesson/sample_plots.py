@@ -11,7 +11,7 @@ SHOWN = 2000  # points in a scatter plot
 
 
 def scatter(axis, kind, points):
-    """Points as they lie: numbers in their square, directions seen from above, barycentric coordinates in the plane."""
+    """Scatter plot: numbers in their square, directions seen from above, barycentric coordinates in the plane."""
     points = points[:SHOWN]
     is_line = points.shape[1] == 1
     axis.plot(points[:, 0], np.arange(len(points)) if is_line else points[:, 1], ".", color=COLOURS[0], markersize=2.5, markeredgewidth=0)
@@ -29,7 +29,7 @@ def scatter(axis, kind, points):
 
 
 def density(axis, playground, points, histogram):
-    """Histogram of a coordinate, as a density, with the exact one."""
+    """Histogram of a coordinate as a density, beside the exact density."""
     edges, counts, _ = histogram(playground, points)
     heights = counts / counts.sum() / np.diff(edges)
     axis.stairs(heights, edges, fill=True, color=COLOURS[5], label="points")

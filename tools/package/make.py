@@ -18,13 +18,13 @@ HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
 FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
 FILES = ["LICENSE", "README.md"]
-LEFT_OUT = ["docs/solutions", "tools/book", "tools/course", "tools/docs", "tools/package"]  # they are for teachers, or need the sources
-DATE = 1980, 1, 1, 0, 0, 0  # the date of all files, so that archives can be compared
+LEFT_OUT = ["docs/solutions", "tools/book", "tools/course", "tools/docs", "tools/package"]  # for teachers, or in need of the sources
+DATE = 1980, 1, 1, 0, 0, 0  # of all files: the same sources make the same archive
 BOOK = ROOT / "output/book"
 
 
 def tree_files(tree):
-    """Path in the archive -> bytes, of what is the same on all systems."""
+    """Path in the archive -> bytes, of the files that are the same on all systems."""
     files = {}
     for path in [*(path for folder in FOLDERS for path in (tree / folder).rglob("*")), *(tree / name for name in FILES)]:
         name = path.relative_to(tree).as_posix()
@@ -37,7 +37,7 @@ def tree_files(tree):
 
 def windows_files(chapters):
     windows_programs.build([*chapters, *windows_programs.OTHERS])
-    # Windows' command interpreter needs its own ends of lines.
+    # Windows' command interpreter needs CR LF.
     files = {"lab.cmd": (HERE / "lab.cmd").read_bytes().replace(b"\n", b"\r\n")}
     return files | {f"build/bin/{name}.exe": (windows_programs.PROGRAMS / f"{name}.exe").read_bytes()
                     for name in [*chapters, *windows_programs.OTHERS]}
@@ -56,7 +56,7 @@ def linux_files(chapters):
 
 
 def stripped(program):
-    """A program without what only a debugger reads."""
+    """A program without its symbols."""
     with tempfile.NamedTemporaryFile() as copy:
         run_to_end(["strip", "-o", copy.name, program], f"Packing {program}")
         return Path(copy.name).read_bytes()
@@ -71,12 +71,12 @@ def write_zip(archive, folder, files):
         for name in sorted(files):
             entry = zipfile.ZipInfo(f"{folder}/{name}", DATE)
             entry.external_attr = (0o755 if is_program(name) else 0o644) << 16
-            entry.create_system = 3  # whose permissions these are: Unix
+            entry.create_system = 3  # Unix: so these permissions count
             stream.writestr(entry, files[name], zipfile.ZIP_DEFLATED)
 
 
 def write_tar(archive, folder, files):
-    # Chapters' programs differ little: with a long memory, xz stores them once.
+    # Chapters' programs differ little: with a large dictionary, xz stores them once.
     filters = [{"id": lzma.FILTER_LZMA2, "preset": 2, "dict_size": 1 << 26}]
     with lzma.open(archive, "wb", filters=filters) as compressed, tarfile.open(fileobj=compressed, mode="w") as stream:
         for name in sorted(files):

@@ -1,4 +1,4 @@
-"""Builds the programs for Windows, on Debian or Ubuntu: first, once, the libraries that have no package for it."""
+"""Builds the programs for Windows, on Debian or Ubuntu, and before, once, the libraries that have no package for Windows."""
 import re
 import shutil
 import sys
@@ -7,16 +7,16 @@ from pathlib import Path
 from project import CHAPTERS, ROOT, UserError, run_to_end
 
 HERE = Path(__file__).parent / "windows"
-BUILD = ROOT / "build/windows"  # all of it may be deleted: it is made again
+BUILD = ROOT / "build/windows"  # may be deleted at any time
 SOURCES, LIBRARIES = BUILD / "sources", BUILD / "libraries"
 PROGRAMS = BUILD / "programs/bin"
 OTHERS = ["merge_images", "sample_points"]  # of a package, besides the chapters
-# Whose sources are built: in the version that the Linux programs use, so that both do the same.
+# Their sources are built in the version of the Linux programs, so that both do the same.
 PACKAGES = ["glslang-dev", "libglfw3-dev", "libimgui-dev", "libtinyexr-dev", "libtinyobjloader-dev"]
 
 
 def fetch_sources():
-    """Unpacks the sources into SOURCES/NAME-VERSION. As it has lists of its own, it needs no root, and apt's lists stay as they are."""
+    """Unpacks the sources into SOURCES/NAME-VERSION. It uses package lists of its own, so it needs no root and leaves apt's alone."""
     versions = run_to_end(["dpkg-query", "-W", "-f", "${source:Package}=${source:Version} ", *PACKAGES], "Asking for versions").split()
     stamp = SOURCES / "versions.txt"
     if stamp.exists() and stamp.read_text(encoding="utf-8").split() == versions:

@@ -1,13 +1,13 @@
-"""What our materials are in Mitsuba 3, where it has nothing like them."""
+"""Our materials that Mitsuba 3 lacks, as its BSDFs."""
 import drjit as dr
 import mitsuba as mi
 
 
 def define_bsdfs():
-    """Mitsuba's base class exists once the variant is chosen."""
+    """Defines and registers the classes: their base class exists only after a variant was chosen."""
 
     class ByEvalPdf(mi.BSDF):
-        """Asked for either of what eval_pdf() knows."""
+        """eval() and pdf() by eval_pdf()."""
 
         def eval(self, ctx, si, wo, active=True):
             return self.eval_pdf(ctx, si, wo, active)[0]

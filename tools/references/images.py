@@ -1,4 +1,4 @@
-"""Reference images: where they are, what they say about themselves, and how far another image is from them."""
+"""Reference images: finding and reading them, and the error of another image."""
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,14 +23,14 @@ class Reference:
 
     @property
     def weights(self):
-        """What rel_mse multiplies squared differences by, the chapters' formula: 1 / (r^2 + 0.01 mean(r)^2)."""
+        """The weights of squared differences in rel_mse, as in the chapters: 1 / (r^2 + 0.01 mean(r)^2)."""
         mean = self.mean.mean()
         return 1 / (self.mean**2 + 0.01 * mean**2) if mean > 0 else np.ones_like(self.mean)
 
     @property
     def rel_mse_deviation(self):
-        """Standard deviation of what the reference's own noise adds to rel_mse, less its expectation, which is subtracted there:
-        the same for all images. Pixels have errors of their own; those of a pixel's channels may go together."""
+        """Standard deviation of the reference's own contribution to rel_mse, whose expectation rel_mse() subtracts. It is the same
+        for all images. Errors of pixels are taken as independent, those of a pixel's channels as fully correlated."""
         pixels = (self.weights * self.variance).sum(axis=2)
         return float(np.sqrt(2 * (1 + 1 / self.freedom) * (pixels**2).sum()) / self.mean.size)
 
@@ -41,7 +41,7 @@ def read_rgb(path):
 
 
 def averaged(image, scale):
-    """The image with a pixel for each scale x scale of its own."""
+    """The image after averaging blocks of scale x scale pixels."""
     height, width, channels = image.shape
     return image.reshape(height // scale, scale, width // scale, scale, channels).mean(axis=(1, 3))
 
@@ -64,7 +64,7 @@ def read_reference(path):
 
 
 def rel_mse(image, reference):
-    """Mean of the weighted (x - r)^2, less what the reference's variance adds."""
+    """Mean of the weighted (x - r)^2, less the variance of the reference."""
     return max(float((reference.weights * ((image - reference.mean) ** 2 - reference.variance)).mean()), 0.0)
 
 
@@ -93,6 +93,6 @@ def find_reference(word, paths):
 
 
 def scene_file(word):
-    """The file that a chapter would take for this word."""
+    """The scene file that a chapter takes for this word."""
     shipped = ROOT / "assets/scenes" / f"{word}.json"
     return shipped if shipped.exists() else Path(word)

@@ -4,7 +4,7 @@
     ./lab reference --all                     renders those of the list below that assets/references lacks
 
 A reference is an EXR file with the mean of all samples in R, G and B, the variance of that mean, estimated from
-independent batches, in variance.R, variance.G and variance.B, and how it came about as attributes. Path lengths
+independent batches, in variance.R, variance.G and variance.B, and its settings as attributes. Path lengths
 count as in the chapters: at most m bounces are Mitsuba's max_depth m + 1. Nothing is decided by Russian roulette.
 
 Mitsuba is needed to make references only (`pip install mitsuba`; made and tested with version 3.9.1). Its variant
@@ -56,7 +56,7 @@ def render_batches(scene, name, batches, samples_per_batch, seed):
 
 
 def make_reference(scene_file, output, width, height, max_path_length, samples, seed, keep=False):
-    """Renders a scene unless it is to be kept and there already; None stands for what the scene asks for."""
+    """Renders a scene, unless `keep` is set and the file is up to date. None stands for the scene's own setting."""
     scene = read_scene(scene_file)
     width, height = width or scene.width, height or scene.height
     max_path_length = scene.max_path_length if max_path_length is None else max_path_length

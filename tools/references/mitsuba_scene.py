@@ -1,4 +1,4 @@
-"""Our scenes in Mitsuba 3. To be imported before the other modules here, since it says what is to be installed."""
+"""Our scenes in Mitsuba 3. Import this module before the others here: it says what to install."""
 from project import UserError
 
 try:
@@ -27,7 +27,7 @@ def load_image(path):
 
 
 def colour(values):
-    """A constant, taken as it is: linear."""
+    """A constant linear colour."""
     return {"type": "rgb", "value": [float(value) for value in values]}
 
 
@@ -56,13 +56,13 @@ def make_bsdf(surface, own_normals):
 
 # ---------------------------------------------------------------------------------------------- scenes
 def unit_length(scene):
-    """How long a unit of our scene is in Mitsuba's. Mitsuba moves the origin of a ray off the surface by 1e-4 times
-    one plus its largest coordinate: where coordinates are large, the one does not count."""
+    """The length of our unit in Mitsuba's scene. Mitsuba moves the origin of a ray off the surface by 1e-4 (1 + its largest
+    coordinate). Coordinates are made large, so that the 1 does not count."""
     return 1000 / np.linalg.norm(scene.camera["target"] - scene.camera["position"])
 
 
 def make_mesh(surface, unit, own_normals):
-    """A mesh without shared vertices, whose normals are those of its triangles unless Mitsuba's own are wanted."""
+    """A mesh without shared vertices. It has vertex normals only if own_normals asks for Mitsuba's interpolation."""
     properties = mi.Properties()
     properties["mesh_bsdf"] = mi.load_dict(make_bsdf(surface, own_normals))
     material = surface.material
@@ -90,8 +90,8 @@ def make_mesh(surface, unit, own_normals):
 
 
 def make_light_probe(scene):
-    """Mitsuba's rows reach from pole to pole, the first and the last of ours end half a row before: finer ones at
-    all of our rows and in the middle between them, and three columns for each of ours, interpolate to the same."""
+    """Mitsuba's rows reach from pole to pole; our first and last row end half a row before. A finer image, with rows at ours and in
+    the middle between them and three columns for each of ours, interpolates to the same."""
     pixels = scene.background * load_image(scene.light_probe)
     rows = np.repeat(pixels, 2, axis=0)  # at v = (2 j + 1) / (4 h); wanted are those at v = j / (2 h)
     rows = np.concatenate([pixels[:1], (rows[:-1] + rows[1:]) / 2, pixels[-1:]])
@@ -140,12 +140,12 @@ def run_mitsuba(variant, work):
     """Calls work() with Mitsuba's variant chosen; errors end the program in one line."""
     try:
         mi.set_variant(variant)
-        if variant == "llvm_ad_rgb" and dr.detail.llvm_version()[0] < 19:  # it would abort
+        if variant == "llvm_ad_rgb" and dr.detail.llvm_version()[0] < 19:  # Mitsuba would abort
             raise UserError("LLVM is older than 19: install libllvm19 and let DRJIT_LIBLLVM_PATH name its library")
         mi.set_log_level(mi.LogLevel.Error)
         define_bsdfs()
         work()
     except (RuntimeError, ImportError) as error:
-        while error.__cause__:  # the first one says what is wrong
+        while error.__cause__:  # the innermost one says what is wrong
             error = error.__cause__
         raise UserError(f"Mitsuba with variant {variant}: {' '.join(str(error).split())[:300]}") from None

@@ -1,7 +1,7 @@
 """Renders one of our scenes with Mitsuba 3 and reports error against samples and seconds as a chapter does.
 
-It has the command line of a chapter as far as `./lab report --peer mitsuba` needs it. The seconds of a row are those of
-Mitsuba's render calls alone, and its kernels are compiled before.
+Its command line is a chapter's, as far as `./lab report --peer mitsuba` needs it. Seconds are those of Mitsuba's render calls
+alone; kernels are compiled before.
 """
 import itertools
 import math
@@ -15,13 +15,13 @@ from references.exr import rgb_channels, write_exr
 from references.images import read_reference, rel_mse
 from references.scenes import read_scene
 
-CALLS = 8  # of independent samples, for a curve. Other samplers spread those of a call: the fewer calls, the less error.
+CALLS = 8  # with independent samples, for a curve. Other samplers stratify the samples of a call, so few calls have less error.
 GPU_BATCH_PATHS = 1 << 26  # instead of MAX_BATCH_PATHS: they take about 4 GiB
 GROWTH = 8  # of the samples of a call, until a time is over
 
 
 class Render:
-    """A mean of samples that grows call by call."""
+    """A running mean of samples."""
 
     def __init__(self, scene, pixels, seed):
         self.scene, self.seed = scene, seed
@@ -40,8 +40,8 @@ class Render:
         return np.array(image, float), time.perf_counter() - started
 
     def add(self, samples):
-        """A call with about so many samples: most samplers round them up. Such samplers have a kernel for each number of
-        samples, which a first call compiles. That one is discarded."""
+        """Renders about so many samples: most samplers round the number up, and need a kernel for each number. A first call, which is
+        discarded, compiles it."""
         sampler = self.scene.sensors()[0].sampler()
         sampler.set_sample_count(min(samples, self.largest))
         count = sampler.sample_count()

@@ -1,7 +1,7 @@
-"""Runs chapters, and Mitsuba as their peer, and keeps a record of what they report: see numbers.py.
+"""Runs chapters, and Mitsuba as their peer, and records their reports: see numbers.py.
 
-The record is a file that is written after every run, so that an interrupted measurement goes on where it was. The runs
-of all cases are interleaved: what else the machine does meanwhile hits all of them alike.
+The record is written after each run, so an interrupted measurement can go on. The runs of all cases are interleaved, so that
+other load on the machine affects all of them alike.
 """
 import hashlib
 import re
@@ -17,25 +17,25 @@ from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, commit, dura
                      program_file, read_json, run_program, show_progress, write_json)
 from references.images import averaged, read_reference, read_rgb, rel_mse
 
-PILOT_PART = 0.3  # of a run's seconds: tells how many samples a run takes
-START_UP_SECONDS = {False: 0.4, True: 2.0}  # of ours and a peer, for the first guess of how long all takes
+PILOT_PART = 0.3  # of a run's seconds: a pilot tells how many samples a run takes
+START_UP_SECONDS = {False: 0.4, True: 2.0}  # of a chapter and of a peer, for a first guess of the duration
 DEVICE_LOST = 3  # exit code
-LARGE = 1024  # pixels of a side at which GPUs are compared with peers as well: small pictures do not fill them
+LARGE = 1024  # side in pixels of a second size on GPUs, which small pictures do not fill
 
 
 class Refused(UserError):
-    """A program does not render a scene, which is no mistake: chapters before 6 know no dielectrics."""
+    """A program cannot render a scene, as a chapter without dielectrics cannot render glass."""
 
 
 # ---------------------------------------------------------------------------------------------- cases
 def relative(path):
-    """A path as text, for files of the project from its root on."""
+    """A path as text, relative to the project if it is inside."""
     return str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
 
 
 def new_case(scene_file, reference_file, name, program, options=(), is_peer=False, is_large=False):
-    """Something to be rendered repeatedly. Resolution and path length are the reference's, if there is one. A large picture
-    has `scale` times its resolution and is compared with it after averaging scale x scale pixels."""
+    """A case to be rendered repeatedly. Resolution and path length are the reference's, if any. A large picture has `scale` times
+    that resolution, and is compared with the reference after averaging blocks of scale x scale pixels."""
     case = {
         "scene": reference_file.stem if reference_file else scene_file.stem, "scene_file": relative(scene_file),
         "reference_file": None, "reference": None, "width": 128, "height": 128, "max_path_length": None, "scale": 1, "case": name,
@@ -59,7 +59,7 @@ def new_case(scene_file, reference_file, name, program, options=(), is_peer=Fals
 
 
 def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
-    """Every chapter on pairs (scene file, reference file), and every variant of Mitsuba, the fastest with these samplers, too."""
+    """Cases of all chapters and variants of Mitsuba for pairs (scene file, reference file); the fastest variant also with these samplers."""
     peers = [(variant, SAMPLERS[0]) for variant in variants]
     peers += [(variants[-1], sampler) for sampler in samplers if sampler != SAMPLERS[0]]
     cases = []
@@ -72,7 +72,7 @@ def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
 
 # ---------------------------------------------------------------------------------------------- programs
 def peer_command(variant):
-    """Mitsuba is looked for where the user's python3 finds it, in an active virtual environment for instance."""
+    """Uses the user's python3, which finds Mitsuba in an active virtual environment, for instance."""
     return [shutil.which("python3") or sys.executable, ROOT / "tools", "peer", "--variant", variant]
 
 
@@ -87,7 +87,7 @@ def working_variants():
 
 
 def run_case(case, settings, arguments):
-    """The report of one run, with the seconds from its start to its end, less those of what a peer renders and discards."""
+    """The report of one run, with the seconds of the whole command, less those of a peer's discarded renders."""
     with tempfile.TemporaryDirectory() as folder:
         limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
         command = [*peer_command(case["program"])] if case["is_peer"] else [*limited, program_file(case["program"]), "--quiet"]
@@ -125,14 +125,14 @@ def run_case(case, settings, arguments):
 
 
 def measure_large(case, rows, picture):
-    """The error of a picture that is larger than its reference: known for the last row alone."""
+    """Computes the error of a picture that is larger than its reference, for the last row alone."""
     for row in rows:
         row["rel_mse"] = None
     rows[-1]["rel_mse"] = rel_mse(averaged(read_rgb(picture), case["scale"]), read_reference(ROOT / case["reference_file"]))
 
 
 def devices_text(chapter):
-    """The devices of this machine, as a chapter lists them."""
+    """The chapter's list of this machine's devices."""
     return run_program([program_file(chapter), "--list-devices"]).stdout
 
 
@@ -149,7 +149,7 @@ def find_device(program, settings):
 
 
 def digest_of_sources(cases):
-    """A digest of all that decides what a run computes: with other sources a measurement starts anew."""
+    """A digest of all sources that affect a run: when they change, a measurement starts anew."""
     files = [path for folder in ("common", "shaders", "assets") for path in (ROOT / folder).rglob("*")]
     files += [path for name in ("*.glsl", "chapter.json") for path in ROOT.glob(f"chapters/*/{name}")]
     files += [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
@@ -162,7 +162,7 @@ def digest_of_sources(cases):
 
 # ---------------------------------------------------------------------------------------------- measuring
 class Measurement:
-    """Fills a record. `pictures` is the folder for images, or None where nobody looks at them."""
+    """Fills a record. `pictures` is the folder for images, or None for no pictures."""
 
     def __init__(self, file, cases, settings, pictures=None):
         self.file, self.pictures = file, pictures
@@ -182,7 +182,7 @@ class Measurement:
         return self.record["settings"]["seconds"] / self.record["settings"]["repetitions"]
 
     def steps(self):
-        """What is to be done, in order; whether it still has to be is known only when its turn comes."""
+        """All steps in order. Whether one is still open is decided when its turn comes."""
         cases = self.record["cases"]
         yield from ((self.try_out, case, 0) for case in cases)
         for seed in range(1, self.record["settings"]["repetitions"] + 1):
@@ -198,7 +198,7 @@ class Measurement:
         return total
 
     def measure(self):
-        """Does what the record lacks."""
+        """Does all steps that the record lacks."""
         cases, steps = self.record["cases"], list(self.steps())
         print(f"{len(cases)} cases, {self.record['settings']['repetitions']} runs of {self.run_seconds():.2g} s each: about "
               f"{duration_text(self.expected_seconds())}. Ctrl-C keeps what is there, and the same command goes on.",
@@ -219,12 +219,12 @@ class Measurement:
         return len(case["runs"]) < seed if do == self.repeat else "equal_error" not in case["pictures"]
 
     def try_out(self, case, _):
-        """Finds out how many samples a run takes, so that all of them take equally many."""
+        """Finds the number of samples per run, which is the same in all runs of a case."""
         settings, limit = self.record["settings"], PILOT_PART * self.run_seconds()
         limits = ["--time-limit", limit] if case["is_peer"] else ["--time-limit", limit, "--samples", 2**32 - 1]
         try:
             report = run_case(case, settings, [*limits, "--seed", 0])
-            if not report["rows"]:  # not a single sample was done by then
+            if not report["rows"]:  # the time was over before the first sample
                 report = run_case(case, settings, ["--samples", 1, "--seed", 0])
         except Refused as refusal:
             case["refused"] = str(refusal).replace(f"{ROOT}/", "")
@@ -232,7 +232,7 @@ class Measurement:
         row = report["rows"][-1]
         samples = max(1, round(row["samples"] * self.run_seconds() / row["seconds"]))
         if not case["reference_file"] or has_low_discrepancy(case["program"]):
-            samples = max(2, 1 << (samples.bit_length() - 1))  # both halves of them must be in the rows
+            samples = max(2, 1 << (samples.bit_length() - 1))  # both halves must be in the rows
         case |= {"samples": samples, "backend": report["backend"], "note": report.get("note", "")}
         branches = re.search(r"--splitting-factor (\d+)", report.get("settings", ""))
         case["paths_per_sample"] = int(branches[1]) if branches else 1
@@ -248,7 +248,7 @@ class Measurement:
         case["runs"].append(self.render(case, seed, case["samples"], "equal_time" if seed == 1 else None))
 
     def render(self, case, seed, samples, picture):
-        """A run, with its picture kept for the page if it has a name."""
+        """Runs a case once; keeps the picture for the page if it has a name."""
         arguments = ["--samples", samples, "--seed", seed]
         if self.pictures and picture:
             file = self.pictures / f"{case['scene']}_{re.sub('[^A-Za-z0-9]+', '_', case['case'])}_{picture}.exr"
@@ -260,7 +260,7 @@ class Measurement:
         return {"seed": seed, "command_seconds": report["command_seconds"], "rows": report["rows"]}
 
     def render_equal_error(self, case, seed):
-        """Takes as many samples as give the error of the scene's noisiest case, at least one."""
+        """Renders with as many samples as reach the error of the scene's noisiest case."""
         others = [other for other in self.record["cases"] if other["scene"] == case["scene"] and other["runs"]]
         errors = {id(other): sum(run["rows"][-1]["rel_mse"] for run in other["runs"]) / len(other["runs"]) for other in others}
         samples = max(1, round(case["samples"] * errors[id(case)] / (max(errors.values()) or 1)))

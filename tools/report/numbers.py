@@ -1,8 +1,8 @@
 """The numbers of a record of measurements: errors, slopes, efficiencies and the test for bias, with their intervals.
 
-A record holds cases, what was rendered, each with runs of other seeds, each with rows: what a chapter reports at 1, 2,
-4, … samples. Intervals hold 95 % of the time. They come from the spread of the runs and from the noise of the reference,
-which moves the errors of all runs of a scene together.
+A record has cases; a case has runs with different seeds; a run has rows, the chapter's report at 1, 2, 4, … samples. Intervals
+have a confidence of 95 %. They account for the spread of the runs and for the noise of the reference, which shifts the errors of
+all runs of a scene together.
 """
 import math
 from statistics import median
@@ -13,17 +13,17 @@ from project import has_low_discrepancy
 from scipy.special import nctdtrinc, stdtrit
 
 CONFIDENCE = 0.95
-FALSE_ALARMS = 0.01  # probability that a report calls anything biased that is not
-POWER = 0.95  # probability of finding the bias that a test says it would have found
+FALSE_ALARMS = 0.01  # probability that a report without bias calls anything biased
+POWER = 0.95  # probability of finding the smallest bias that a test calls detectable
 TARGET_ERROR = 0.01  # for the time to it; the root of rel_mse
-SLOPE_ROWS = 6  # the last ones, since the first are ruled by fixed costs
-KNOWN = 1e6  # degrees of freedom of an error that is not estimated
-ROUNDING = 1e-5  # of a mean, which other programs sum in another order
+SLOPE_ROWS = 6  # the last ones: fixed costs dominate the first
+KNOWN = 1e6  # degrees of freedom of an error that is known, not estimated
+ROUNDING = 1e-5  # of a mean: other programs sum in another order
 
 
 # ---------------------------------------------------------------------------------------------- numbers as text
 def short(value, digits=3):
-    """A number with so many digits, without an exponent where that is readable."""
+    """A number with so many significant digits, without an exponent if that is readable."""
     if value is None or not math.isfinite(value):
         return "–"
     if value == 0 or isinstance(value, int) or not 1e-4 <= abs(value) < 1e7:
@@ -33,43 +33,42 @@ def short(value, digits=3):
 
 
 def with_interval(values):
-    """[value, low, high]; low is None where a single run tells no interval."""
+    """The text of [value, low, high]; a single run has no interval and low = None."""
     value, low, high = values
     return short(value, 2) + ("" if low is None else f" ({short(low, 2)} – {short(high, 2)})")
 
 
 def with_range(values):
-    """The median of runs, with the smallest and the largest value in brackets."""
+    """The median of runs, with the smallest and largest value in brackets."""
     return f"{median(values):.2f} ({min(values):.2f} – {max(values):.2f})"
 
 
 # ---------------------------------------------------------------------------------------------- intervals
 def two_sided(confidence, freedom):
-    """The t whose negative and which Student's distribution has this probability between."""
+    """The t for which Student's distribution lies between -t and t with this probability."""
     return -stdtrit(freedom, (1 - confidence) / 2)
 
 
 def half_width(parts, factor=lambda freedom: two_sided(CONFIDENCE, freedom)):
-    """Half of an interval around a sum of independent parts (squared standard error, its degrees of freedom), numbers or arrays.
-    It holds at least as often as it says, however few the degrees of freedom (Cochran and Cox); exactly where one part rules.
-    Welch's interval does not, far out in the tails."""
+    """Half the interval of a sum of independent parts (squared standard error, its degrees of freedom), numbers or arrays. After
+    Cochran and Cox: conservative for any degrees of freedom, exact if one part dominates. Welch's interval is too short in the tails."""
     return np.sqrt(sum(square * factor(freedom) ** 2 for square, freedom in parts))
 
 
 def mean_part(numbers):
-    """What the mean of independent numbers contributes to half_width()."""
+    """The part for half_width() of the mean of independent numbers."""
     return np.var(numbers, ddof=1) / len(numbers), len(numbers) - 1
 
 
 def log_interval(value, parts):
-    """[value, low, high] of a quotient whose logarithm has these parts."""
+    """[value, low, high] of a quotient; the parts are those of its logarithm."""
     factor = math.exp(half_width(parts))
     return [value, value / factor, value * factor]
 
 
 class Series(NamedTuple):
-    """Errors of a case, or what is proportional to them, a run each. `shift` is the standard deviation of what the noise of
-    the reference adds to all of them, as part of their mean: it goes up and down with that of the scene's other cases."""
+    """Errors of a case, or quantities proportional to them, one per run. `shift` is the standard deviation of the reference's
+    contribution, relative to their mean. It is common to all runs, and correlated among the cases of a scene."""
     numbers: dict  # seed -> number
     shift: float = 0.0
 
@@ -78,8 +77,8 @@ class Series(NamedTuple):
         return sum(self.numbers.values()) / len(self.numbers)
 
     def interval(self):
-        """[mean, low, high] of what cannot be negative. None where it is not positive: an error may be lost in the noise
-        of the reference."""
+        """[mean, low, high] of a positive quantity. The mean is None if it is not positive: the noise of the reference hides
+        the error."""
         mean = self.mean
         if mean <= 0 or len(self.numbers) < 2:
             return [mean if mean > 0 else None, None, None]
@@ -98,8 +97,8 @@ def ratio(now, base):
 
 
 def paired_ratio(now, base):
-    """The same for runs with the same seeds. The cases of a scene then share random numbers, so that their errors go up and
-    down together: only the spread of the differences between runs with the same seed tells how sure the quotient is."""
+    """The same for runs with the same seeds. They share random numbers, so their errors are correlated, and the interval follows
+    from the spread of the differences between runs with the same seed."""
     seeds = sorted(now.numbers.keys() & base.numbers.keys())
     now, base = (Series({seed: of.numbers[seed] for seed in seeds}, of.shift) for of in (now, base))
     if not seeds or now.mean <= 0 or base.mean <= 0:
@@ -117,7 +116,7 @@ def last_rows(runs):
 
 
 def mean_of(rows, key):
-    """None where a row lacks it."""
+    """The mean of a key over rows; None if a row lacks it."""
     values = [row.get(key) for row in rows]
     return None if None in values else sum(values) / len(values)
 
@@ -128,13 +127,13 @@ def per_sample(case, key):
 
 
 def deviation(case):
-    """Standard deviation of what the noise of the reference adds to rel_mse."""
+    """Standard deviation of the reference's contribution to rel_mse."""
     return (case["reference"] or {}).get("rel_mse_deviation", 0.0)
 
 
 def errors(case, key=None, index=-1):
-    """Series of rel_mse in rows with this index, or of its product with something: what the same error costs, however many
-    samples were taken."""
+    """Series of rel_mse in the rows with this index, or of rel_mse times `key`: the cost of a given error, whatever the number of
+    samples."""
     rows = {run["seed"]: run["rows"][index] for run in case["runs"]}
     mean = mean_of(rows.values(), "rel_mse")
     numbers = {seed: row["rel_mse"] * (row[key] if key else 1) for seed, row in rows.items()}
@@ -142,7 +141,7 @@ def errors(case, key=None, index=-1):
 
 
 def curve(case):
-    """For each number of samples that all runs report: samples, mean seconds, [error, low, high]."""
+    """Points (samples, mean seconds, [error, low, high]) at the numbers of samples that all runs report."""
     points = []
     for index, rows in enumerate(zip(*(run["rows"] for run in case["runs"]))):
         if len({row["samples"] for row in rows}) == 1 and all(row["rel_mse"] for row in rows):
@@ -171,9 +170,9 @@ def slope(case, key):
 
 
 def runs_in_batches(case):
-    """The runs of a case with the rows from one to the next of which it added samples whose mean has a variance like 1 / their
-    number. That of low-discrepancy points falls faster: of them only the two halves are kept, which have independent scrambles,
-    or the whole run where its samples are no power of two."""
+    """The runs of a case for batches(), which needs batch means with a variance of 1 / size. The variance with low-discrepancy
+    points falls faster, so only the two halves of a run are kept, which have independent scrambles, or the whole run if its number
+    of samples is no power of two."""
     if not has_low_discrepancy(case["program"]):
         return case["runs"]
     kept = []
@@ -184,7 +183,7 @@ def runs_in_batches(case):
 
 
 def batches(runs):
-    """Samples [batch] and means [batch, channel] of what each run added from one row to the next: independent of each other."""
+    """Numbers of samples [batch] and means [batch, channel] of the samples between consecutive rows, which are independent."""
     counts, means = [], []
     for run in runs:
         before, mean_before = 0, 0.0
@@ -197,12 +196,11 @@ def batches(runs):
 
 
 def biases(runs, reference, comparisons):
-    """The test for bias of each channel's mean over the image: difference from the reference as part of it.
+    """Tests the mean of each channel over the image for bias, relative to the reference.
 
-    The batches' variance is that of one sample over their sizes, or they all have equally many: then it may differ between first
-    and second halves. The reference's own counts as well. `comparisons` such tests together raise a false alarm in FALSE_ALARMS
-    of all reports. `detectable` is the smallest bias that is found with the probability POWER, by the noncentral t-distribution,
-    where noise is what it was estimated to be.
+    Batches have the variance of one sample over their size, or all have the same size. The variance of the reference is added.
+    `comparisons` such tests together raise a false alarm with the probability FALSE_ALARMS. `detectable` is the smallest bias that
+    is found with the probability POWER (noncentral t-distribution), if the noise is as estimated.
     """
     counts, means = batches(runs)
     samples, expected = counts.sum(), np.array(reference["mean"])
@@ -221,9 +219,9 @@ def biases(runs, reference, comparisons):
 
 # ---------------------------------------------------------------------------------------------- of a record
 def seconds_to_target(case):
-    """[seconds, low, high] from the command to an error of TARGET_ERROR, start-up included, and that of start-up.
+    """[seconds, low, high] from the command to an error of TARGET_ERROR, and those of start-up alone.
 
-    The error is taken to fall as 1 / samples beyond the run.
+    Beyond the run, rel_mse is extrapolated as 1 / samples.
     """
     start_ups = {run["seed"]: run["command_seconds"] - run["rows"][-1]["seconds"] for run in case["runs"]}
     rendering = errors(case, "seconds")
@@ -233,7 +231,7 @@ def seconds_to_target(case):
 
 
 def summarize_case(case, base, comparisons):
-    """What the page shows of a case; `base` is the case that efficiencies are relative to."""
+    """The numbers of a case for the page; efficiencies are relative to the case `base`."""
     rows, pixels = last_rows(case["runs"]), case["width"] * case["height"]
     summary = {key: case[key] for key in ("case", "is_peer", "program", "options", "backend", "note", "paths_per_sample")}
     summary |= {"runs": len(rows), "samples": rows[0]["samples"], "seconds": mean_of(rows, "seconds"),
@@ -257,7 +255,7 @@ def summarize_case(case, base, comparisons):
 
 
 def summarize(record):
-    """The content of report.json: a list of scenes with their cases, and how they compare with peers."""
+    """The content of report.json: scenes with their cases, and comparisons with peers."""
     measured = [case for case in record["cases"] if case["runs"]]
     comparisons = max(3 * len(measured), 1)
     scenes = []
@@ -269,7 +267,7 @@ def summarize(record):
             **{key: cases[0][key] for key in ("scene", "width", "height", "scale", "max_path_length", "reference")},
             "refused": [{"case": case["case"], "why": case["refused"]} for case in cases if case["refused"]],
             "cases": [summarize_case(case, ours[0] if ours else case, comparisons) for case in ours + peers],
-            # How often the time of a case fits into a peer's, for the same error.
+            # How many times faster than a peer a case reaches the same error.
             "gains": [{"case": case["case"], "peer": peer["case"],
                        "gain": paired_ratio(errors(peer, "seconds"), errors(case, "seconds"))}
                       for peer in peers for case in ours + peers if case is not peer],

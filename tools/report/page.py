@@ -19,7 +19,7 @@ def percent_of_root(error):
 
 
 def ranged(values, digits=2):
-    """[value, low, high] with its interval."""
+    """[value, low, high] as HTML."""
     if values is None:
         return "–"
     value, low, high = values
@@ -37,13 +37,13 @@ def bias_text(result):
 
 
 def table(head, rows):
-    """Cells are HTML already."""
+    """A table in HTML; cells are HTML, too."""
     lines = ["".join(f"<{kind}>{cell}</{kind}>" for cell in row) for kind, row in [("th", head), *(("td", row) for row in rows)]]
     return '<div class="wide"><table>' + "".join(f"<tr>{line}</tr>" for line in lines) + "</table></div>"
 
 
 def overview(scenes):
-    """Scenes against chapters: efficiency, and where a bias was found."""
+    """Efficiency of each chapter in each scene, and where a bias was found."""
     names = list(dict.fromkeys(case["case"] for scene in scenes for case in scene["cases"]))
     rows = []
     for scene in scenes:
@@ -76,7 +76,7 @@ def bias_table(scene):
 
 
 def peer_tables(scene):
-    """Time to equal error against Mitsuba, and from the command on."""
+    """Time to equal error compared with Mitsuba, of rendering alone and from the command on."""
     ours = [case for case in scene["cases"] if not case["is_peer"]]
     peers = [case["case"] for case in scene["cases"] if case["is_peer"]]
     if not ours or not peers:

@@ -1,4 +1,4 @@
-"""Plots and pictures of a report, as they stand in a page: SVG and PNG."""
+"""Plots and pictures as SVG and PNG, with the colours of chapters."""
 import base64
 import io
 import re
@@ -9,8 +9,8 @@ matplotlib.use("svg")
 import numpy as np
 from matplotlib import image, pyplot, ticker
 
-# Okabe and Ito's colours, then Tol's, which can be told apart by everybody; peers are grey. A chapter has the next colour and the
-# next marker. As their numbers have no common factor, no two of 90 chapters look alike.
+# Colours by Okabe and Ito, then by Tol, which everybody can tell apart; peers are grey. The numbers of colours and markers have no
+# common factor, so no two of 90 chapters look alike.
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#332288", "#999933", "#882255", "#44aa99"]
 PEER_COLOURS = ["#000000", "#666666", "#a0a0a0"]
 MARKERS = "osD^vPX*<"
@@ -22,7 +22,7 @@ QUALITY = {"quality": 88, "optimize": True}  # of JPEG files
 
 
 def style(case, index, peer_index):
-    """Line, colour and marker: the same for a chapter in all plots."""
+    """Line, colour and marker, the same for a chapter in all plots."""
     if case["is_peer"]:
         return {"color": PEER_COLOURS[peer_index % len(PEER_COLOURS)], "linestyle": "--", "marker": "x"}
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": "-", "marker": MARKERS[index % len(MARKERS)]}
@@ -36,7 +36,7 @@ def style_axis(axis, **labels):
 
 
 def save_figure(figure, path, dpi=100, **options):
-    """Writes a figure into a file, whose folder is made, and closes it."""
+    """Writes a figure to a file, creates its folder, and closes the figure."""
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=dpi, **options)
     pyplot.close(figure)
@@ -66,7 +66,7 @@ def plot_errors(scene, styles):
 
 
 def svg_text(figure):
-    """The element <svg> alone, without what names its maker."""
+    """The <svg> element alone, without metadata."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={key: None for key in ("Creator", "Date", "Format", "Type")})
     pyplot.close(figure)
@@ -125,8 +125,8 @@ def sheet(path, rows):
 
 
 def right_and_wrong(path, right, wrong):
-    """Two images of a scene beside each other, and where the wrong one is too bright (red) or too dark (blue). Colours are full
-    where a report's are, or where only one pixel in ten differs more."""
+    """Two images side by side, and where the wrong one is too bright (red) or too dark (blue). Colours are as in a report, or weaker
+    so that only one pixel in ten is saturated."""
     difference = relative_difference(wrong, right)
     full = max(1 / DIFFERENCE_FACTOR, np.quantile(np.abs(difference), 0.9))
     sheet(path, [[("right", encode_srgb(right)), ("wrong", encode_srgb(wrong)),

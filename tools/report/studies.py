@@ -1,4 +1,4 @@
-"""What is measured of each chapter: measure.json in its folder.
+"""Reads measure.json of each chapter: what figures, tables and reports measure of it.
 
 "picture", "thumbnail": the scenes of its pictures. "convergence_samples": samples of its curve in the plot of all chapters' errors.
 "compared_on": references on which the report's record compares it with the chapters before. "studies": on references, or on scenes
@@ -15,13 +15,13 @@ from report.numbers import short
 
 
 def measures():
-    """Folder -> content of its measure.json, of all chapters that have one and are no copy of another."""
+    """Folder -> content of its measure.json. Copies of a chapter are left out."""
     files = {CHAPTERS[number]: ROOT / "chapters" / CHAPTERS[number] / "measure.json" for number in CHAPTERS if original(number) == number}
     return {folder: json.loads(file.read_text(encoding="utf-8")) for folder, file in files.items() if file.is_file()}
 
 
 def study_cases():
-    """The cases of docs/results.md: on each reference the chapters one after the other, then what single chapters vary."""
+    """The cases of docs/results.md: all chapters on each reference, then the options that single chapters vary."""
     def case(place, name, folder, *options):
         reference = ROOT / f"assets/references/{place}.exr"
         scene = place.rstrip("_0123456789") if reference.is_file() else place
