@@ -41,17 +41,27 @@ class DiffTest(unittest.TestCase):
 
     def test_a_lesson_is_all_shaders_of_a_folder(self):
         """A technique is shown in full. Of an estimator that includes another chapter's only its own lines are new."""
-        estimator = ["vec3 path_trace() {", "    return vec3(0.0);", "}"]
+        estimator = ["vec3 path_trace(Ray ray) {", "    return vec3(0.0);", "}"]
         own = ['#include "points.glsl"', '#include "../01_first/path_trace.glsl"']
         chapters = {"01_first": {"path_trace.glsl": estimator}, "02_second": {"path_trace.glsl": own, "points.glsl": ["float x;"]}}
         shown = self.lesson_of(chapters)
         self.assertEqual(list(shown), ["02_second/path_trace.glsl", "02_second/points.glsl"])
-        self.assertEqual([line for mark, line, _ in shown["02_second/path_trace.glsl"] if mark != " "], own)
+        self.assertEqual(self.changed(shown["02_second/path_trace.glsl"]), [("+", line) for line in own])
         self.assertEqual(shown["02_second/points.glsl"], [("+", "float x;", None)])
-        # The chapter after one that only includes is compared with what was included.
-        chapters["03_third"] = {"path_trace.glsl": own[:1] + ["", *estimator]}
-        rows = self.lesson_of(chapters)["03_third/path_trace.glsl"]
-        self.assertEqual([(mark, line) for mark, line, _ in rows if mark != " "], [("-", own[1]), ("+", "")])
+        # The chapter after one that only includes is compared with what was included, also by a folder's name alone.
+        chapters["03_third"] = {"path_trace.glsl": own[:1] + ["", *estimator], "points.glsl": ['#include "02_second/points.glsl"']}
+        shown = self.lesson_of(chapters)
+        self.assertEqual(self.changed(shown["03_third/path_trace.glsl"]), [("-", own[1]), ("+", "")])
+        self.assertEqual(self.changed(shown["03_third/points.glsl"]), [("+", '#include "02_second/points.glsl"')])
+
+    def test_a_loop_in_a_file_of_its_own_is_compared_as_part_of_the_estimator(self):
+        loop = ["vec3 path_trace(Ray ray) {", "    return vec3(1.0);", "}"]
+        chapters = {"01_first": {"path_trace.glsl": loop}, "02_second": {"path_trace.glsl": ['#include "loop.glsl"'], "loop.glsl": loop}}
+        (rows,) = self.lesson_of(chapters).values()
+        self.assertEqual(self.changed(rows), [("+", '#include "loop.glsl"')])
+
+    def changed(self, rows):
+        return [(mark, line) for mark, line, _ in rows if mark != " "]
 
     def test_counts(self):
         before = ["// One.", "float a = 1.0;", "", "float b = 2.0;", "float c;"]

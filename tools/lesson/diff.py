@@ -14,23 +14,36 @@ CONTEXT = 3  # unchanged lines around a change
 BEFORE = dict(zip(list(CHAPTERS)[1:], CHAPTERS))  # number of a chapter: that of the one before
 STYLES = {"-": "\033[31m", "+": "\033[32m", "@": "\033[36m", " ": ""}  # ANSI: red, green, cyan
 STRONG, RESET = "\033[7m", "\033[0m"
-ESTIMATOR = re.compile(r'#include "\.\./(\w+/path_trace\.glsl)"')
+INCLUDE = re.compile(r'#include "(?:\.\./)?([\w/]+\.glsl)"')
+ESTIMATOR = re.compile(r"^vec3 path_trace\(", re.MULTILINE)
+
+
+def text_of(file):
+    """The text of a shader, a path below chapters/; empty if there is no such file."""
+    path = ROOT / "chapters" / file
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def shader_lines(file):
-    """The lines of a shader, a path below chapters/; none if there is no such file. An estimator that only adds to another
-    chapter's includes it: the included lines follow the #include."""
-    path, lines = ROOT / "chapters" / file, []
-    for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else []:
-        included = ESTIMATOR.match(line)
-        lines += [line, *(shader_lines(included[1]) if included else [])]
+    """The lines of a shader below chapters/. Where it includes its namesake of another chapter, or a file with the function
+    path_trace(), the included lines follow, so that chapters are compared as if each had written its own."""
+    (folder, name), lines = file.split("/"), []
+    for line in text_of(file).splitlines():
+        lines.append(line)
+        target = INCLUDE.match(line)[1] if INCLUDE.match(line) else ""
+        target = target if "/" in target else f"{folder}/{target}"
+        if target != file and (target.endswith(f"/{name}") or ESTIMATOR.search(text_of(target))):
+            lines += shader_lines(target)
     return lines
 
 
 def lesson(number):
     """(file before, file) below chapters/ for each shader of a chapter's folder, the estimator first."""
-    names = sorted((path.name for path in (ROOT / "chapters" / CHAPTERS[number]).glob("*.glsl")), key=lambda name: (name != "path_trace.glsl", name))
-    return [tuple(f"{CHAPTERS[n]}/{name}" for n in (BEFORE[number], number)) for name in names]
+    folder, names = CHAPTERS[number], ["path_trace.glsl"]
+    for path in sorted((ROOT / "chapters" / folder).glob("*.glsl")):
+        if path.name not in names and not ESTIMATOR.search(text_of(f"{folder}/{path.name}")):  # else it is part of the first
+            names.append(path.name)
+    return [(f"{CHAPTERS[BEFORE[number]]}/{name}", f"{folder}/{name}") for name in names]
 
 
 def words_of(lines):
@@ -93,7 +106,7 @@ def show(names, rows):
     """Prints rows of compare() under the names of the two files."""
     colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
     rule = "." * min(shutil.get_terminal_size().columns, 120)
-    print("\n".join(paint(mark, f"chapters/{name}", None, colour) for mark, name in zip("-+", names) if (ROOT / "chapters" / name).is_file()))
+    print("\n".join(paint(mark, f"chapters/{name}", None, colour) for mark, name in zip("-+", names) if text_of(name)))
     for row in visible(rows):
         print(paint(*row, colour) if row else paint("@", rule, None, True) if colour else "@")
 
