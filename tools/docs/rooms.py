@@ -34,9 +34,9 @@ def included_files(path):
         return [ROOT / "tools" / name for name in IMPORT.findall(text)]
     found = []
     for name in INCLUDE.findall(text):
-        places = [path.parent / name, *(ROOT / folder / name for folder in ("common", "shaders", ".")), *(ROOT / "shaders").glob(f"*/{name}")]
-        # The estimator is included by its name alone.
-        places += sorted((ROOT / "chapters").glob(f"*/{name}"))
+        places = [path.parent / name, *(ROOT / folder / name for folder in ("common", "shaders", "chapters", "."))]
+        # A chapter's files, and files of other rooms of shaders/, are included by their names alone.
+        places += [place for folder in ("shaders", "chapters") for place in sorted((ROOT / folder).glob(f"*/{name}"))]
         found += [place.resolve() for place in places if place.is_file()][:1]
     return found
 
