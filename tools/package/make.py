@@ -9,6 +9,7 @@ import os
 import tarfile
 import tempfile
 import zipfile
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 from package import windows_programs
@@ -18,7 +19,9 @@ HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
 FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
 FILES = ["LICENSE", "README.md"]
-LEFT_OUT = ["docs/solutions", "tools/book", "tools/course", "tools/docs", "tools/package"]  # for teachers, or in need of the sources
+# Solutions and what only teachers need, or what needs the sources.
+LEFT_OUT = ["docs/solutions/*", "tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/exercise.json",
+            "chapters/*/mistakes.json", "chapters/*/other_scenes.json", "chapters/*/solutions/*", "chapters/*/variants/*", "*/__pycache__/*"]
 DATE = 1980, 1, 1, 0, 0, 0  # of all files: the same sources make the same archive
 BOOK = ROOT / "output/book"
 
@@ -28,7 +31,7 @@ def tree_files(tree):
     files = {}
     for path in [*(path for folder in FOLDERS for path in (tree / folder).rglob("*")), *(tree / name for name in FILES)]:
         name = path.relative_to(tree).as_posix()
-        if path.is_file() and "__pycache__" not in name and not name.startswith(tuple(f"{folder}/" for folder in LEFT_OUT)):
+        if path.is_file() and not any(fnmatchcase(name, pattern) for pattern in LEFT_OUT):
             files[name] = path.read_bytes()
     if tree == ROOT and BOOK.exists():
         files |= {f"book/{path.relative_to(BOOK).as_posix()}": path.read_bytes() for path in BOOK.rglob("*") if path.is_file()}
