@@ -9,11 +9,10 @@ from pathlib import Path
 
 from book import readability
 from book.pages import Page, source_page
-from project import CHAPTERS, ROOT, Parser, UserError, read_json, run_program, table
+from project import CHAPTERS, ROOT, Parser, UserError, read_json, run_program
 
 HERE = Path(__file__).parent
 KATEX = Path("/usr/share/javascript/katex")  # of Debian's libjs-katex
-READABILITY = "docs/readability.md"
 SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.js"
 SECTIONS = {  # of the navigation; pages that do not exist are left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
@@ -75,25 +74,12 @@ def collect(folder, sections, is_teacher):
     return sorted(path for path in done if path.suffix == ".md"), {f"{path}.html" for path in done if path.suffix != ".md"}
 
 
-def readability_page(pages):
-    """A table of all pages and their sentences, as Markdown."""
-    rows = []
-    for path in pages:
-        middle, long = readability.measure((ROOT / path).read_text(encoding="utf-8"))
-        rows.append([str(path), f"{middle:g}", str(len(long)), str(max((words for words, _ in long), default="–"))])
-    goals = (f"The goals are a median of at most {readability.MEDIAN_GOAL} words per sentence, and no sentence above "
-             f"{readability.LONGEST_GOAL}.")
-    head = ["page", "median", f"sentences above {readability.LONGEST_GOAL} words", "words of the longest one"]
-    return f"# How long the sentences are\n\n{goals} `./lab book` counts them.\n\n" + table(head, rows)
-
-
 def write_settings(file, folder, sections):
     """The settings of MkDocs, with the folder's pages and their order."""
     nav = []
     for title, paths in sections:
         entries = [{"Start" if path == START[0] else title_of(path): path} for path in paths]
         nav += [{title: entries}] if title and entries else entries
-    nav.append({"How long the sentences are": READABILITY})
     text = (HERE / "mkdocs.yml").read_text(encoding="utf-8").replace("theme:\n", f"theme:\n  custom_dir: {HERE / 'theme'}\n")
     settings = {"docs_dir": str(folder / "docs"), "site_dir": str(folder / "site"), "nav": nav}
     file.write_text(text + "".join(f"{key}: {json.dumps(value)}\n" for key, value in settings.items()), encoding="utf-8")
@@ -117,7 +103,6 @@ def build(output, is_teacher):
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         pages, sources = collect(folder / "docs", sections, is_teacher)
-        write(folder / "docs", READABILITY, readability_page(pages))
         (folder / "docs/katex/fonts").mkdir(parents=True)
         for file in [KATEX / "katex.min.js", KATEX / "katex.min.css", *KATEX.glob("fonts/*.woff2")]:
             shutil.copy(file, folder / "docs/katex" / file.relative_to(KATEX))
