@@ -1,6 +1,5 @@
 """./lab report from the command to the page: what it writes, how it goes on, what it refuses."""
 
-import csv
 import json
 import re
 import sys
@@ -114,9 +113,6 @@ class ReportCommandTest(ProgramTest):
         self.assertEqual([case["case"] for case in content["scenes"][0]["cases"]], ["chapter 1", "chapter 3"])
         self.assertGreater(content["scenes"][0]["cases"][1]["efficiency"][0], 3)
         self.assertIn("device", content["environment"])
-        with open(self.folder / "report/report.csv", newline="") as stream:
-            rows = list(csv.DictReader(stream))
-        self.assertEqual(len(rows), sum(len(run["rows"]) for runs in self.runs().values() for run in runs))
 
     def test_an_interrupted_report_goes_on_and_a_complete_one_starts_anew(self):
         arguments = ["cornell_box_1", "2", *SMALL, "--repetitions=5"]

@@ -9,6 +9,7 @@ import tools_path  # noqa: F401  (first: it finds the others)
 from book import code_blocks
 from docs import best_table, peer_table
 from project import UserError
+from report import studies
 
 SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}
 
@@ -109,6 +110,21 @@ class CodeBlockTest(unittest.TestCase):
                             (self.page("a = 1 | }").replace("<!-- end", "<!--"), "must be followed by")):
             with self.assertRaisesRegex(UserError, words.replace("(", r"\(")):
                 self.filled(page)
+
+
+class StudiesTest(unittest.TestCase):
+    def test_a_copied_name_belongs_to_the_first_chapter(self):
+        measures = {"03_a": {"figures": {"one": 1}}, "20_b": {"figures": {"one": 2, "two": 3}}}
+        with mock.patch.object(studies, "measures", lambda: measures):
+            self.assertEqual(studies.named("figures"), {"one": ("03_a", 1), "two": ("20_b", 3)})
+
+    def test_a_broken_file_is_named(self):
+        with tempfile.TemporaryDirectory() as name:
+            file = Path(name) / "chapters/01_a/measure.json"
+            file.parent.mkdir(parents=True)
+            file.write_text("{", encoding="utf-8")
+            with mock.patch.multiple(studies, ROOT=Path(name), CHAPTERS={1: "01_a"}, original=int), self.assertRaisesRegex(UserError, r"01_a/measure\.json: not valid JSON: "):
+                studies.measures()
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, failure_text, l
 from references.images import read_rgb
 from report.measurement import digest_of_sources
 from report.numbers import per_sample
-from report.studies import measures
+from report.studies import measures, named
 
 GOES_ON = True
 PICTURES = ROOT / "docs/pictures"
@@ -156,14 +156,11 @@ FIGURES = {
     "equal_time": (renders_at_equal_time, figure_plots.sheet_of("equal_time")), "convergence": (renders_of_convergence, figure_plots.convergence),
     "first_steps": (renders_of_first_steps, figure_plots.first_steps),
 } | {name: (list, getattr(figure_plots, name)) for name in (
-    "sampler_points", "point_sets", "one_over_root_n", "grid_and_random", "random_numbers", "window")}
-ON_REQUEST = []  # those that take long
-for its_folder, its_measure in MEASURES.items():
-    for its_name, its_tiles in its_measure.get("figures", {}).items():
-        layout = its_tiles.get("layout")
-        FIGURES[its_name] = (partial(renders_of_tiles, its_folder, its_tiles),
-                             getattr(figure_plots, layout) if layout else figure_plots.sheet_of(its_name))
-        ON_REQUEST.extend([its_name] * its_tiles.get("takes_long", False))
+    "sampler_points", "point_sets", "one_over_root_n", "grid_and_random", "random_numbers", "window")
+} | {name: (partial(renders_of_tiles, folder, figure),
+             getattr(figure_plots, figure["layout"]) if "layout" in figure else figure_plots.sheet_of(name))
+     for name, (folder, figure) in named("figures").items()}
+ON_REQUEST = [name for name, (_, figure) in named("figures").items() if figure.get("takes_long")]
 
 
 def parse():

@@ -11,7 +11,7 @@ import numpy as np
 from lesson import point_sets
 from project import CHAPTERS, ROOT, Parser, UserError, number, program_file, run_program
 from report.numbers import CONFIDENCE, two_sided
-from report.studies import measures
+from report.studies import named
 
 PROGRAM = program_file("sample_points")
 BINS = 16
@@ -71,15 +71,14 @@ KINDS = {
 }
 
 
-def playground_of(chapter, name, points, title, cumulative):
+def playground_of(chapter, points, title, cumulative):
     """The playground of a chapter's sampler; `cumulative` is a formula of x."""
     sampler, options = KINDS[points]
     function = eval(f"lambda x: {cumulative}", vars(np))
     return Playground(title.format(number=int(chapter[:2])), sampler, cumulative=function, chapter=chapter, **options)
 
 
-OF_CHAPTERS = {measure["sampler"]["name"]: playground_of(chapter, **measure["sampler"])
-               for chapter, measure in measures().items() if "sampler" in measure}
+OF_CHAPTERS = {name: playground_of(chapter, **content) for name, (chapter, content) in named("samplers").items()}
 PLAYGROUNDS |= OF_CHAPTERS
 
 

@@ -1,5 +1,4 @@
-"""Writes a report: the page index.html, which needs no other file, and its numbers as report.json and report.csv."""
-import csv
+"""Writes a report: the page index.html, which needs no other file, and its numbers as report.json."""
 import math
 from html import escape
 from pathlib import Path
@@ -154,22 +153,9 @@ def page(record, scenes, folder):
                                **{name: f"{100 * value:.0f}" for name, value in percents.items()})
 
 
-def write_csv(file, record):
-    """Every row of every run."""
-    keys = ["samples", "seconds", "device_seconds", "rays", "rel_mse"]
-    with open(file, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["scene", "case", "seed", *keys, "mean_r", "mean_g", "mean_b"])
-        for case in record["cases"]:
-            for run in case["runs"]:
-                for row in run["rows"]:
-                    writer.writerow([case["scene"], case["case"], run["seed"], *(row.get(key) for key in keys), *row["mean"]])
-
-
 def write_report(record, folder):
     """All files; pictures are in folder/pictures."""
     scenes = summarize(record)
     content = {"settings": record["settings"], "environment": record["environment"], "scenes": scenes}
     write_json(folder / "report.json", content)
-    write_csv(folder / "report.csv", record)
     (folder / "index.html").write_text(page(record, scenes, folder / "pictures"), encoding="utf-8")

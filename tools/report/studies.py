@@ -3,21 +3,36 @@
 "picture", "thumbnail": the scenes of its pictures. "convergence_samples": samples of its curve in the plot of all chapters' errors.
 "compared_on": references on which the report's record compares it with the chapters before. "studies": on references, or on scenes
 without one, cases that vary an option, name -> options. "benchmark": the chapter is the benchmark's, with these options.
-"figures": tiles of pictures, see docs/figures.py. "sampler": for ./lab sample, see lesson/sample.py. "examples": tables of a worked
-example, rows of a label, a statement and what is shown of its result.
+"figures": pictures made of tiles, see docs/figures.py. "samplers": for ./lab sample, see lesson/sample.py. "examples": tables of
+worked examples, with rows of a label, a statement and what is shown of its result. These three have names.
 """
-import json
 import math
 
-from project import CHAPTERS, ROOT, original, table
+from project import CHAPTERS, ROOT, UserError, original, read_json, table
 from report.measurement import new_case
 from report.numbers import short
 
 
 def measures():
     """Folder -> content of its measure.json. Copies of a chapter are left out."""
-    files = {CHAPTERS[number]: ROOT / "chapters" / CHAPTERS[number] / "measure.json" for number in CHAPTERS if original(number) == number}
-    return {folder: json.loads(file.read_text(encoding="utf-8")) for folder, file in files.items() if file.is_file()}
+    found = {}
+    for number, folder in CHAPTERS.items():
+        file = ROOT / "chapters" / folder / "measure.json"
+        if file.is_file() and original(number) == number:
+            try:
+                found[folder] = read_json(file)
+            except ValueError as error:
+                raise UserError(f"{file}: not valid JSON: {error}") from None
+    return found
+
+
+def named(key):
+    """Name -> (folder, content) for a key with names. The first chapter counts: another one with a name was copied from it."""
+    found = {}
+    for folder, measure in measures().items():
+        for name, content in measure.get(key, {}).items():
+            found.setdefault(name, (folder, content))
+    return found
 
 
 def study_cases():
@@ -52,4 +67,4 @@ def example_table(rows):
 
 def examples():
     """Name -> function that makes the table."""
-    return {name: lambda rows=rows: example_table(rows) for measure in measures().values() for name, rows in measure.get("examples", {}).items()}
+    return {name: lambda rows=rows: example_table(rows) for name, (_, rows) in named("examples").items()}
