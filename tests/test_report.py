@@ -28,13 +28,13 @@ class Test:
     def instance(self):
         """The parameter, or "" of a test without one."""
         _, _, test = self.full_name.partition(".")
-        return test.partition("/")[2]
+        return test.partition("/")[2].removesuffix("_all")
 
 
 def name_of(full_name):
-    """ "Textures.AreDecoded" of "Backends/Textures.AreDecoded/query"."""
+    """ "Textures.AreDecoded" of "Backends/Textures.AreDecoded_all/query"."""
     suite, _, test = full_name.partition(".")
-    return f"{suite.rpartition('/')[2]}.{test.partition('/')[0]}"
+    return f"{suite.rpartition('/')[2]}.{test.partition('/')[0].removesuffix('_all')}"
 
 
 ONLY_IN_ALL = "*_all:*_all/*"  # a filter for the tests that ./lab test leaves out

@@ -84,7 +84,7 @@ class BookTest(Site, unittest.TestCase):
 
 
 @unittest.skipUnless(CHROMIUM, "needs Chromium: apt-get install chromium")
-class BookInBrowserTest(Site, unittest.TestCase):
+class BookInBrowser_all(Site, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

@@ -63,16 +63,23 @@ class WhatIsBuilt(ProgramTest):
         self.assertRegex(self.noted("check", 20), r"(?m)^cmake --build .* --target 03_three 20_mine$")
 
     def test_tests_that_are_chosen_are_built_alone(self):
-        for regex, targets in (("ThreeThings", "shaders_tests"), ("shaders.*IsOther", "shaders_tests"), ("FourTest", "all"),
-                               ("mistakes", "all"), ("Nothing", "all")):
+        for regex, targets in (("ThreeThings", "shaders_tests"), ("shaders.*IsOther", "shaders_tests"), ("FourTest", "all only_in_all"),
+                               ("mistakes", "all only_in_all"), ("Nothing", "all only_in_all")):
             noted = self.noted("test", "-R", regex, code=1)
             self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$", regex)
             self.assertRegex(noted, rf"(?m)^ctest .* -R {re.escape(regex)}$")
 
+    def test_what_is_not_named_is_left_to_all(self):
+        for arguments, targets, choice in (((), "all", r" -LE \^all\$"), (("--all",), "all only_in_all", ""),
+                                           (("--quick",), "quick_tests", r" -L \^quick\$"), (("-I", "1,,6"), "all", r" -LE \^all\$ -I 1,,6")):
+            noted = self.noted("test", *arguments, code=1)
+            self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$")
+            self.assertRegex(noted, rf"(?m)^ctest .*tests\.xml{choice}$")
+
     def test_the_tests_of_a_copy_are_those_of_its_originals_exercise(self):
         noted = self.noted("test", 20, code=1)
         self.assertRegex(noted, r"(?m) --target shaders_tests$")
-        self.assertIn(r" -E /chapter_(12_twelve|20_mine)$ -R [./](ThreeThings|More)\." + "\n", noted)
+        self.assertIn(r" -R [./](ThreeThings|More)\. -E /chapter_(12_twelve|20_mine)(_all)?$" + "\n", noted)
         self.assertIn("\nctest, copy 20_mine: ", "\n" + noted)
 
 

@@ -24,7 +24,7 @@ MIDDLE = np.s_[8:24, 8:24]  # of quad.json: nothing but its surface of albedo 1/
 SEEDS, SURE = 8, 6  # renders for each estimate; standard deviations that make a difference more than noise
 
 
-class FirstStepsTest(RenderTest):
+class FirstSteps_all(RenderTest):
     pictures = {}  # what has been rendered, for all tests
 
     def show(self, step, *arguments, scene="cornell_box"):
@@ -161,7 +161,7 @@ class FirstStepsTest(RenderTest):
         self.assert_more(*(self.runs(step, np.mean, "--samples=64") for step in ("8 broken", "8")))
 
 
-class FirstStepsPicturesTest(ProgramTest):
+class FirstStepsPictures_all(ProgramTest):
     """Tiles of 256 samples are noisy and are rendered smaller here: means of large squares are compared. Other tiles are
     rendered as they are. There the squares only have to hide what JPEG does to noise."""
 

@@ -19,7 +19,7 @@ class ArchiveFilesTest(ProgramTest):
         self.assertEqual(sorted(make.tree_files(self.folder)), kept)
 
 
-class LinuxArchive(ProgramTest):
+class LinuxArchive_all(ProgramTest):
     def test_runs_in_another_folder_without_a_compiler(self):
         code, _, err = self.run_tool("package", "linux")
         self.assertEqual(code, 0, err)

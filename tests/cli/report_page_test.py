@@ -48,7 +48,9 @@ sys.exit(subprocess.call(["{program}", "--quiet", scene, *arguments]))
 SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
 
 
-class ReportCommandTest(ProgramTest):
+class Reports:
+    """How tests make a report."""
+
     def start_report(self, *arguments, environment=None):
         return self.start("-B", "-c", COMMAND, TOOLS, self.folder, *arguments, program=sys.executable, environment=environment)
 
@@ -69,6 +71,8 @@ class ReportCommandTest(ProgramTest):
         arguments = ["-B", "-c", COMMAND, TOOLS, self.folder, *arguments]
         self.assert_refused(arguments, *words, program=sys.executable, environment=environment)
 
+
+class ReportCommandTest(Reports, ProgramTest):
     def changed_reference(self, name, old, new):
         """A copy of a reference in which bytes of the same number are replaced."""
         contents = REFERENCE.read_bytes()
@@ -114,6 +118,40 @@ class ReportCommandTest(ProgramTest):
         self.assertGreater(content["scenes"][0]["cases"][1]["efficiency"][0], 3)
         self.assertIn("device", content["environment"])
 
+    def test_scenes_that_a_chapter_refuses_are_listed(self):
+        self.report("glass", "1", "6", *SMALL, "--repetitions=1")
+        content = json.loads((self.folder / "report/report.json").read_text())
+        self.assertEqual([case["case"] for case in content["scenes"][0]["cases"]], ["chapter 6"])
+        self.assertRegex((self.folder / "report/index.html").read_text(), "chapter 1 does not render it: .* dielectric")
+
+    def test_references_that_do_not_fit_are_refused(self):
+        self.changed_reference("stale.exr", b"4102f97faa8e9116", b"4102f97faa8e9117")
+        self.changed_reference("small.exr", b"width\0string\0\3\0\0\x00128", b"width\0string\0\3\0\0\x00127")
+        self.changed_reference("nameless.exr", b"max_path_length\0", b"max_path_lengths\0"[1:])
+        self.write("damaged.exr", REFERENCE.read_bytes()[:20000])
+        self.assert_report_refused(["small", *SMALL], r"small\.exr", "128 x 128", "127 x 128")
+        self.assert_report_refused(["nameless", *SMALL], r"nameless\.exr", "max_path_length", "lab reference")
+        self.assert_report_refused(["damaged", *SMALL], r"damaged\.exr", "cannot be read as a reference")
+        err = self.report("stale", "1", *SMALL, code=1)
+        self.assertRegex(err.splitlines()[-1], r"stale\.exr: is of another version of .*cornell_box\.json: .*lab reference")
+
+    def test_words_without_meaning_are_refused(self):
+        self.assert_report_refused(["no_such_scene"], "no_such_scene", "lab reference")
+        self.assert_report_refused(["quad.json"], "quad.json", "lab reference")
+        self.assert_report_refused(["missing.json"], "missing.json", "no such file")
+        self.assert_report_refused(["cornell_box", "99"], "no chapter 99")
+        self.assert_report_refused(["--seconds=0"], "seconds", "--help")
+        self.assert_report_refused(["--record=record.json", "torus"], "record", "no scenes")
+        self.assert_report_refused(["torus", "--peer-sampler=multijitter"], "--peer mitsuba")
+
+    def test_without_mitsuba_it_says_how_to_get_it(self):
+        (self.folder / "bin").mkdir()
+        self.write("bin/python3", f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n').chmod(0o755)
+        environment = {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
+        self.assert_report_refused(["cornell_box", "--peer=mitsuba"], "Mitsuba 3", "pip install mitsuba", environment=environment)
+
+
+class LongReports_all(Reports, ProgramTest):
     def test_an_interrupted_report_goes_on_and_a_complete_one_starts_anew(self):
         arguments = ["cornell_box_1", "2", *SMALL, "--repetitions=5"]
         with self.start_report(*arguments) as process:
@@ -145,12 +183,6 @@ class ReportCommandTest(ProgramTest):
             self.assertLess(time.monotonic(), end, "took too long")
             time.sleep(0.01)
 
-    def test_scenes_that_a_chapter_refuses_are_listed(self):
-        self.report("glass", "1", "6", *SMALL, "--repetitions=1")
-        content = json.loads((self.folder / "report/report.json").read_text())
-        self.assertEqual([case["case"] for case in content["scenes"][0]["cases"]], ["chapter 6"])
-        self.assertRegex((self.folder / "report/index.html").read_text(), "chapter 1 does not render it: .* dielectric")
-
     def test_a_record_can_be_shown_in_the_results(self):
         arguments = ["--record=record.json", "--backend=compute", "--seconds=0.2", "--repetitions=2"]
         self.render("-B", "-c", RECORD, TOOLS, *arguments, program=sys.executable)
@@ -160,26 +192,6 @@ class ReportCommandTest(ProgramTest):
         show = "import json, sys; sys.path.insert(0, sys.argv[1]); from docs import tables; print(tables.chapter_tables(json.load(open('record.json'))))"
         table = self.render("-B", "-c", show, TOOLS, program=sys.executable)
         self.assertRegex(table, r"\| the same with roulette \| `--samples \d+ --split-every-hit [^|]*` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(")
-
-    def test_references_that_do_not_fit_are_refused(self):
-        self.changed_reference("stale.exr", b"4102f97faa8e9116", b"4102f97faa8e9117")
-        self.changed_reference("small.exr", b"width\0string\0\3\0\0\x00128", b"width\0string\0\3\0\0\x00127")
-        self.changed_reference("nameless.exr", b"max_path_length\0", b"max_path_lengths\0"[1:])
-        self.write("damaged.exr", REFERENCE.read_bytes()[:20000])
-        self.assert_report_refused(["small", *SMALL], r"small\.exr", "128 x 128", "127 x 128")
-        self.assert_report_refused(["nameless", *SMALL], r"nameless\.exr", "max_path_length", "lab reference")
-        self.assert_report_refused(["damaged", *SMALL], r"damaged\.exr", "cannot be read as a reference")
-        err = self.report("stale", "1", *SMALL, code=1)
-        self.assertRegex(err.splitlines()[-1], r"stale\.exr: is of another version of .*cornell_box\.json: .*lab reference")
-
-    def test_words_without_meaning_are_refused(self):
-        self.assert_report_refused(["no_such_scene"], "no_such_scene", "lab reference")
-        self.assert_report_refused(["quad.json"], "quad.json", "lab reference")
-        self.assert_report_refused(["missing.json"], "missing.json", "no such file")
-        self.assert_report_refused(["cornell_box", "99"], "no chapter 99")
-        self.assert_report_refused(["--seconds=0"], "seconds", "--help")
-        self.assert_report_refused(["--record=record.json", "torus"], "record", "no scenes")
-        self.assert_report_refused(["torus", "--peer-sampler=multijitter"], "--peer mitsuba")
 
     def test_a_peer_is_compared_with_as_each_sampler(self):
         (self.folder / "bin").mkdir()
@@ -210,12 +222,6 @@ class ReportCommandTest(ProgramTest):
             self.assertEqual((case["width"], case["scale"]), (1024, 8) if is_large else (128, 1))
             found.append(measurement.run_case(case, settings, ["--samples", samples, "--seed", 1])["rows"][-1]["rel_mse"])
         self.assertTrue(0.4 < found[1] / found[0] < 1.2, found)
-
-    def test_without_mitsuba_it_says_how_to_get_it(self):
-        (self.folder / "bin").mkdir()
-        self.write("bin/python3", f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n').chmod(0o755)
-        environment = {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
-        self.assert_report_refused(["cornell_box", "--peer=mitsuba"], "Mitsuba 3", "pip install mitsuba", environment=environment)
 
 
 class StyleTest(unittest.TestCase):

@@ -55,7 +55,6 @@ struct AgreementCase {
     uint32_t bounce_samples;           // of a batch of chapters 1 and 2, which find lights by bounces
     AgreementLimits of_bounces;        // in comparisons with chapters 1 or 2
     AgreementLimits of_light_samples;  // in all others
-    Run run = Run::always;
 };
 
 // The lower part of the scene, where no light is seen: it would add nothing but noise. Small suns are dimmed,
@@ -82,20 +81,21 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
     return render_batches(scene, settings, batch_count);
 }
 
-// Every time only the scene with a lamp, a light probe and textures: in the Cornell box ReferenceImage
-// compares the chapters with an independent renderer, more exactly than they can be compared with each other.
+// Left to --all: ReferenceImage compares the chapters with an independent renderer, more exactly than they
+// can be compared with each other.
 class ChapterAgreement : public testing::TestWithParam<AgreementCase> {};
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, ChapterAgreement,
-    testing::Values(AgreementCase{"cornell_box", 6, 56, {0.06, 0.75}, {0.02, 0.18}, Run::with_all},
-                    AgreementCase{"torus", 8, 64, {0.06, 0.9}, {0.02, 0.22}, Run::with_all},
-                    AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}, Run::with_all},
-                    AgreementCase{"textured", 9, 6, {0.045, 0.45}, {0.045, 0.45}},
-                    AgreementCase{"glossy", 8, 64, {0.12, 3.5}, {0.05, 1.3}, Run::with_all}),
-    [](const auto& instance) { return instance_name(instance.param.scene, instance.param.run); });
+INSTANTIATE_TEST_SUITE_P(Scenes, ChapterAgreement,
+                         testing::Values(AgreementCase{"cornell_box", 6, 56, {0.06, 0.75}, {0.02, 0.18}},
+                                         AgreementCase{"torus", 8, 64, {0.06, 0.9}, {0.02, 0.22}},
+                                         AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}},
+                                         AgreementCase{"textured", 9, 6, {0.045, 0.45}, {0.045, 0.45}},
+                                         AgreementCase{"glossy", 8, 64, {0.12, 3.5}, {0.05, 1.3}}),
+                         [](const auto& instance) {
+                             return instance_name(instance.param.scene, Run::with_all);
+                         });
 
 TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
-    const auto& [name, samples, bounce_samples, of_bounces, of_light_samples, run] = GetParam();
+    const auto& [name, samples, bounce_samples, of_bounces, of_light_samples] = GetParam();
     const Scene scene = load_test_scene(name);
     uint32_t seed = 1000;
     std::vector<double> p_values;

@@ -70,7 +70,7 @@ Cost measure_strategy(const std::string& scene_name, Strategy strategy, uint32_t
     return measure(load_shipped_scene(scene_name + ".json"), settings);
 }
 
-TEST(Efficiency, CosineSamplingAndNextEventEstimationPay) {
+TEST(Efficiency, CosineSamplingAndNextEventEstimationPay_all) {
     const Cost uniform = measure_chapter("cornell_box", "uniform_sampling", 24, 4),
                cosine = measure_chapter("cornell_box", "cosine_sampling", 24, 4);
     expect_gain("cosine sampling against uniform angles", uniform, cosine);
@@ -80,20 +80,20 @@ TEST(Efficiency, CosineSamplingAndNextEventEstimationPay) {
 
 // Splitting pays where what comes after the first hit is noisy, as with a light of thousands of triangles. In
 // the Cornell box edges and camera rays weigh as much as they save each other.
-TEST(Efficiency, SplittingPaysForNoisyLight) {
+TEST(Efficiency, SplittingPaysForNoisyLight_all) {
     expect_gain("splitting in 4 against next event estimation",
                 measure_chapter("heart_light", "next_event_estimation", 16, 4),
                 measure_chapter("heart_light", "splitting", 4, 4, 4));
 }
 
 // Without a limit of the path length there is more to be estimated, and still it pays.
-TEST(Efficiency, RussianRoulettePaysForLongPaths) {
+TEST(Efficiency, RussianRoulettePaysForLongPaths_all) {
     expect_gain("Russian roulette against splitting", measure_chapter("cornell_box", "splitting", 8, 8, 2),
                 measure_chapter("cornell_box", "russian_roulette", 8, 1000, 2));
 }
 
 // Where lights are near, light samples are noisy; where surfaces are glossy, they miss the lobe.
-TEST(Efficiency, MultipleImportanceSamplingPays) {
+TEST(Efficiency, MultipleImportanceSamplingPays_all) {
     expect_gain("multiple importance sampling against dielectrics, heart",
                 measure_chapter("heart_light", "dielectrics", 12, 4),
                 measure_chapter("heart_light", "multiple_importance_sampling", 12, 4));
@@ -104,7 +104,7 @@ TEST(Efficiency, MultipleImportanceSamplingPays) {
                 both);
 }
 
-TEST(Efficiency, SamplingTheLightProbePays) {
+TEST(Efficiency, SamplingTheLightProbePays_all) {
     expect_gain("light probes against multiple importance sampling, small sun",
                 measure_chapter("sunny", "multiple_importance_sampling", 8, 2),
                 measure_chapter("sunny", "light_probes", 4, 2));
@@ -113,7 +113,7 @@ TEST(Efficiency, SamplingTheLightProbePays) {
                 measure_chapter("textured", "light_probes", 4, 2));
 }
 
-TEST(Efficiency, LowDiscrepancyPointsPay) {
+TEST(Efficiency, LowDiscrepancyPointsPay_all) {
     expect_gain("low-discrepancy points against light probes, Cornell box",
                 measure_chapter("cornell_box", "light_probes", 16, 4),
                 measure_chapter("cornell_box", "low_discrepancy_points", 16, 4));

@@ -14,7 +14,7 @@ namespace {
 using glm::dvec3;
 
 class HardCamera : public OnEachBackend {};
-INSTANTIATE_TEST_SUITE_P(Backends, HardCamera, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, HardCamera, testing::ValuesIn(all_backends), own_backend_name);
 
 // The direction of a camera ray in double, from the pose.
 dvec3 direction_of(const CameraPose& pose, double width, double height, double x, double y) {

@@ -27,7 +27,7 @@ class Intersection : public OnEachBackend {
     void expect_no_self_hits_of_stretched_instances(uint32_t effort) const;
     void expect_no_escapes(uint32_t effort) const;
 };
-INSTANTIATE_TEST_SUITE_P(Backends, Intersection, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, Intersection, testing::ValuesIn(all_backends), own_backend_name);
 
 // Triangles side by side in one mesh.
 Scene triangle_scene(const std::vector<vec3>& corners, const mat3& object_to_world = mat3(1)) {

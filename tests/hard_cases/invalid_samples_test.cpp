@@ -39,7 +39,7 @@ class InvalidSamples : public OnEachBackend {
         return renderer.film().read();
     }
 };
-INSTANTIATE_TEST_SUITE_P(Backends, InvalidSamples, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, InvalidSamples, testing::ValuesIn(all_backends), own_backend_name);
 
 constexpr uint32_t quiet_nan = 0x7fc00000, signalling_nan = 0x7f800001, negative_nan = 0xffffffff,
                    infinity = 0x7f800000, negative_infinity = 0xff800000;

@@ -32,7 +32,7 @@ class Lights : public OnEachBackend {
         return settings;
     }
 };
-INSTANTIATE_TEST_SUITE_P(Backends, Lights, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, Lights, testing::ValuesIn(all_backends), own_backend_name);
 
 // A floor [-1,1]² in the plane z = 0, of which the camera sees hardly more than the origin. Material 0 is its
 // own.

@@ -11,7 +11,7 @@ namespace lab {
 namespace {
 
 class PathCases : public OnEachBackend {};
-INSTANTIATE_TEST_SUITE_P(Backends, PathCases, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, PathCases, testing::ValuesIn(all_backends), own_backend_name);
 
 // Nobody ends by Russian roulette where surfaces absorb nothing and the survival probability may be 1.
 RenderSettings make_settings(Backend backend, const std::string& chapter, uint32_t max_path_length) {

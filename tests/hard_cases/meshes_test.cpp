@@ -88,7 +88,7 @@ class BadMeshes : public OnEachBackend {
         expect_no_difference(what, differences, 0.06, 6);
     }
 };
-INSTANTIATE_TEST_SUITE_P(Backends, BadMeshes, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, BadMeshes, testing::ValuesIn(all_backends), own_backend_name);
 
 class RandomPoints {
   public:

@@ -25,7 +25,7 @@ class Positions : public OnEachBackend {
                               32);
     }
 };
-INSTANTIATE_TEST_SUITE_P(Backends, Positions, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, Positions, testing::ValuesIn(all_backends), own_backend_name);
 
 Scene cornell_box() { return load_shipped_scene("cornell_box.json"); }
 

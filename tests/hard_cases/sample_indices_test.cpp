@@ -8,7 +8,7 @@ namespace lab {
 namespace {
 
 class SampleIndexCases : public OnEachBackend {};
-INSTANTIATE_TEST_SUITE_P(Backends, SampleIndexCases, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, SampleIndexCases, testing::ValuesIn(all_backends), own_backend_name);
 
 TEST_P(SampleIndexCases, TheLastSamplesAreRenderedAsAnyOthers) {
     constexpr uint32_t count = 8, last = 0xffffffff;

@@ -20,7 +20,7 @@ class ShadingNormals : public OnEachBackend {
                                          chapter_named("russian_roulette")});
     }
 };
-INSTANTIATE_TEST_SUITE_P(Backends, ShadingNormals, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, ShadingNormals, testing::ValuesIn(all_backends), own_backend_name);
 
 RenderSettings settings(const std::string& chapter, Backend backend, uint32_t max_path_length) {
     RenderSettings settings{.width = 32,

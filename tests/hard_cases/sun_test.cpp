@@ -54,7 +54,7 @@ double floor_radiance(uvec2 sun = ordinary_sun, double sky = sky_radiance) {
 }
 
 class SunCases : public OnEachBackend {};
-INSTANTIATE_TEST_SUITE_P(Backends, SunCases, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, SunCases, testing::ValuesIn(all_backends), own_backend_name);
 
 TEST_P(SunCases, IsSeenAtItsFullRadiance) {
     Scene scene = sunny_floor();

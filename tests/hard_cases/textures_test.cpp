@@ -13,7 +13,7 @@ namespace {
 using glm::dvec3;
 
 class TextureCases : public OnEachBackend {};
-INSTANTIATE_TEST_SUITE_P(Backends, TextureCases, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, TextureCases, testing::ValuesIn(all_backends), own_backend_name);
 
 // Every texel has another colour: its column in red and green, its row in blue and green.
 Texture numbered_texture(uint32_t width, uint32_t height) {

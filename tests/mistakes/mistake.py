@@ -52,7 +52,7 @@ def run(program, test, tree):
     report.unlink(missing_ok=True)
     environment = {**os.environ, "LAB_TEST_STOP_AT_VERDICT": "1"}
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    result = test_report.run(binary, report, f"--gtest_filter={test}", env=environment, **streams)
+    result = test_report.run(binary, report, f"--gtest_filter={test}:{test}_all", env=environment, **streams)
     if not report.exists():
         sys.exit(f"{program}_tests ended with {result.returncode} before its tests did:\n{result.stdout[-2000:]}")
     tests, _ = test_report.read(report)

@@ -136,6 +136,10 @@ std::string backend_name(const testing::TestParamInfo<Backend>& info) {
     return instance_name(to_string(info.param), info.param == Backend::query ? Run::with_all : Run::always);
 }
 
+std::string own_backend_name(const testing::TestParamInfo<Backend>& info) {
+    return instance_name(to_string(info.param), info.param == Backend::compute ? Run::always : Run::with_all);
+}
+
 std::string chapter_name(const testing::TestParamInfo<std::string>& info) { return "chapter_" + info.param; }
 
 std::string own_estimator_name(const testing::TestParamInfo<std::string>& info) {

@@ -102,8 +102,10 @@ using OnEachChapter = testing::TestWithParam<std::string>;
 
 // For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters. Ray queries ask the
 // structure that the pipeline traces through, and Parity compares their paths: they are left to --all. So are
-// chapters that repeat another one where `own_estimator_name` gives the names.
+// both of the driver's backends where `own_backend_name` gives the names, and chapters that repeat another
+// one where `own_estimator_name` does.
 std::string backend_name(const testing::TestParamInfo<Backend>& info);
+std::string own_backend_name(const testing::TestParamInfo<Backend>& info);
 std::string chapter_name(const testing::TestParamInfo<std::string>& info);
 std::string own_estimator_name(const testing::TestParamInfo<std::string>& info);
 

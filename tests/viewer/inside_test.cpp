@@ -135,7 +135,7 @@ TEST_F(InsideTest, AnEstimatorWithoutRaysHasAPathWithoutVertices) {
     EXPECT_FALSE(inspection().has_hemisphere());
 }
 
-TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor) {
+TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_all) {
     chapter_ = load_chapter(chapter_named("multiple_importance_sampling"));
     Options options = options_with_reference();
     options.appearance.sample_count = 1;
@@ -163,7 +163,7 @@ TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor) 
     expect_the_sample_of_the_render("a background");
 }
 
-TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage) {
+TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage_all) {
     open(options_with_reference());
     Comparison& comparison = viewer_->comparison();
     comparison.start(session(), chapter_named("next_event_estimation"));

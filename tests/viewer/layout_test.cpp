@@ -4,7 +4,7 @@
 namespace lab {
 namespace {
 
-TEST_F(ViewerTest, NothingLiesOnThePictureWhileAPathIsShown) {
+TEST_F(ViewerTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
     open(options_with_reference(), {900, 700});
     const Inspection& inspection = viewer_->inside_panel().inspection();
     // A point of the picture, 0 to 1, as the pointer has it.

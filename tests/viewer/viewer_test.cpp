@@ -216,7 +216,7 @@ TEST_F(ViewerTest, AChangedShaderIsShownAndABrokenOneReported) {
     wait_until("no error", [&] { return session().message().empty(); });
 }
 
-TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken) {
+TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken_all) {
     // A copy of the chapter, in a place that reads well in the documentation's pictures.
     fs::create_directories("output");
     const TemporaryFolder copy("output");
