@@ -22,7 +22,7 @@ project.run_tool(figures)"""
 MOST_BYTES = 20 * 2**20
 
 
-class FiguresTest(ProgramTest):
+class Figures_all(ProgramTest):
     def figures(self, *arguments):
         """Standard error of a run; the pictures are in the folder `pictures`."""
         command = ["-B", "-c", COMMAND, TOOLS, "--output=pictures", *arguments]

@@ -188,7 +188,7 @@ class PathRegeneration : public OnEachBackend {
                     << name << ", pixel " << i;
     }
 };
-INSTANTIATE_TEST_SUITE_P(Backends, PathRegeneration, testing::ValuesIn(all_backends), backend_name);
+INSTANTIATE_TEST_SUITE_P(Backends, PathRegeneration, testing::ValuesIn(all_backends), own_backend_name);
 
 TEST_P(PathRegeneration, GivesTheImageOfChapterNine) {
     for (const char* name : {"cornell_box", "glass", "studio"}) {

@@ -40,7 +40,7 @@ TEST(DielectricScene, LightSamplingKeepsTheMean) {
     }
 }
 
-TEST(DielectricScene, BranchesAndRouletteKeepTheMean) {
+TEST(DielectricScene, BranchesAndRouletteKeepTheMean_all) {
     const Scene scene = room_with_box(dielectric_material(1.5f, {0.5f, 0.2f, 0.8f}));
     RenderSettings split = room_settings(5, 6);
     split.splitting_factor = 3;

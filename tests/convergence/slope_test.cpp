@@ -126,7 +126,7 @@ TEST(LowDiscrepancyConvergence, ErrorOfUnoccludedDirectLightFallsFast) {
     expect_fast_convergence(lamp_above_floor(), light_samples_only(), -0.7);
 }
 
-TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster) {
+TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster_all) {
     RenderSettings settings{.width = 48, .height = 48, .max_path_length = 3, .roulette_start = 3};
     settings.estimator = chapter_estimator(chapter_named("low_discrepancy_points"));
     expect_fast_convergence(load_shipped_scene("cornell_box.json"), settings, -0.52);

@@ -89,7 +89,7 @@ RenderSettings view_in_each_pixel(const std::string& chapter) {
     return image;
 }
 
-TEST(ContactEdge, HasTheUsualSlopeWithMultipleImportanceSampling) {
+TEST(ContactEdge, HasTheUsualSlopeWithMultipleImportanceSampling_all) {
     const ErrorSlope slope =
         measure_error_slope(floor_and_wall(0, 1), view_in_each_pixel(multiple_importance_sampling), 1024);
     std::printf("  slope %.3f +- %.3f\n", slope.value, slope.standard_error);

@@ -127,7 +127,7 @@ TEST_P(SunCases, LampAndSunAddUp) {
 
 // A dim sky, found by light samples alone, beside a sun below the horizon that takes nearly all of them. In a
 // probe of this size the alias table has 2^23 entries, and nearly all keep one sample in thousands.
-TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable) {
+TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable_all) {
     Scene scene = sunny_floor();
     const uint32_t columns = MAX_PROBE_CELL_COLUMNS, rows = MAX_PROBE_CELL_ROWS;
     scene.light_probe = Image{columns, rows, std::vector<float>(size_t{3} * columns * rows, 1.0f)};

@@ -73,7 +73,7 @@ float distance_to_surface(const LargeArray<BvhTriangle>& triangles, const vec3& 
 }
 
 class PathRecorderOf : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(, PathRecorderOf, testing::ValuesIn(all_chapters), chapter_name);
+INSTANTIATE_TEST_SUITE_P(, PathRecorderOf, testing::ValuesIn(all_chapters), own_estimator_name);
 
 TEST_P(PathRecorderOf, RecordsTheSampleThatTheRenderAdds) {
     const Scene scene = scene_for(GetParam());
