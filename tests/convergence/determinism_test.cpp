@@ -13,7 +13,7 @@
 namespace lab {
 namespace {
 
-// A box with a lamp: its pixels differ. The size is no multiple of that of a block.
+// A box with a lamp, so that pixels differ. The image size is no multiple of the block size.
 Scene lit_box() {
     Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}));
     scene.materials.push_back(diffuse_material(vec3(0.2f), {5, 6, 7}));
@@ -85,8 +85,7 @@ TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
     }
 }
 
-// By a renderer that was made for a large image: it has one thread for each pixel, also if it goes on with a
-// small one.
+// With a renderer made for a large image: it keeps one thread per pixel when it restarts with a small one.
 FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSettings& settings) {
     const GpuScene gpu_scene = make_gpu_scene(scene, settings);
     const auto acceleration_structure =
@@ -103,8 +102,7 @@ FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSe
 }
 
 TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
-    // Dispatches of several samples on the one side and of a single one on the other, however fast the device
-    // is.
+    // Dispatches of several samples against dispatches of a single one, however fast the device is.
     RenderSettings shared = settings(), alone = settings();
     shared.dispatch_seconds = 10;
     alone.dispatch_seconds = 1e-9;
@@ -112,7 +110,7 @@ TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
 }
 
 TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
-    // Of a film that shaders see in parts: the checkpoint has the samples of all.
+    // With a film that shaders see in parts: the checkpoint has the samples of all parts.
     const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
     const GpuScene gpu_scene(test_device(), scene);
     const auto acceleration_structure =
@@ -121,7 +119,7 @@ TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
         return Renderer(test_device(), *acceleration_structure, settings().estimator,
                         make_parameters(scene, settings()), {}, two_rows_of_blocks);
     };
-    // Interrupted within a pass, when some pixels have one sample more than others.
+    // Interrupted in the middle of a pass, when some pixels have one sample more than others.
     Renderer interrupted = make_renderer();
     interrupted.set_dispatch_seconds(1e-9);
     for (int dispatch = 0; dispatch < 100; ++dispatch) interrupted.advance(settings().samples);

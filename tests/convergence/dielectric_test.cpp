@@ -13,7 +13,7 @@ namespace {
 // Far beyond what a path needs to leave these scenes.
 constexpr uint32_t unlimited = 1000;
 
-// Paths live as long as they carry everything. Those whose throughput is 0 end.
+// Roulette only ends paths whose throughput is 0.
 RenderSettings make_settings(uint32_t samples, uint32_t seed) {
     return {.samples = samples,
             .max_path_length = unlimited,
@@ -165,8 +165,9 @@ TEST(Dielectric, RadianceWithinIsTheIndexSquaredTimesThatOutside) {
     for (const double mean : pixel_means(film, 0)) ASSERT_EQ(mean, 0);
 }
 
-// An emitter in glass looks n² times darker from outside, one outside n² times as bright from within, but for
-// what is reflected on the way: a black emitter swallows what comes back to it, the dark sky what leaves.
+// Seen from outside, an emitter in glass is n² times darker; seen from within, one outside is n² times
+// brighter, except for what the surface reflects. A black emitter absorbs what comes back to it, the dark sky
+// what leaves.
 TEST(Dielectric, EmissionPassesTheSurfaceOnce) {
     const double index = 1.5, r = fresnel_reflectance(1, index);
     for (const float lamp_z : {-0.5f, -2.0f}) {
@@ -184,7 +185,7 @@ TEST(Dielectric, EmissionPassesTheSurfaceOnce) {
     }
 }
 
-// The ray from the camera is absorbed, too: over a length of 1, and of 2 more for each reflection.
+// The camera ray is absorbed, too: over a length of 1, and of 2 more per reflection.
 TEST(Dielectric, AbsorbsWhatTheCameraSeesWithin) {
     const glm::dvec3 absorption(0, 0.5, 1), once = glm::exp(-absorption), twice = once * once;
     Scene scene = make_scene({dielectric_material(1.5f, vec3(absorption))},

@@ -11,7 +11,7 @@
 namespace lab {
 namespace {
 
-// Logarithms of the error of one sample a pixel times the rays for it, from independent pairs of renders.
+// Logarithms of error times rays at one sample per pixel, from independent pairs of renders.
 struct Cost {
     std::vector<double> logarithms;
     double error, rays;
@@ -37,7 +37,8 @@ Cost measure(const Scene& scene, RenderSettings settings) {
     return cost;
 }
 
-// That `technique` needs fewer rays than `before` for the same error (Welch's test of the logarithms).
+// Expects that `technique` needs fewer rays than `before` for the same error (Welch's test of the
+// logarithms).
 void expect_gain(const std::string& what, const Cost& before, const Cost& technique) {
     const Difference gain = difference_of(technique.logarithms, before.logarithms);
     std::printf(

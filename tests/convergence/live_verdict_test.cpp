@@ -1,4 +1,4 @@
-// The live verdict on the chapters: what a viewer says while they render.
+// The live verdict on the chapters, as the viewer shows it while they render.
 #include "statistics/live_verdict.h"
 
 #include <cstdio>

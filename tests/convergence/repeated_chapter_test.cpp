@@ -1,5 +1,5 @@
-// Chapters that are another one, path by path, where what they add does not occur. Tests of such scenes leave
-// them out (see support/render.h): what is proven for the one is proven for the other.
+// Chapters that follow the same paths as an earlier one where their own feature does not occur. Tests of such
+// scenes skip them (see support/render.h): a proof for the one holds for the other.
 #include <cstdio>
 #include <tuple>
 

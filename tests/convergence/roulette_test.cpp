@@ -19,7 +19,7 @@ Batches render_furnace(const std::string& chapter, const vec3& albedo, RenderSet
     return render_batches(closed_box(diffuse_material(albedo, vec3(1))), settings, count);
 }
 
-// The mean of the samples' squares of a channel, one number a batch of one sample.
+// Second moment of one channel: the mean of the squared samples, one number per batch of one sample.
 std::vector<double> square_means(const Batches& batches) {
     std::vector<double> means;
     for (const auto& image : batches.images) {

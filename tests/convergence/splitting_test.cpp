@@ -71,8 +71,7 @@ SplittingFit fit_variances(const std::vector<std::vector<double>>& variances_of_
     double chi_square = 0;
     for (size_t i = 0; i < splitting_factors.size(); ++i) {
         const double predicted = fit.outer.value + fit.inner / splitting_factors[i];
-        // The standard error is an estimate, too: t² would exceed what a chi-square variable allows too
-        // often.
+        // The standard error is itself an estimate: t² would exceed the chi-square bound too often.
         const Difference misfit{estimates[i].mean - predicted, estimates[i].standard_error,
                                 static_cast<double>(variances_of_factor[i].size() - 1)};
         chi_square += misfit.z() * misfit.z();
@@ -99,8 +98,8 @@ TEST_P(Splitting, LowersTheVarianceAfterTheFirstHit) {
     EXPECT_GT(fit.outer.value, 5 * fit.outer.standard_error) << "what splitting cannot lower is not there";
 }
 
-// Where all camera rays hit the same point nothing but the branches is random: V_out = 0 if they are
-// independent. A correlation r of theirs would show as V_out = r times the variance of one.
+// All camera rays hit the same point, so only the branches are random: V_out = 0 if they are independent. A
+// correlation r between them would show as V_out = r V_in.
 TEST_P(Splitting, BranchesAreIndependent) {
     Scene scene = view_of_boxes();
     scene.camera.target = {-0.1f, 0.3f, 0};

@@ -25,8 +25,8 @@ dvec3 direction_of(const CameraPose& pose, double width, double height, double x
         forward + tangent * ((2 * x / width - 1) * width / height * right - (2 * y / height - 1) * up));
 }
 
-// A direction in 32 bits is exact to a few times 2^-24, and a place in an image to 2^-10 of a pixel where
-// there are 2^14 of them.
+// A 32-bit direction is exact to a few times 2^-24, and a position in an image of 2^14 pixels to 2^-10 of a
+// pixel.
 TEST_P(HardCamera, RaysHaveTheRightDirections) {
     Scene scene = closed_box(diffuse_material(vec3(0.5f)));
     constexpr double rounding = 4 * 0x1p-24;
@@ -64,8 +64,8 @@ TEST_P(HardCamera, RaysHaveTheRightDirections) {
     std::printf("  directions are off by up to %s\n", text);
 }
 
-// A white floor under a white sky shows exactly 1, from whatever angle: less where the next ray meets the
-// floor again or starts below it.
+// A white floor under a white sky shows exactly 1 from any angle, and less if the next ray hits the floor
+// again or starts below it.
 TEST_P(HardCamera, GrazingViewsLoseNoLight) {
     double lost = 0, pixels = 0;
     for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999})

@@ -89,15 +89,6 @@ RenderSettings view_in_each_pixel(const std::string& chapter) {
     return image;
 }
 
-TEST(ContactEdge, HasTheUsualSlopeWithMultipleImportanceSampling_all) {
-    const ErrorSlope slope =
-        measure_error_slope(floor_and_wall(0, 1), view_in_each_pixel(multiple_importance_sampling), 1024);
-    std::printf("  slope %.3f +- %.3f\n", slope.value, slope.standard_error);
-    RecordProperty("slope", std::to_string(slope.value));
-    EXPECT_NEAR(slope.value, -0.5, slope_tolerance);
-    EXPECT_LT(slope.standard_error, largest_slope_error) << "the test is too weak, take larger images";
-}
-
 TEST(ContactEdge, IsFlaggedByTheSlopeOfTheError) {
     const RenderSettings image = view_in_each_pixel(next_event_estimation);
     for (const bool has_edge : {true, false}) {

@@ -9,7 +9,7 @@ namespace lab {
 namespace {
 
 TEST(DeviceArithmetic, IsAboutWhatVulkanGuarantees) {
-    // Drivers that miss a guarantee by a little are told of, not failed: it is theirs to mend.
+    // A driver that misses a guarantee by a little is reported, not failed: we cannot mend it.
     std::string outside;
     for (const FunctionError& error : measure_functions(test_device())) {
         EXPECT_TRUE(std::isfinite(error.ulps)) << error.name;

@@ -6,7 +6,6 @@
 
 #include "hard_cases/probe.h"
 #include "support/gpu_test.h"
-#include "support/meshes.h"
 #include "support/scenes.h"
 
 namespace lab {
@@ -95,7 +94,7 @@ void Intersection::expect_no_self_hits(uint32_t effort) const {
 }
 
 TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) { expect_no_self_hits(1); }
-// A driver's tree of slivers can be slow: that of lavapipe needs a second for 10^5 rays.
+// Trees of slivers can be slow: lavapipe needs a second for 10^5 rays.
 TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleItLeaves_all) {
     expect_no_self_hits(GetParam() == Backend::compute ? 16 : 4);
 }
@@ -106,7 +105,7 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
     };
     const auto scale = [](float x, float y, float z) { return mat3(glm::scale(glm::mat4(1), {x, y, z})); };
     const std::tuple<const char*, mat3, mat3> cases[] = {
-        // What the instance does, and what is done to the triangles before.
+        // The transform of the instance, and the one applied to the triangles before.
         {"long", scale(100, 1, 1), mat3(1)},
         {"thin", scale(1, 1e-3f, 1e-3f), mat3(1)},
         {"flat", scale(1, 1e-3f, 1), mat3(1)},

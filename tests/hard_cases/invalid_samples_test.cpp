@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "files/project_folder.h"
-#include "film/film_file.h"
 #include "film/film_image.h"
 #include "support/gpu_test.h"
 #include "support/pcg2d.h"
@@ -18,7 +17,7 @@ class InvalidSamples : public OnEachBackend {
     static constexpr uint32_t width = 21, height = 13, samples = 9, poisoned_pixel = 5 * width + 8,
                               poisoned_sample = 4;
 
-    // The film with samples first, ..., first + count - 1, of which one may be replaced.
+    // The film with samples first, ..., first + count - 1, one of which may be poisoned.
     static FilmImage render(uint32_t bits, int channel, uint32_t first = 0, uint32_t count = samples) {
         const Device& device = test_device();
         const Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}, {1, 2, 3}));
@@ -45,7 +44,7 @@ constexpr uint32_t quiet_nan = 0x7fc00000, signalling_nan = 0x7f800001, negative
                    infinity = 0x7f800000, negative_infinity = 0xff800000;
 
 TEST_P(InvalidSamples, AreCountedAndAddNothing) {
-    // What the pixel has without that sample.
+    // The pixel without that sample.
     const FilmImage before = render(0, 0, 0, poisoned_sample),
                     after = render(0, 0, poisoned_sample + 1, samples - poisoned_sample - 1);
     const FilmImage clean = render(0x3f800000, 0);
@@ -66,37 +65,6 @@ TEST_P(InvalidSamples, AreCountedAndAddNothing) {
             }
         }
     record("neighbours_that_change", "0 of %u", width * height - 1);
-}
-
-TEST_P(InvalidSamples, AreMagenta) {
-    for (const DisplayTransform transform :
-         {DisplayTransform::exposure, DisplayTransform::maximum, DisplayTransform::as_is}) {
-        const Texture picture = to_display(render(quiet_nan, 1), transform, 0);
-        size_t magenta = 0;
-        for (size_t i = 0; i < picture.pixels.size(); i += 4)
-            magenta += picture.pixels[i] == 255 && picture.pixels[i + 1] == 0 && picture.pixels[i + 2] == 255;
-        const uint8_t* pixel = &picture.pixels[size_t{4} * poisoned_pixel];
-        EXPECT_EQ(std::vector<int>(pixel, pixel + 3), (std::vector<int>{255, 0, 255}));
-        EXPECT_EQ(magenta, 1u);
-    }
-}
-
-TEST_P(InvalidSamples, AreKeptByFilesAndMerging) {
-    const auto file = [](const std::string& name) {
-        return std::filesystem::path(testing::TempDir()) / (std::to_string(getpid()) + name);
-    };
-    const auto first = file("first.exr"), second = file("second.exr");
-    write_film(first, render(infinity, 2, 0, poisoned_sample + 1), {});
-    FilmRecord record{};
-    record.first_sample = poisoned_sample + 1;
-    write_film(second, render(infinity, 2, poisoned_sample + 1, samples - poisoned_sample - 1), record);
-    EXPECT_EQ(read_film(first).image.pixels[poisoned_pixel].invalid_count, 1u);
-    const FilmImage merged = merge_films({first, second}).image;
-    EXPECT_EQ(merged.invalid_samples(), 1u);
-    EXPECT_EQ(merged.pixels[poisoned_pixel].invalid_count, 1u);
-    EXPECT_EQ(merged.pixels[poisoned_pixel].sample_count, samples);
-    std::filesystem::remove(first);
-    std::filesystem::remove(second);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ Scene floor_with(const std::vector<vec3>& emissions, std::vector<Quad> lights) {
     return scene;
 }
 
-// What the floor shows at the origin, of lights whose triangles are all in view.
+// Radiance of the floor at the origin, from lights that are fully visible.
 double expected_radiance(const Scene& scene) {
     double sum = 0;
     for (size_t i = 2; i < scene.triangles.size(); ++i) {
@@ -152,7 +152,7 @@ TEST_P(Lights, ThatAreConvexDoNotLightThemselves) {
     }
 }
 
-// The one that holds all power among 100,000 triangles, the others of which emit next to nothing.
+// One of 100,000 triangles holds nearly all power.
 TEST_P(Lights, OfUnequalPowerAreChosenByIt) {
     constexpr uint32_t columns = 250, rows = 200;
     std::vector<Quad> quads;

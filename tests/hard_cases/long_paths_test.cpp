@@ -13,7 +13,7 @@ namespace {
 class PathCases : public OnEachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, PathCases, testing::ValuesIn(all_backends), own_backend_name);
 
-// Nobody ends by Russian roulette where surfaces absorb nothing and the survival probability may be 1.
+// Roulette ends no path where surfaces absorb nothing and the survival probability may be 1.
 RenderSettings make_settings(Backend backend, const std::string& chapter, uint32_t max_path_length) {
     RenderSettings settings{.width = 16, .height = 16, .samples = 4, .max_path_length = max_path_length};
     settings.survival_cap = 1;

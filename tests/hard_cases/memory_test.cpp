@@ -1,4 +1,4 @@
-// What does not fit the device is refused with its size, before any time or memory is spent on it.
+// What does not fit into memory is refused with its size, before any time or memory is spent on it.
 #include <functional>
 
 #include "error.h"
@@ -6,8 +6,8 @@
 #include "rendering/film.h"
 #include "rendering/renderer.h"
 #include "support/gpu_test.h"
-#include "support/meshes.h"
 #include "support/render.h"
+#include "support/scenes.h"
 #include "tracing/gpu_bvh.h"
 
 namespace lab {
@@ -40,7 +40,7 @@ TEST(Memory, RefusesBuffersThatTheDeviceDoesNotAllow) {
     EXPECT_NE(text.find(in_mebibytes(limit)), std::string::npos) << text;
 }
 
-// Each of the parts may be allocated, all together may not.
+// Each part alone could be allocated, but not all of them.
 TEST(Memory, RefusesMoreThanTheDeviceHas) {
     const size_t memory = test_device().description().memory;
     std::vector<MemoryNeed> parts(8, {"textures", memory / 8});

@@ -1,4 +1,4 @@
-// Mesh files full of triangles that are hardly any.
+// Meshes of degenerate triangles.
 #include <cmath>
 #include <cstdio>
 #include <random>

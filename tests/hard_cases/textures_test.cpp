@@ -15,7 +15,7 @@ using glm::dvec3;
 class TextureCases : public OnEachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, TextureCases, testing::ValuesIn(all_backends), own_backend_name);
 
-// Every texel has another colour: its column in red and green, its row in blue and green.
+// A colour for each texel: the column in red and green, the row in blue and green.
 Texture numbered_texture(uint32_t width, uint32_t height) {
     Texture texture{width, height, {}};
     texture.pixels.reserve(size_t{4} * width * height);
@@ -42,7 +42,7 @@ double largest_error(Backend backend, const Texture& texture, const std::vector<
     return largest;
 }
 
-// Twice what the device decodes wrongly, and roundings.
+// Twice the decoding error of the device, and roundings.
 double decoding_error() { return 2 * test_arithmetic().decoding + 1e-6; }
 
 TEST_P(TextureCases, OneTexelIsAColour) {

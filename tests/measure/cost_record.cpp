@@ -10,9 +10,9 @@
 #include "measure/growth.h"
 #include "measure/measurement.h"
 #include "measure/rates.h"
-#include "support/meshes.h"
 #include "support/render.h"
 #include "support/scene_features.h"
+#include "support/scenes.h"
 #include "support/shader_code.h"
 
 namespace lab {

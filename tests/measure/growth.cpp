@@ -5,7 +5,7 @@
 #include "measure/box_scene.h"
 #include "support/chapters.h"
 #include "support/dielectric_scenes.h"
-#include "support/meshes.h"
+#include "support/scenes.h"
 
 namespace lab {
 namespace {

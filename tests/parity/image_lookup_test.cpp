@@ -1,4 +1,4 @@
-// Textures and light probes: which texel is seen where, with each backend.
+// Textures and light probes: which texel a position or direction maps to, on each backend.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -33,7 +33,7 @@ Texture colourful_texture() {
     return texture;
 }
 
-// What a device may decode wrongly: at most twice its error of x^2.4, and roundings.
+// Allowed decoding error: twice that of x^2.4 on the device, and roundings.
 double decoding_error() { return 2 * test_arithmetic().decoding + 1e-6; }
 
 TEST_P(Textures, AreFilteredLinearlyAcrossTheirBorders) {

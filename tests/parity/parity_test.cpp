@@ -10,8 +10,8 @@
 #include "files/project_folder.h"
 #include "rendering/renderer.h"
 #include "support/gpu_test.h"
-#include "support/meshes.h"
 #include "support/render.h"
+#include "support/scenes.h"
 
 namespace lab {
 namespace {

@@ -1,4 +1,4 @@
-// Cameras, sides of surfaces, instances and normals: what is where, with each backend.
+// Cameras, sides of surfaces, instances and normals on each backend.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -154,7 +154,7 @@ TEST_P(Surface, InterpolatesTheNormalsOfItsVertices) {
 }
 
 TEST_P(Surface, IsHitInTheNearestOfSeveralLayers) {
-    // Layers in an order that is not that of their depth.
+    // Layers, not sorted by depth.
     std::vector<Material> materials;
     std::vector<Quad> quads;
     for (const int depth : {3, 0, 4, 1, 2}) {

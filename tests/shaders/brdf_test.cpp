@@ -49,7 +49,7 @@ double pi_brdf(const BrdfInput& input, int channel) {
            input.material.specular_albedo[channel] * 0.5 * (exponent + 2) * std::pow(cos_alpha, exponent);
 }
 
-// Direction about the z-axis.
+// Spherical coordinates to a direction.
 vec3 direction(double theta, double phi) {
     return {dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta))};
 }
@@ -102,8 +102,7 @@ TEST(Brdf, CarriesNothingBelowTheSurface) {
     EXPECT_EQ(results[3].is_above, 0u);
 }
 
-// Directions of chapter 7's bounces that follow the whole BRDF, on materials between all diffuse and all
-// mirror.
+// Directions sampled from the whole BRDF, from all diffuse to all mirror.
 struct SampledLobe {
     float exponent;
     double degrees;  // of the light that leaves
@@ -111,7 +110,7 @@ struct SampledLobe {
 
 class BrdfSampling : public testing::TestWithParam<std::string> {
   protected:
-    // Where the directions go in the frame of the mirror image: cells of equal probability of the lobe alone.
+    // A surface whose lobe leaves at this angle.
     static Surface surface(const SampledLobe& lobe, const vec3& diffuse, const vec3& specular) {
         Material material = white_material();
         material.diffuse_albedo = diffuse;

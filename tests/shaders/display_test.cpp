@@ -9,8 +9,8 @@
 namespace lab {
 namespace {
 
-// Radiance from far below to far above what a screen shows, dark and bright at odd sample counts, some
-// invalid.
+// Radiance from far below to far above what a screen shows, with different sample counts and some invalid
+// samples.
 FilmImage make_film(uint32_t width, uint32_t height) {
     FilmImage film{width, height, {}};
     for (uint32_t i = 0; i < width * height; ++i) {
@@ -55,7 +55,7 @@ TEST(Display, AgreesWithTheSavedPictureToOneStepOfEightBits) {
         << "showing a film must not change it";
 }
 
-// As on a device that binds little memory: the largest value is that of all parts.
+// As on a device with small bindings: the largest value is the maximum over all parts.
 TEST(Display, ShowsAFilmThatIsSeenInParts) {
     FilmImage image = make_film(61, 35);
     std::ranges::rotate(image.pixels, image.pixels.begin() + 1000);

@@ -1,5 +1,5 @@
-// What a scene has not got costs nothing: no instruction in the shaders, no binding, no byte. Every feature
-// is switched on alone, and the code and the buffers must have what it needs and nothing else.
+// A feature that a scene lacks costs nothing: no instruction, no binding, no byte. Each feature is switched
+// on alone, and code and buffers must have what it needs and nothing else.
 #include "rendering/renderer.h"
 #include "support/gpu_test.h"
 #include "support/render.h"
@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// What a scene makes of a chapter's shaders, and what it puts on the device.
+// The code that a scene makes of the shaders of a chapter, and its buffers on the device.
 struct Footprint {
     ShaderCode code;
     std::set<uint32_t> bindings;

@@ -15,8 +15,8 @@ namespace {
 // As in film.comp.
 enum Kind : uint32_t { uniform, constant, outliers, invalid };
 
-// What the samples of a stream add up to. Their bits span less than the 53 of a double, so the sums are exact
-// but for those of the constant, which are a product.
+// The sum of a stream of samples. Their bits span less than the 53 of a double, so sums are exact; the
+// constant is a product.
 std::array<double, 3> exact_sum(Kind kind, uint32_t samples) {
     if (kind == constant) return {double{0.1f} * samples, double{0.1f} * samples, double{0.1f} * samples};
     std::array<double, 3> sum{};

@@ -1,4 +1,4 @@
-// What a shading point sees, against known values and against what the chapters estimate there.
+// The hemisphere at a shading point, against known values and against what the chapters estimate there.
 #include "inside/hemisphere_view.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t extent = HemisphereView::extent;
 
-// Everything it takes to look at points of a scene.
+// Sets up the view at the point that a path through the image finds first.
 struct LookAtPoint {
     LookAtPoint(Scene scene_to_use, const RenderSettings& settings)
         : scene(std::move(scene_to_use)),
@@ -108,7 +108,7 @@ TEST_P(HemisphereOf, IntegratesToWhatTheChapterReflects) {
     settings.estimator = chapter_estimator(GetParam());
     Scene scene = load_shipped_scene(samples_lights(GetParam()) ? "cornell_box.json" : "instances.json");
     LookAtPoint setup(std::move(scene), settings);
-    // A camera at the same place that sees nothing but the point.
+    // A camera at the same place whose whole image is that point.
     RenderParameters narrow = setup.parameters;
     narrow.camera.forward = setup.vertex.direction;
     narrow.camera.right *= 1e-5f;

@@ -1,4 +1,4 @@
-// --view idle-lanes: which part of its time a thread waits for others of its group.
+// --view idle-lanes: the fraction of its time that a thread waits for the others of its subgroup.
 #include <cstdio>
 
 #include "support/gpu_test.h"

@@ -45,8 +45,8 @@ struct Choice {
     vec2 u;
 };
 
-// What the device chooses: first after the given states of the random numbers (at least one), then with the
-// numbers of different samples.
+// The choices of the device: first after the given random states (at least one), then with the numbers of
+// different samples.
 std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::vector<RandomState>& states,
                            size_t count, uint32_t run, std::vector<std::string> defines = {}) {
     std::vector<std::byte> inputs;
@@ -60,7 +60,7 @@ std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::
     return chosen;
 }
 
-// Powers as unequal as those of a mesh of very different triangles, every tenth 0.
+// Powers as unequal as those of a mesh of very different triangles; every tenth is 0.
 std::vector<double> unequal_weights(size_t count) {
     std::mt19937_64 random(count);
     std::vector<double> weights;

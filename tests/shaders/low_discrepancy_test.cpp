@@ -1,4 +1,4 @@
-// Chapter 9's points: how evenly they fill the unit square, and that nothing else ties them together.
+// Low-discrepancy points: how evenly they fill the unit square, and that they are independent otherwise.
 #include <cstdio>
 
 #include "rendering/renderer.h"

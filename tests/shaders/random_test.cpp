@@ -22,7 +22,7 @@ RandomState key_of_seed(uint32_t seed) {
     return {key.x, key.y};
 }
 
-// Pairs of 24 and fewer bits, a billion apart and next to each other.
+// States at the limits of 8, 16, 24 and 32 bits, and a million spread over the range.
 std::vector<RandomState> hard_states() {
     const uint32_t hard[] = {0,       1,          2,          0xff,       0x100,     0xffff,
                              0x10000, 0x7fffffff, 0x80000000, 0xffffff00, 0xffffffff};
@@ -134,7 +134,7 @@ class Streams {
             }
     }
 
-    // Pairs of numbers whose pixel, sample and seed differ by the given lags.
+    // Pairs of numbers at these lags of pixel, sample and seed.
     struct Lag {
         const char* name;
         uint32_t pixel, sample, seed;
@@ -202,9 +202,8 @@ TEST(RandomNumbers, FillTheSquareEvenly) {
 }
 
 TEST(RandomNumbers, OfPixelsMakeIndependentImages) {
-    // The variance of the mean of an image is that of a pixel divided by their number only if pixels are
-    // independent, and of consecutive samples only if these are. Shared numbers (pixel + 2^16 * frame) show
-    // as a wrong ratio.
+    // The variance of the mean of an image is the variance of a pixel over the number of pixels only if
+    // pixels are independent. Shared random numbers (pixel + 2^16 * frame) show as a wrong ratio.
     constexpr uint32_t images = 1 << 16, pixels = 256;
     std::vector<StreamId> inputs;
     for (uint32_t image = 0; image < images; ++image) inputs.push_back({pixels, image, key_of_seed(3)});

@@ -76,7 +76,7 @@ TEST(UniformAngles, AreWeightedByReflectanceTimesCosineOverDensity) {
             worst = std::max(worst, std::abs(bounce.weight - expected));
         }
         std::printf("  normal %u: largest error of a weight %.2g\n", run - 20, worst);
-        // The direction that it is compared with has the errors of the sines, too.
+        // The reference direction has the errors of the sines as well.
         EXPECT_LT(worst, 8 * test_arithmetic().sine + 1e-6);
     }
 }

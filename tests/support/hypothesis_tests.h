@@ -1,5 +1,5 @@
-// Whether samples follow a distribution and series agree, and which error would have been noticed: what only
-// tests need beside common/statistics/statistics.h.
+// Hypothesis tests and the smallest errors that they detect: what only tests need beside
+// statistics/statistics.h.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// Light from a polygon, exactly: what estimates of direct light are compared with.
+// Irradiance from a polygon in closed form: the oracle for direct light.
 #pragma once
 #include <glm/glm.hpp>
 #include <vector>

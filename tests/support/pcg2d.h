@@ -12,7 +12,7 @@ RandomState next_state(RandomState state);
 // The state s with next_state(s) == state. That there is one for every state makes next_state() a bijection.
 RandomState previous_state(RandomState state);
 
-// Start state of a sample of a pixel, and the pixel and sample of a start state.
+// Start state of a sample, and its inverse.
 RandomState start_state(uint32_t pixel, uint32_t sample, RandomState key);
 RandomState pixel_and_sample(RandomState start_state, RandomState key);
 

@@ -51,8 +51,8 @@ struct Rendering {
     uint64_t rays = 0;
 };
 
-// A scene that is rendered again and again: its shaders are compiled once. The settings may differ in
-// everything but estimator, backend, light sampling and the film's window.
+// Renders a scene repeatedly and compiles its shaders once. The settings may differ in everything but
+// estimator, backend, light sampling and the film's window.
 class SceneRenderer {
   public:
     SceneRenderer(const Scene& scene, const RenderSettings& settings);
@@ -66,23 +66,22 @@ class SceneRenderer {
     Renderer renderer_;
 };
 
-// The same of a scene that is rendered once.
+// Renders once.
 FilmImage render(const Scene& scene, const RenderSettings& settings);
 
-// The same image rendered again and again with other seeds: independent estimates, so that their spread tells
-// how exact their mean is.
+// Images rendered with different seeds: independent estimates whose spread tells the error of their mean.
 struct Batches {
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<std::vector<glm::dvec3>> images;  // mean radiance of each pixel, one image a batch
     std::vector<double> rays;                     // per sample, one number a batch
 
-    // One number a batch: the mean of a channel over the image, or over a rectangle of pixels.
+    // One number per batch: the mean of a channel over the image or over a rectangle of pixels.
     std::vector<double> means(int channel) const { return means(channel, {0, 0}, {width, height}); }
     std::vector<double> means(int channel, uvec2 corner, uvec2 size) const;
     Image mean_image() const;
 };
-// Each batch takes settings.samples samples of every pixel.
+// Each batch takes settings.samples samples per pixel.
 Batches render_batches(const Scene& scene, const RenderSettings& settings, uint32_t count);
 
 // Mean radiance of pixels, row by row from the top.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace lab {
 namespace {
@@ -16,7 +17,6 @@ void finish(Scene& scene) {
                       [&](uint32_t material) { return scene.materials[material].refractive_index > 0; });
     scene.meshes = {{"test mesh", 0, static_cast<uint32_t>(scene.triangles.size()),
                      static_cast<uint32_t>(dielectric_count)}};
-    scene.instance_meshes = {0};
     set_transform(scene, mat4x3(1));
 }
 
@@ -111,11 +111,57 @@ Scene make_sphere(const Material& material, Facing facing) {
     return scene;
 }
 
+TriangleMesh bumpy_sphere(uint32_t rings) {
+    TriangleMesh mesh;
+    for (uint32_t ring = 0; ring <= rings; ++ring)
+        for (uint32_t segment = 0; segment < rings; ++segment) {
+            const double theta = std::numbers::pi * ring / rings;
+            const double phi = 2 * std::numbers::pi * segment / rings;
+            const double radius = 1 + 0.1 * std::sin(7 * theta) * std::sin(5 * phi);
+            // All vertices of a pole in exactly the same place, else there is a hole of 10^-16 between them.
+            const double sine = ring % rings == 0 ? 0 : std::sin(theta);
+            mesh.positions.emplace_back(radius * sine * std::cos(phi), radius * std::cos(theta),
+                                        radius * sine * std::sin(phi));
+        }
+    for (uint32_t ring = 0; ring < rings; ++ring)
+        for (uint32_t segment = 0; segment < rings; ++segment) {
+            const uint32_t next = (segment + 1) % rings;
+            const uint32_t a = ring * rings + segment, b = ring * rings + next;
+            if (ring > 0) mesh.triangles.emplace_back(a, b, a + rings);
+            if (ring + 1 < rings) mesh.triangles.emplace_back(b, b + rings, a + rings);
+        }
+    return mesh;
+}
+
+Scene lit_scene(const TriangleMesh& mesh) {
+    Scene scene;
+    scene.background = vec3(1);
+    scene.camera = {.position = {0, 1, 6}, .target = {0, 0, 0}};
+    scene.materials = {diffuse_material({0.3f, 0.5f, 0.7f})};
+    scene.positions = mesh.positions;
+    scene.triangles = mesh.triangles;
+    if (!mesh.triangles.empty()) finish(scene);
+    scene.instances.clear();
+    scene.instance_meshes.clear();
+    return scene;
+}
+
+void place(Scene& scene, const mat4x3& object_to_world) {
+    scene.instances.push_back({object_to_world, glm::inverse(glm::transpose(mat3(object_to_world)))});
+    scene.instance_meshes.push_back(0);
+}
+
 void set_transform(Scene& scene, const mat4x3& object_to_world) {
-    Instance instance;
-    instance.object_to_world = object_to_world;
-    instance.normal_to_world = glm::transpose(glm::inverse(mat3(object_to_world)));
-    scene.instances = {instance};
+    scene.instances.clear();
+    scene.instance_meshes.clear();
+    place(scene, object_to_world);
+}
+
+std::vector<std::filesystem::path> sorted_entries(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> entries;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) entries.push_back(entry.path());
+    std::sort(entries.begin(), entries.end());
+    return entries;
 }
 
 }  // namespace lab

@@ -1,12 +1,13 @@
 // Small scenes made in memory.
 #pragma once
+#include <filesystem>
 #include <vector>
 
 #include "scene/scene.h"
 
 namespace lab {
 
-// A Lambertian material. The emission is that of its front.
+// A Lambertian material whose front emits.
 Material diffuse_material(const vec3& albedo, const vec3& emission = vec3(0));
 
 // A parallelogram. Its front is the side that edge_u × edge_v points to.
@@ -31,7 +32,22 @@ Scene closed_box(const Material& material);
 // Facing inwards it is closed around the camera, outwards it fills the camera's view.
 Scene make_sphere(const Material& material, Facing facing);
 
-// Places the scene's first mesh by this matrix instead of as it is.
+struct TriangleMesh {
+    std::vector<vec3> positions;
+    std::vector<uvec3> triangles;
+};
+
+// A closed sphere of about unit radius with 2 * rings * (rings - 1) triangles whose surface is not smooth.
+TriangleMesh bumpy_sphere(uint32_t rings);
+
+// A scene of that mesh under a white sky, seen from +Z, without an instance; the mesh may be empty.
+Scene lit_scene(const TriangleMesh& mesh);
+
+// Adds an instance of the scene's first mesh, or makes it the only one.
+void place(Scene& scene, const mat4x3& object_to_world);
 void set_transform(Scene& scene, const mat4x3& object_to_world);
+
+// Files and folders of a folder in the order of their names.
+std::vector<std::filesystem::path> sorted_entries(const std::filesystem::path& folder);
 
 }  // namespace lab

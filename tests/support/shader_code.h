@@ -7,8 +7,8 @@
 
 namespace lab {
 
-// The code that is left once the optimiser of SPIRV-Tools has removed what cannot be reached, as drivers do:
-// glslang leaves it in.
+// The code after the optimiser of SPIRV-Tools has removed what cannot be reached, as drivers do; glslang
+// keeps it.
 struct ShaderCode {
     std::set<uint32_t> bindings;              // of all resources, also of those that are declared only
     std::set<std::string> functions;          // those of the asked ones that can be reached

@@ -32,8 +32,8 @@ class ValidationListener : public testing::EmptyTestEventListener {
     size_t driver_count_ = 0;
 };
 
-// Ends a test at its first verdict, where LAB_TEST_STOP_AT_VERDICT asks for that: who expects a test to be
-// red needs no more. Neither a test that finds itself too weak nor a misuse of Vulkan is one.
+// Ends a test at its first failure if LAB_TEST_STOP_AT_VERDICT is set: seeded mistakes need no more. A test
+// that finds itself too weak or a misuse of Vulkan is no verdict.
 class StoppingListener : public testing::EmptyTestEventListener {
     void OnTestPartResult(const testing::TestPartResult& result) override {
         const std::string message = result.message();

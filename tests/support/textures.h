@@ -6,12 +6,11 @@
 
 namespace lab {
 
-// The albedo at texture coordinates: that of quads in a row, each of which has the same coordinates
-// everywhere.
+// The albedo at texture coordinates, rendered with quads in a row that have constant coordinates.
 std::vector<vec3> albedo_at(Backend backend, const Texture& texture, const std::vector<vec2>& coordinates,
                             const vec3& factor = vec3(1));
 
-// The same where neighbours have different textures: these in turn.
+// The same, taking the textures in turn from quad to quad.
 std::vector<vec3> albedo_at(Backend backend, const std::vector<Texture>& textures,
                             const std::vector<vec2>& coordinates, const vec3& factor = vec3(1));
 

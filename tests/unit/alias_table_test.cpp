@@ -1,5 +1,4 @@
-// The alias table's probabilities, recomputed from its integers, and the table of lights that is built with
-// it.
+// The probabilities of the alias table, recomputed from its integers, and the light table built with it.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +21,7 @@ constexpr long double quantum = 1 / 4294967296.0L;  // 2^-32: of each of the two
 // The first word that chooses entry i of n, where entry = high word of word · n.
 uint64_t first_word_of(uint64_t i, uint64_t n) { return ((i << 32) + n - 1) / n; }
 
-// The probability of each item. Word pairs are counted with 64 bits of mantissa, so only sums are rounded.
+// The probability of each item. Counting word pairs is exact in 64 bits of mantissa; only sums are rounded.
 template <typename Entry>
 std::vector<long double> probabilities_of(const std::vector<Entry>& entries) {
     std::vector<long double> probabilities(entries.size());
@@ -37,7 +36,7 @@ std::vector<long double> probabilities_of(const std::vector<Entry>& entries) {
 }
 
 TEST(AliasTable, EntriesAreRangesOfWords) {
-    // That the words of an entry are counted as they choose it.
+    // An entry owns the words that first_word_of() counts for it.
     for (const uint64_t n : {1ull, 2ull, 3ull, 7ull, 1000ull, 1000000ull})
         for (uint64_t i = 0; i < n; ++i) {
             const uint64_t first = first_word_of(i, n), last = first_word_of(i + 1, n) - 1;
@@ -189,7 +188,7 @@ TEST(LightTable, IsEmptyWithoutLights) {
     EXPECT_TRUE(build_light_table(scene).triangles.empty());
 }
 
-// Their number, before anything is allocated for them.
+// Refuses by their number, before it allocates anything.
 TEST(LightTable, RefusesMoreLightsThanItCanHold) {
     Scene scene = make_lights(std::vector<float>(1000, 1), std::vector<vec3>(1000, vec3(1)));
     for (int i = 0; i < (1 << 24) / 1000 + 1; ++i) add_instance(scene, mat4x3(1));

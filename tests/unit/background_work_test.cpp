@@ -1,4 +1,4 @@
-// Work in the background of a window, and what its errors become.
+// Background work of the window, and the messages that its errors become.
 #include "viewer/background_work.h"
 
 #include <gtest/gtest.h>

@@ -25,7 +25,7 @@ void grow(Bounds& bounds, const Bounds& other) {
     bounds.grow(other.high);
 }
 
-// Walks through the tree and checks all that the traversal relies on.
+// Visits the whole tree and checks what the traversal relies on.
 class TreeWalk {
   public:
     explicit TreeWalk(const Bvh& bvh) : bvh_(bvh), visits_(bvh.triangles.size()) {
@@ -38,7 +38,7 @@ class TreeWalk {
 
     size_t deepest_stack() const { return deepest_stack_; }
 
-    // Nodes and triangles that a random ray visits if it hits the root.
+    // Expected number of nodes and triangles that a random ray visits if it hits the root.
     double surface_area_cost() const {
         Bounds all;
         for (size_t slot = 0; slot < 4; ++slot)
@@ -143,8 +143,8 @@ TEST(BvhBuilder, HalvesWhatHasNoExtent) {
     }
 }
 
-// Sizes are powers of two, so the cheapest split always cuts off the largest triangles: 240 levels if one let
-// it.
+// Sizes are powers of two, so the cheapest split always cuts off the largest triangles: 240 levels if nothing
+// stopped it.
 TEST(BvhBuilder, BoundsTheDepth) {
     std::vector<BvhTriangle> triangles;
     for (size_t i = 0; i < 2400; ++i) {

@@ -38,7 +38,7 @@ TEST(CameraControl, StepsFollowTheViewAndTheSizeOfTheScene) {
 }
 
 TEST(CameraControl, DraggingTurnsTheHeadInPlace) {
-    // To the right by a quarter of a turn, at two radians a height.
+    // A quarter turn to the right: dragging by the height of the picture turns by two radians.
     const float quarter = 3.14159265f / 4;
     const CameraPose turned = make_control().move(start, {.drag = {quarter, 0}});
     expect_near(turned.position, start.position);
@@ -62,7 +62,7 @@ TEST(CameraControl, LookingUpStopsBeforeTheVertical) {
         const vec3 view = glm::normalize(pose.target - pose.position);
         EXPECT_LT(std::abs(view.y), 0.9995f);
         EXPECT_GT(std::abs(view.y), 0.99f);
-        // It still faces the same way: no turn over the top.
+        // It has not turned over the top.
         EXPECT_LT(view.z, 0);
         EXPECT_NEAR(view.x, 0, 1e-5);
     }

@@ -1,4 +1,4 @@
-// Triangles in the same place of which one emits: what is left out, paired and warned about.
+// Coincident triangles of which at least one emits: which ones are dropped, paired or warned about.
 #include "scene/light_table.h"
 #include "scene/scene.h"
 #include "test_files.h"
@@ -16,7 +16,7 @@ class CoincidentLights : public testing::Test {
                      "newmtl glass\nd 0\nNi 1.5\n");
     }
 
-    // A mesh of these faces of a triangle.
+    // A mesh with these faces, all of the same triangle.
     std::filesystem::path mesh(const std::string& name, const std::string& faces) const {
         return folder.write(name, "mtllib a.mtl\n" + corners + faces);
     }

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "film/film_image.h"
 #include "test_files.h"
 
 namespace lab {
@@ -49,6 +50,28 @@ TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
     EXPECT_USER_ERROR(merge_films({first, write(half, half)}), "at most 2^32 - 1 samples");
     EXPECT_USER_ERROR(merge_films({first, write(half + 1, 7)}), "without overlap or gap");
     EXPECT_USER_ERROR(merge_films({first, write(half - 1, 7)}), "without overlap or gap");
+}
+
+// A sample that is no number adds nothing, but it is counted, and its pixel is magenta.
+TEST(FilmFile, KeepsAndShowsInvalidSamples) {
+    const TestFolder folder;
+    for (const uint32_t first : {0u, 5u}) {
+        FilmRecord record{};
+        record.first_sample = first;
+        const FilmPixel good{vec3(1), vec3(0), 5, 0}, bad{vec3(1), vec3(0), 5, first == 0};
+        write_film(folder / (std::to_string(first) + ".exr"), {2, 1, {good, bad}}, record);
+    }
+    const FilmImage film = merge_films({folder / "0.exr", folder / "5.exr"}).image;
+    EXPECT_EQ(film.pixels[0].invalid_count, 0u);
+    EXPECT_EQ(film.pixels[1].invalid_count, 1u);
+    EXPECT_EQ(film.pixels[1].sample_count, 10u);
+    for (const auto transform :
+         {DisplayTransform::exposure, DisplayTransform::maximum, DisplayTransform::as_is}) {
+        const auto shown = to_display(film, transform, 0).pixels;
+        const std::vector<uint8_t> magenta{255, 0, 255};
+        EXPECT_NE(std::vector(shown.begin(), shown.begin() + 3), magenta);
+        EXPECT_EQ(std::vector(shown.begin() + 4, shown.begin() + 7), magenta);
+    }
 }
 
 }  // namespace

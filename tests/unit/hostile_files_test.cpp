@@ -1,4 +1,4 @@
-// Files made to do harm: what is small must not cost much memory or time, and names lead only to files.
+// Malicious files: a small file must not cost much memory or time, and a name must lead to a regular file.
 #include <cstdlib>
 
 #include "files/file.h"
@@ -11,7 +11,7 @@ namespace {
 
 const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
 
-// A picture with colours that tell it from others.
+// A uniform picture.
 Texture picture(uint32_t width, uint32_t height, uint8_t value) {
     return {width, height, std::vector<uint8_t>(4 * size_t{width} * height, value)};
 }
@@ -79,7 +79,7 @@ TEST(HostileMeshes, AllocateNoMoreThanTheirSizeExplains_all) {
         "far more memory");
 }
 
-// Scenes may use files from everywhere, as those in assets/scenes do. Nothing but regular files is opened.
+// A scene may refer to files anywhere, as those in assets/scenes do, but only to regular files.
 TEST(HostileNames, LeadToAnyRegularFile) {
     const TestFolder folder, elsewhere;
     write_png(elsewhere / "a.png", picture(1, 1, 7));
@@ -108,7 +108,7 @@ TEST(HostileNames, LeadToAnyRegularFile) {
     }
 }
 
-// Neither escape sequences that a terminal would obey nor lines that look like other messages.
+// Messages contain no escape sequences, which a terminal would obey, and no line breaks.
 TEST(HostileNames, AreSafeToPrint) {
     EXPECT_EQ(printable("a\nb\x1b[2J\x7f\u00e9"), "a?b?[2J?\u00e9");
     const TestFolder folder;

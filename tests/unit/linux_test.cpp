@@ -1,4 +1,4 @@
-// What can be tried on Linux only: a full disk, fewer processors, and files that are no files.
+// What only Linux lets us simulate: a full disk, fewer processors, and names of pipes and devices.
 #include <sched.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -16,7 +16,7 @@
 namespace lab {
 namespace {
 
-// Large enough for all threads to share the first splits.
+// Large enough that all threads share the first splits.
 TEST(BvhBuilder, DoesNotDependOnTheNumberOfThreads) {
     const auto triangles = height_field(300);
     const Bvh parallel = build_bvh(triangles);
@@ -35,7 +35,7 @@ TEST(BvhBuilder, DoesNotDependOnTheNumberOfThreads) {
 TEST(WriteFile, FullDiskKeepsTheOlderFile) {
     const TestFolder folder;
     folder.write("a.exr", "older contents");
-    // A limit on the size of files stands for a full disk.
+    // A limit on the file size simulates a full disk.
     rlimit before{};
     getrlimit(RLIMIT_FSIZE, &before);
     const rlimit limit{10000, before.rlim_max};
@@ -53,7 +53,7 @@ TEST(CheckWritable, RefusesAFolderOfTheSystem) {
     EXPECT_USER_ERROR(check_writable("/proc/a.png"), "cannot be written");
 }
 
-// Reading one would wait for ever.
+// Reading one would block forever.
 TEST(ReadFile, RefusesPipesAndDevices) {
     const TestFolder folder;
     mkfifo((folder / "pipe").c_str(), 0600);

@@ -1,4 +1,4 @@
-// The live verdict on renders that are made of random numbers.
+// The live verdict on simulated renders.
 #include "statistics/live_verdict.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 constexpr uint32_t extent = 32;
 constexpr double hit_probability = 0.02;  // each sample finds radiance 1 with it
 
-// Of the mean of all samples of a render without bias.
+// A reference of constant radiance, without noise.
 Reference flat_reference(double mean = hit_probability) {
     Reference reference{{extent, extent, std::vector<float>(3 * extent * extent, static_cast<float>(mean))},
                         Image{extent, extent, std::vector<float>(3 * extent * extent, 1e-9f)},
@@ -50,7 +50,7 @@ class FakeRender {
     FilmImage film_;
 };
 
-// As a viewer does, up to that many samples.
+// Tests whenever the verdict asks for it, as a viewer does, up to that many samples per pixel.
 void watch(LiveVerdict& verdict, FakeRender render, uint32_t samples) {
     while (verdict.next_samples() <= samples) verdict.add(render.advance(verdict.next_samples()));
 }

@@ -1,4 +1,4 @@
-// Material files: what their keywords become, and what is refused.
+// MTL files: what each keyword means, and what the loader refuses.
 #include <cmath>
 
 #include "mesh_fixture.h"

@@ -1,4 +1,4 @@
-// Mesh files: what their keywords become, and what is refused.
+// OBJ files: what each keyword means, and what the loader refuses.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -35,7 +35,7 @@ TEST(Noise, IsThatOfTheMean) {
 }
 
 TEST(ErrorMetrics, DoNotContainTheVarianceOfTheReference) {
-    // The error of 0.5 everywhere, of which the reference's own noise is 0.09 of 0.25.
+    // The squared error is 0.25 everywhere; 0.09 of it is the variance of the reference.
     const Image image{2, 1, {1.5f, 1.5f, 1.5f, 2.5f, 2.5f, 2.5f}}, mean{2, 1, {1, 1, 1, 2, 2, 2}},
         variance{2, 1, std::vector<float>(6, 0.09f)};
     const double weight = 0.5 / (1 + 0.01 * 2.25) + 0.5 / (4 + 0.01 * 2.25);

@@ -1,4 +1,4 @@
-// Work on all threads.
+// Loops and sums over all threads.
 #include "parallel.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The cells of a light probe that light samples choose from.
+// The table of cells from which light samples of a probe are drawn.
 #include <gtest/gtest.h>
 
 #include <cmath>

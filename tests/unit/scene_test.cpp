@@ -24,7 +24,7 @@ class SceneFile : public testing::Test {
         return load_scene(folder.write("scene.json", json), specular);
     }
 
-    // The only instance of a scene whose mesh has these transformation keys.
+    // The instance that these transformation keys make.
     Instance instance(const std::string& keys) const {
         return load(R"({"meshes": [{"file": "a.obj", )" + keys + "}]}").instances.at(0);
     }

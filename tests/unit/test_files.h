@@ -1,4 +1,4 @@
-// Files for tests: a folder of their own, and errors caught as text.
+// Temporary files, and errors caught as text.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -55,8 +55,8 @@ inline std::string user_error(const std::function<void()>& call) {
 #define EXPECT_USER_ERROR(call, part) \
     EXPECT_PRED_FORMAT2(::testing::IsSubstring, part, user_error([&] { call; }))
 
-// Reads a valid file cut off at 200 places and, 200 times, with a few bytes changed. Everything but success
-// or a UserError fails the test, a crash most of all; what is cut off must be noticed if `cut_is_error`.
+// Reads a valid file truncated at 200 places and, 200 times, with a few bytes changed. Each read must succeed
+// or throw a UserError; a truncated file must be refused if `cut_is_error`.
 inline void damage(const TestFolder& folder, const std::string& name, const std::string& valid,
                    bool cut_is_error, const std::function<void(const std::filesystem::path&)>& read) {
     std::mt19937 random(20240229);

@@ -1,4 +1,4 @@
-// Looking inside the render: the live verdict, the path at a pixel and the views of tiles.
+// The panels that look inside the render: live verdict, path at a pixel, overlays.
 #include <thread>
 
 #include "files/project_folder.h"
@@ -45,9 +45,7 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     EXPECT_LT(session().latest_verdict()->differences[1].value, 0);
     EXPECT_EQ(session().verdict_state(), VerdictState::biased);
     // Where it is too dark the tiles are blue.
-    press(GLFW_KEY_T);
-    run_frames(1);
-    press(GLFW_KEY_T, false);
+    hold(GLFW_KEY_T);
     take_screenshot("viewer_biased");
     const auto blue_pixels = [&] {
         const Texture& shown = viewer_->screen().captured();
@@ -61,9 +59,7 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     };
     EXPECT_GT(blue_pixels(), 1000u);
     for (const char* tiles : {"percent", "noise", "samples", "none"}) {
-        press(GLFW_KEY_T);
-        run_frames(1);
-        press(GLFW_KEY_T, false);
+        hold(GLFW_KEY_T);
         take_screenshot(std::string("viewer_tiles_") + tiles);
         if (std::string(tiles) == "percent") {
             EXPECT_GT(blue_pixels(), 1000u);
@@ -79,17 +75,13 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
 TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {
     open(options_with_reference());
     wait_for_verdict();
-    press(GLFW_KEY_W);
-    run_frames(2);
-    press(GLFW_KEY_W, false);
+    hold(GLFW_KEY_W, 2);
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
     EXPECT_EQ(session().verdict(), nullptr);
     EXPECT_EQ(session().verdict_text(), "no verdict: the camera has moved");
     EXPECT_TRUE(session().has_moved());
 
-    press(GLFW_KEY_F);
-    run_frames(1);
-    press(GLFW_KEY_F, false);
+    hold(GLFW_KEY_F);
     EXPECT_FALSE(session().has_moved());
     wait_for_verdict();
 }
@@ -106,7 +98,7 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     ASSERT_FALSE(path.vertices.empty());
     EXPECT_EQ(path.vertices.front().origin, session().camera().position);
 
-    // It is the sample that the render has added.
+    // The recorded path is the sample that the render has added.
     Options options = session().options();
     options.appearance.sample_count = 1;
     session().change(options);
@@ -120,19 +112,6 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     session().change(options);
     wait_until("many samples", [&] { return session().samples() >= 8 && inspection().has_hemisphere(); });
     wait_until("the hemisphere", [&] { return inspection().hemisphere().samples() >= 2; });
-}
-
-TEST_F(InsideTest, AnEstimatorWithoutRaysHasAPathWithoutVertices) {
-    write(folder_.path() / "path_trace.glsl",
-          "vec3 path_trace(Ray ray, inout uvec2 seed) {\n    return vec3(0.25);\n}\n");
-    chapter_ = {.name = folder_.path().string(), .title = "Constant"};
-    open(make_options());
-    click(600, 400);
-    wait_until("a path", [&] { return inspection().path().has_value(); });
-    run_frames(3);
-    EXPECT_TRUE(inspection().path()->vertices.empty());
-    EXPECT_EQ(inspection().path()->radiance, vec3(0.25f));
-    EXPECT_FALSE(inspection().has_hemisphere());
 }
 
 TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_all) {
@@ -194,25 +173,6 @@ TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage_all) {
     EXPECT_FALSE(session().waits);
 }
 
-TEST_F(InsideTest, TwoSettingsBesideEachOtherFollowTheView) {
-    open(options_with_reference());
-    Comparison& comparison = viewer_->comparison();
-    comparison.start(session(), chapter_.name);
-    wait_until("both", [&] { return comparison.is_active(); });
-    Options options = session().options();
-    options.light.only_path_length = 1;
-    options.samples.chapter_values[0] = 16;  // which the second one does not follow
-    session().change(options);
-    run_frames(2);
-    const auto parameters = [](const Session& s) { return s.build().job.parameters; };
-    EXPECT_EQ(parameters(comparison.second()).only_path_length, 1);
-    EXPECT_EQ(parameters(session()).splitting_factor, 16u);
-    EXPECT_EQ(parameters(comparison.second()).splitting_factor, 4u);
-    EXPECT_NE(parameters(comparison.second()).seed_key, parameters(session()).seed_key);
-    EXPECT_EQ(half_label(session(), comparison.second()), "05 russian roulette\n--splitting-factor 16");
-    EXPECT_EQ(half_label(comparison.second(), session()), "05 russian roulette\n--splitting-factor 4");
-}
-
 TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
     Options options = make_options();
     options.scene.file = scenes / "glass.json";
@@ -224,6 +184,40 @@ TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
     EXPECT_FALSE(viewer_->comparison().is_active());
     viewer_->comparison().start(session(), chapter_named("dielectrics"));
     wait_until("both", [&] { return viewer_->comparison().is_active(); });
+}
+
+// At the sizes that screens have.
+TEST_F(InsideTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
+    open(options_with_reference(), {900, 700});
+    // A point of the picture, 0 to 1, as the pointer has it.
+    const auto point_of_picture = [&](const vec2& position) {
+        const Rectangle where = viewer_->picture_rectangle();
+        return vec2(where.corner) + position * vec2(where.size - 1);
+    };
+    const vec2 floor = point_of_picture({0.4f, 0.85f});
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    click(floor.x, floor.y);
+    wait_until("the hemisphere",
+               [&] { return inspection().has_hemisphere() && inspection().hemisphere().samples() >= 2; });
+    const auto resize = [&](const uvec2& size) {
+        glfwSetWindowSize(window_->handle(), static_cast<int>(size.x), static_cast<int>(size.y));
+        wait_until("resized", [&] { return viewer_->screen().size() == size; });
+        run_frames(2);
+    };
+    resize({320, 240});  // little room, but the window works
+    for (const uvec2 size : {uvec2(900, 700), uvec2(1280, 800)}) {
+        resize(size);
+        take_screenshot("viewer_path_" + std::to_string(size.x));
+        const Rectangle where = viewer_->picture_rectangle();
+        EXPECT_GE(std::min(where.size.x, where.size.y), size.y / 2);
+        for (const vec2 position : {vec2(0), vec2(1, 0), vec2(0.5f), vec2(0, 1), vec2(1)}) {
+            const vec2 point = point_of_picture(position);
+            point_at(point.x, point.y);
+            run_frames(2);
+            EXPECT_FALSE(ImGui::GetIO().WantCaptureMouse)
+                << size.x << ": at " << position.x << ", " << position.y;
+        }
+    }
 }
 
 }  // namespace

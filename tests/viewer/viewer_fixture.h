@@ -110,6 +110,12 @@ class ViewerTest : public testing::Test {
         glfwSetKeyCallback(window, callback);
         callback(window, key, 0, is_down ? GLFW_PRESS : GLFW_RELEASE, 0);
     }
+    // Holds a key down for some frames.
+    void hold(int key, int frames = 1) {
+        press(key);
+        run_frames(frames);
+        press(key, false);
+    }
     void drop(const fs::path& file) {
         GLFWwindow* window = window_->handle();
         const auto callback = glfwSetDropCallback(window, nullptr);

@@ -1,4 +1,4 @@
-// The window of a chapter: what it shows, saves and does on input.
+// The window: what it shows, saves and does on input.
 #include <thread>
 
 #include "error.h"
@@ -13,11 +13,9 @@ TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
     options.appearance.sample_count = 24;
     options.samples.seed = 7;
     open(options);
-    // Whatever happens on the way must not matter in the end.
+    // Nothing that happens on the way may matter in the end.
     glfwSetWindowSize(window_->handle(), 1000, 500);
-    press(GLFW_KEY_W);
-    run_frames(3);
-    press(GLFW_KEY_W, false);
+    hold(GLFW_KEY_W, 3);
     session().change(options);
     wait_until("all samples", [&] { return session().samples() >= 24 && session().reduction() == 1; });
     const fs::path saved = folder_.path() / "window.exr", expected = folder_.path() / "headless.exr";
@@ -80,15 +78,11 @@ TEST_F(ViewerTest, TypingIntoAFieldDoesNotMoveTheCamera) {
     const vec2 field = viewer_->controls().seed_field();
     click(field.x, field.y);
     ASSERT_TRUE(ImGui::GetIO().WantTextInput);
-    press(GLFW_KEY_W);
-    run_frames(3);
-    press(GLFW_KEY_W, false);
+    hold(GLFW_KEY_W, 3);
     run_frames(1);
     EXPECT_EQ(session().camera().position, before.position);
     click(650, 300);
-    press(GLFW_KEY_W);
-    run_frames(3);
-    press(GLFW_KEY_W, false);
+    hold(GLFW_KEY_W, 3);
     EXPECT_NE(session().camera().position, before.position) << "a click beside the field gives the keys back";
 }
 
@@ -278,15 +272,6 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken_all) {
     wait_until("repaired", [&] { return session().message().empty() && session().samples() > 0; });
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     RecordProperty("chapter_reload_seconds", std::to_string(seconds));
-}
-
-TEST_F(ViewerTest, PicturesOfMoreBlocksThanADispatchMayHaveAreShown) {
-    write(folder_.path() / "path_trace.glsl",
-          "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(1.0, 0.0, 0.0); }\n");
-    chapter_ = {.name = folder_.path().string(), .title = "Red"};
-    Options options = make_options();
-    options.image.width = options.image.height = 2048;
-    open(options);  // more workgroups than the device allows are a complaint of the validation layer
 }
 
 TEST_F(ViewerTest, ClosesWhileSomethingIsBuilt) {
