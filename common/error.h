@@ -1,4 +1,4 @@
-// Errors that end a program with one clear line. The exit codes are part of the command line contract.
+// Errors that end a program with one line and an exit code, both part of the command line's contract.
 #pragma once
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-// Work on all threads of the processor that the program may use.
+// Loops on all processors that the program may use.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -12,8 +12,8 @@
 
 namespace lab {
 
-// Calls work(begin, end) for pieces of `piece` numbers that cover 0, 1, ..., count - 1; the last one may be
-// shorter. The pieces do not depend on the number of threads. Throws again what a call has thrown first.
+// Calls work(begin, end) for pieces of `piece` indices that cover [0, count); the last may be shorter. The
+// pieces do not depend on the number of threads. Rethrows the first exception of a call.
 template <typename Work>
 void in_parallel(size_t count, size_t piece, const Work& work) {
     const size_t piece_count = (count + piece - 1) / piece;
@@ -35,14 +35,14 @@ void in_parallel(size_t count, size_t piece, const Work& work) {
         const size_t threads = piece_count > 1 ? std::min(piece_count, processor_count()) : 1;
         try {
             while (helpers.size() + 1 < threads) helpers.emplace_back(take_pieces);
-        } catch (const std::system_error&) {  // no more threads are to be had: those that run do the work
+        } catch (const std::system_error&) {  // the system has no more threads: those that run do the work
         }
         take_pieces();
     }
     if (failure) std::rethrow_exception(failure);
 }
 
-// The sum of work(begin, end) over such pieces, added in their order: the same to the bit with any number of
+// Adds work(begin, end) over such pieces in order, so the sum is the same to the bit with any number of
 // threads.
 template <typename Sum, typename Work>
 Sum sum_in_parallel(size_t count, const Work& work) {

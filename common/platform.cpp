@@ -50,7 +50,7 @@ bool is_interrupted() { return interrupted != 0; }
 #ifdef __linux__
 std::vector<WindowSystem> window_systems() {
     std::vector<WindowSystem> systems;
-    // The variables of a user's session may be all that others, such as root, get to see of it.
+    // Root may see the variables of a user's session without being able to reach its socket.
     const std::string socket = variable("WAYLAND_DISPLAY");
     std::error_code unreadable;
     if (!socket.empty() &&
@@ -176,9 +176,8 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 }  // namespace lab
 
 #ifdef _WIN32
-// GCC 12 reads the names of files by this function, which knows no UTF-8 in Microsoft's library (GCC 13 has
-// no need of it). Bytes that are not UTF-8 stand for themselves. A character outside the first 65536 is two
-// of Windows': the second waits in the state.
+// GCC 12 converts file names by mbrtowc, which does not know UTF-8 in Microsoft's library (GCC 13 does
+// without). Invalid bytes stand for themselves. The state holds the second half of a surrogate pair.
 extern "C" size_t __wrap_mbrtowc(wchar_t* result, const char* text, size_t size, mbstate_t* state) {
     wchar_t characters[2];
     if (*state != 0) {

@@ -1,4 +1,4 @@
-// What differs between operating systems. Nothing else asks which one it is.
+// Everything that depends on the operating system.
 #pragma once
 #include <cstddef>
 #include <cstdio>
@@ -7,48 +7,46 @@
 
 namespace lab {
 
-// Called first by a program that people start: on Windows its terminal shows UTF-8 and understands control
-// sequences, and one that was opened for this program alone, by a double click, waits for the Enter key at
-// the end, so that messages can be read.
+// Programs call this first. On Windows it switches the terminal to UTF-8 and control sequences, and keeps a
+// terminal that a double click opened until Enter is pressed, so that messages can be read.
 void prepare_terminal();
 
-// Whether people read what is written there.
+// Whether the stream writes to a terminal.
 bool is_terminal(std::FILE* stream);
 
-// From now on bytes are written as they are: Windows gives lines other ends.
+// Stops Windows from translating line ends in this stream.
 void make_binary(std::FILE* stream);
 
-// What windows can be shown by, what is to be tried first before the others. Only Linux has a choice.
+// Window systems that are available here, in the order to try them. Empty without a display.
 enum class WindowSystem { wayland, x11, other };
 std::vector<WindowSystem> window_systems();
 
-// Whether the program would be there after a step that might bring it down. Linux, where libraries come from
-// elsewhere, has a child process find out, and nothing of what it prints is shown.
+// Whether the program survives a step that may crash. On Linux a child process tries it, without output;
+// elsewhere the answer is yes.
 bool would_survive(int (*step)());
 
-// Its file, or empty where that is not known.
+// The program's file; empty if unknown.
 std::filesystem::path running_program();
 
-// The user's own folder, or empty where nobody says which it is.
+// The user's home folder; empty if unknown.
 std::filesystem::path user_folder();
 
 int process_id();
 
-// Processors that the program may use.
+// Number of processors that the program may use.
 size_t processor_count();
 
-// Whether what was written, flushed included, is on the disk; if not, errno says why.
+// Waits until what was flushed is on the disk. False on failure, with errno set.
 bool write_to_disk(std::FILE* stream);
 
-// Gives a file another name, also one that another file has, in one step. On Windows a scanner for viruses
-// can hold a file that was just written: this waits for it, for a second at most.
+// Renames a file atomically, over an existing one if need be. On Windows a virus scanner may hold a new file
+// open: retries for up to a second.
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to, std::error_code& error);
 
-// How to get a Vulkan driver here, in words that follow "install ".
+// What to install for Vulkan; follows "install " in messages.
 extern const char* const vulkan_driver;
 
-// From now on the first Ctrl-C (or SIGTERM) only makes is_interrupted() true; the second one ends the
-// program.
+// From now on the first Ctrl-C or SIGTERM makes is_interrupted() true; the second ends the program.
 void install_interrupt_handler();
 bool is_interrupted();
 

@@ -14,19 +14,19 @@
 namespace lab {
 namespace {
 
-// Tells on the terminal how far a long render is.
+// Shows the progress of a render on the terminal.
 class Progress {
   public:
-    // `target_samples` a pixel. A quiet progress prints nothing.
+    // Samples per pixel. A quiet progress prints nothing.
     Progress(uint32_t target_samples, double first_samples, bool quiet)
         : target_samples_(target_samples), first_samples_(first_samples), quiet_(quiet) {}
     ~Progress() {
         if (printed_ && terminal_) std::fputs("\r\033[K", stderr);
     }
 
-    // `samples` a pixel and `rays` of this run so far; prints a few times a second.
+    // `samples` per pixel and `rays` of this run so far. Prints a few times per second.
     void update(double samples, uint64_t rays) {
-        // A log file gets a line now and then, a terminal one line that is rewritten.
+        // Log files get a line every ten seconds, terminals one line that is rewritten.
         if (quiet_ || seconds_since(last_) < (terminal_ ? 0.2 : 10.0)) return;
         last_ = Clock::now();
         const double seconds = seconds_since(start_);
@@ -83,7 +83,7 @@ class HeadlessRender {
         try {
             sample();
         } catch (const std::exception& error) {
-            // What was last read from the device is all there is.
+            // Only what was last read from the device is left.
             keep_after(error, snapshot_, [&] { write_outputs(); });
         }
         if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
@@ -116,7 +116,7 @@ class HeadlessRender {
         }
     }
 
-    // That a user waits for while it renders, earlier runs included.
+    // Of rendering as a user waits for it, earlier runs included.
     double seconds() const { return job_.record.seconds + seconds_since(start_) - measuring_seconds_; }
 
     bool is_time_over() const {
@@ -145,7 +145,7 @@ class HeadlessRender {
         }
     }
 
-    // What is left if the device is lost, with what it has cost.
+    // Reads what is left if the device is lost.
     void take_snapshot() {
         const double seconds_so_far = seconds();
         snapshot_ = renderer_.film().read();
@@ -199,7 +199,7 @@ class HeadlessRender {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = record_.seconds - job_.record.seconds;
         const ErrorMetrics* error = rows_.empty() || !rows_.back().error ? nullptr : &*rows_.back().error;
-        // Pixels are independent of each other. Against a reference the error holds a bias, too.
+        // Pixels are independent. Against a reference the error would include bias.
         const double pixels = static_cast<double>(snapshot_.pixels.size());
         const bool is_of_this_film = error && !reference_ && rows_.back().samples * pixels == paths();
         std::printf("mean radiance  %.5g %.5g %.5g", mean[0], mean[1], mean[2]);

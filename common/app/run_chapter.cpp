@@ -31,7 +31,7 @@ void print_devices() {
     }
 }
 
-// Pictures that nobody has named go to the user's folder where nothing can be written in this one.
+// Default outputs go to the user's folder if the current one is not writable.
 void choose_outputs(RunOptions& options) {
     const std::filesystem::path folder = user_folder();
     if (!options.has_default_outputs || folder.empty()) return;
@@ -44,7 +44,7 @@ void choose_outputs(RunOptions& options) {
     }
 }
 
-// Fails before anything is rendered if a result could not be kept later.
+// Throws UserError before rendering if a result could not be written later.
 void check_outputs(const RunOptions& options) {
     for (const auto& file : options.outputs) check_writable(file);
     if (!options.report.empty()) check_writable(options.report, {".json", ".csv"});
@@ -61,13 +61,13 @@ void check_validation(const Device& device, const RunOptions& options) {
     if (!options.quiet) std::cout << "validation     no complaints\n";
 }
 
-// Room for the picture and the controls, on a screen of common size.
+// Room for picture and controls on a common screen.
 uvec2 window_size(uvec2 image_size) {
     return glm::clamp(image_size + uvec2(360, 0), uvec2(900, 700), uvec2(1600, 1000));
 }
 
-// The window that is wanted, or null. One that nobody has asked for opens for people only, since scripts read
-// what is printed, and only where it can.
+// Opens a window or returns null. Without --window it opens only for people, since scripts read the output,
+// and only where it can.
 std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& options, uvec2 image_size) {
     const bool is_forced = options.run.window == WindowChoice::always;
     if (options.run.window == WindowChoice::never) return nullptr;
@@ -83,7 +83,7 @@ std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& optio
     }
 }
 
-// Opens the window's chapter if the device can show pictures in it; false if it cannot.
+// Runs the chapter in the window; false if the device cannot present to it.
 bool run_in_window(Window& window, const Chapter& chapter, const RenderJob& job) {
     const RunOptions& options = job.options.run;
     const Device device({.choice = options.device,

@@ -12,7 +12,7 @@
 namespace lab {
 namespace {
 
-// Empty where nobody says whose cache it is: in a folder that all users share, others could replace a shader.
+// Empty without a home folder: in one that all users share, others could replace a shader.
 std::filesystem::path cache_folder() {
     if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
         return std::filesystem::path(folder) / "path_tracing_lab";

@@ -1,5 +1,5 @@
-// Files that save time on the next start: compiled shaders and pipelines. Losing them costs nothing else, so
-// every failure to read or write one is silent, and a damaged one counts as absent.
+// Compiled shaders, pipelines and choices of backends, kept for the next start. Failing to read or write an
+// entry is silent; a damaged entry counts as absent.
 #pragma once
 #include <optional>
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace lab {
 
-// Contents of the cache entry `name`, if there is an undamaged one.
+// Contents of the entry `name`, if there is one.
 std::optional<std::string> read_cache(const std::string& name);
 
-// Replaces the entry in one step, so that other processes see the old or the new one.
+// Replaces the entry atomically.
 void write_cache(const std::string& name, std::string_view contents);
 
 }  // namespace lab

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Beside the target, because renaming is atomic only within a file system. The process id keeps two programs
-// that write the same file apart.
+// Beside the target, because renaming is atomic only within a file system. The process id keeps apart two
+// programs that write the same file.
 fs::path temporary_name(const fs::path& file) {
     fs::path name = ".";
     name += file.filename();
@@ -31,7 +31,7 @@ bool write_bytes(const fs::path& file, std::string_view bytes) {
     std::FILE* stream = std::fopen(file.string().c_str(), "wb");
     if (!stream) return false;
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
-    // On the disk before the rename is: else a power failure could leave the new name with no contents.
+    // The contents must reach the disk before the rename, or a power failure could leave an empty file.
     const bool flushed = std::fflush(stream) == 0 && write_to_disk(stream);
     const int error = errno;
     const bool closed = std::fclose(stream) == 0;

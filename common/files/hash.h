@@ -1,4 +1,4 @@
-// Hashes that name contents: of cache entries, scenes and estimators.
+// Hashes of contents: cache entries, scenes, estimators.
 #pragma once
 #include <charconv>
 #include <cstdint>
@@ -13,7 +13,7 @@ inline uint64_t hash_text(std::string_view text, uint64_t hash = 146959810393466
     return hash;
 }
 
-// A hash as records and reports write it: without leading zeros.
+// The hash as records and reports write it, without leading zeros.
 inline std::string hexadecimal(uint64_t number) {
     char text[16];
     return {text, std::to_chars(text, text + sizeof text, number, 16).ptr};

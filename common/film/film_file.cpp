@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// Attribute of the EXR as a number; an error if it is absent or no number.
+// A numeric attribute. Throws UserError if it is absent or no number.
 template <typename T>
 T number(const ExrFile& exr, const std::string& name, const std::filesystem::path& file) {
     T value{};
@@ -36,7 +36,7 @@ std::string to_text(double value) {
     return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
-// Channel with one count a pixel, zeros if it is absent.
+// A channel of counts per pixel; zeros if it is absent.
 std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t pixels,
                              const std::filesystem::path& file) {
     std::vector<uint32_t> result(pixels, 0);
@@ -54,7 +54,7 @@ std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t
 // Not inlined: in loops over floats and doubles GCC 12 drops this rounding.
 [[gnu::noinline]] float to_float(double number) { return static_cast<float>(number); }
 
-// Splits a sum in double into the two floats that the device goes on with.
+// Splits a sum into the two floats that the device continues with.
 void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
     for (int channel = 0; channel < 3; ++channel) {
         pixel.sum[channel] = to_float(sum[channel]);
@@ -72,7 +72,7 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
         {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
         {"rays", std::to_string(record.rays)}, {"seconds", to_text(record.seconds)}};
     for (const auto& [name, text] : texts) exr.attributes[name] = record.*text;
-    // Relative to the fewest, since floats hold whole numbers only up to 2^24.
+    // Beyond the fewest, since floats hold whole numbers only up to 2^24.
     if (!image.has_equal_sample_counts())
         for (const auto& pixel : image.pixels)
             exr.channels["further_samples"].push_back(static_cast<float>(pixel.sample_count - samples));
@@ -151,7 +151,7 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
     };
     std::vector<Range> ranges;
     FilmFile merged;
-    for (const auto& file : files) {  // one after the other: there may be many, and large ones
+    for (const auto& file : files) {  // one at a time: they may be many and large
         FilmFile part = read_film(file);
         if (!part.image.has_equal_sample_counts())
             throw UserError(file.string() + " is an unfinished render: finish it with --resume first");

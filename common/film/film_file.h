@@ -1,4 +1,4 @@
-// The film as an OpenEXR file: at once picture, record of the settings and checkpoint to continue from.
+// The film as an OpenEXR file: picture, record of the settings and checkpoint in one.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace lab {
 
-// How a film came about; written as string attributes of the EXR.
+// How a film was made, as string attributes of the EXR.
 struct FilmRecord {
     std::string chapter;
     std::string scene;           // file name
@@ -23,9 +23,9 @@ struct FilmRecord {
     double seconds = 0;  // of rendering
 };
 
-// Pixels may have different numbers of samples (an interrupted render): the attribute `samples` is the
-// smallest, the channel `further_samples` what each pixel has beyond it. Where samples were invalid, the
-// channel `invalid_samples` holds their number.
+// The attribute `samples` is the smallest count of all pixels; after an interrupted render the channel
+// `further_samples` holds what pixels have beyond it. The channel `invalid_samples` counts invalid ones, if
+// any.
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record);
 
 struct FilmFile {
@@ -36,14 +36,12 @@ struct FilmFile {
 // Throws UserError if the file is not one that write_film() wrote.
 FilmFile read_film(const std::filesystem::path& file);
 
-// Throws UserError if the two do not show the same: size, chapter, scene, settings or seed differ. The names
-// are for the message.
+// Throws UserError if size, chapter, scene, shader, settings or seed differ. The names are for the message.
 void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a,
                          const std::string& name_b);
 
-// Joins renders of adjacent ranges of samples, in any order, into the render of the whole range.
-// Throws UserError if ranges overlap, leave a gap or are unfinished, or if the renders do not belong
-// together.
+// Joins renders of adjacent sample ranges, in any order. Throws UserError for gaps, overlaps, unfinished
+// renders, and renders that do not belong together.
 FilmFile merge_films(const std::vector<std::filesystem::path>& files);
 
 }  // namespace lab

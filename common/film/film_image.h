@@ -1,4 +1,4 @@
-// What the samples of an image have added up to.
+// The sums of an image's samples, and how they are shown.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace lab {
 
-// The sum of a pixel's samples, which two floats hold together.
+// The sum of a pixel's samples: two floats together hold it.
 inline glm::dvec3 sum_of(const FilmPixel& pixel) {
     return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation);
 }
@@ -20,19 +20,19 @@ struct FilmImage {
     std::vector<FilmPixel> pixels;
 
     bool has_equal_sample_counts() const;
-    uint32_t min_samples() const;                 // samples that every pixel has
-    uint64_t invalid_samples() const;             // samples that were infinite or not a number
-    Image mean() const;                           // mean radiance of a pixel; 0 where there are no samples
+    uint32_t min_samples() const;                 // per pixel, the fewest
+    uint64_t invalid_samples() const;             // infinite or NaN samples of all pixels
+    Image mean() const;                           // per pixel; 0 without samples
     std::array<double, 3> mean_radiance() const;  // of the whole image
 };
 
 // For messages: "640x480".
 std::string size_text(const uvec2& size);
 
-// The samples of `whole` that came after those of `first`, an earlier state of the same film.
+// The samples that `whole` has beyond `first`, an earlier state of the same film.
 FilmImage samples_after(const FilmImage& first, const FilmImage& whole);
 
-// How numbers become colours. Views of normals, depth and the like are not radiance.
+// How values become colours; views of normals, depth and the like are not radiance.
 enum class DisplayTransform {
     exposure,  // times 2^exposure, clamped, sRGB-encoded
     maximum,   // divided by the largest finite value of the image

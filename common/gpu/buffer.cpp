@@ -24,9 +24,8 @@ std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) -
                         " of them: use a smaller scene");
 }
 
-// Memory of a type that has all `required` properties and, where there is a choice, the preferred ones. Where
-// those are used up, a device that shares the CPU's memory goes on in the rest of it; a GPU with a memory of
-// its own would crawl.
+// Allocates memory with all `required` and, if possible, the preferred properties. Where preferred memory is
+// used up, only devices that share the CPU's memory fall back to other types; a discrete GPU would crawl.
 Allocation allocate(const Device& device, const vk::MemoryRequirements& requirements,
                     vk::MemoryPropertyFlags required, vk::MemoryPropertyFlags preferred,
                     vk::MemoryAllocateFlags flags = {}) {

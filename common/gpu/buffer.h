@@ -6,20 +6,20 @@
 
 namespace lab {
 
-// Something that is about to be allocated.
+// A buffer or an image to be allocated.
 struct MemoryNeed {
     std::string what;  // "positions"
     size_t bytes;
     vk::BufferUsageFlags usage = {};
-    bool is_seen_in_parts = false;  // shaders see as much of it at a time as they can
+    bool is_seen_in_parts = false;  // bound part by part, so only the buffer's own limit counts
     vk::Extent2D image_size = {};   // in pixels, of an image
 };
 
-// Bytes that shaders see of one buffer of this usage.
+// Largest buffer of this usage that shaders can bind, in bytes.
 size_t largest_visible(const Device& device, vk::BufferUsageFlags usage);
 
-// Throws DeviceFailure, with the numbers, for a buffer or an image that is larger than the device allows, for
-// more of them, and for more bytes together than its memory has: so that nothing is allocated in vain.
+// Checks before anything is allocated. Throws DeviceFailure, with the numbers, if one is larger than the
+// device allows, or all are too many or exceed its memory.
 void require_memory(const Device& device, std::span<const MemoryNeed> needs);
 
 class Buffer {
@@ -28,8 +28,7 @@ class Buffer {
         device,  // fast for shaders
         host,    // visible to the CPU at any time
     };
-    // `size` in bytes (0 makes a buffer of the smallest size). Throws DeviceFailure if it does not fit the
-    // device.
+    // `size` in bytes, at least 16 are allocated. Throws DeviceFailure if it does not fit.
     Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage,
            Location location = Location::device);
 
@@ -47,7 +46,7 @@ class Buffer {
     size_t size() const { return size_; }
     vk::DeviceAddress address() const;  // needs the usage eShaderDeviceAddress
 
-    // Copies to or from the start of the buffer; the device must not be using it.
+    // Copy to or from the start of the buffer, which the device must not be using.
     void write(const void* data, size_t size);
     void read(void* data, size_t size) const;
     void clear();  // to zeros
@@ -66,13 +65,13 @@ class Buffer {
     void* mapped_ = nullptr;
 };
 
-// Two-dimensional colour image of the device's own.
+// A 2D colour image in device memory.
 class DeviceImage {
   public:
     vk::Image handle() const { return *image_; }
 
   protected:
-    // Its layout is eUndefined. Throws DeviceFailure if it does not fit the device.
+    // Starts in the layout eUndefined. Throws DeviceFailure if it does not fit.
     DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
                 vk::ImageUsageFlags usage);
 
@@ -81,7 +80,7 @@ class DeviceImage {
     vk::raii::ImageView view_ = nullptr;
 };
 
-// Image that shaders read texel by texel, without a sampler.
+// An image that shaders read by texelFetch, without a sampler.
 class SampledImage : public DeviceImage {
   public:
     // `pixels` row by row without gaps in `format`.
@@ -91,7 +90,7 @@ class SampledImage : public DeviceImage {
     vk::DescriptorImageInfo info() const { return {{}, *view_, vk::ImageLayout::eShaderReadOnlyOptimal}; }
 };
 
-// Image of 8-bit RGBA that compute shaders write, always in the layout eGeneral. Starts black.
+// An 8-bit RGBA image that compute shaders write, in the layout eGeneral. Starts black.
 class StorageImage : public DeviceImage {
   public:
     StorageImage(const Device& device, uint32_t width, uint32_t height);
@@ -99,7 +98,7 @@ class StorageImage : public DeviceImage {
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     vk::DescriptorImageInfo info() const { return {{}, *view_, vk::ImageLayout::eGeneral}; }
-    std::vector<uint8_t> read() const;  // row by row, four bytes a pixel
+    std::vector<uint8_t> read() const;  // row by row, four bytes per pixel
 
   private:
     const Device* device_;
@@ -107,11 +106,11 @@ class StorageImage : public DeviceImage {
     uint32_t height_;
 };
 
-// All of a colour image, and one of its kind in copies and blits.
+// All of a colour image: for views and barriers, and for copies and blits.
 inline constexpr vk::ImageSubresourceRange whole_image{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
 inline constexpr vk::ImageSubresourceLayers whole_layer{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
 
-// Moves an image to another layout between all that came before and all that follows.
+// Changes an image's layout, with a full barrier.
 void change_layout(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
                    vk::ImageLayout to);
 

@@ -1,4 +1,4 @@
-// A compute shader with the resources it reads and writes.
+// A compute shader with its resources.
 #pragma once
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace lab {
 
-// What one binding of descriptor set 0 refers to.
+// The resources of one binding of descriptor set 0.
 struct Binding {
     uint32_t index;
     vk::DescriptorType type;
@@ -39,7 +39,7 @@ class ComputeKernel {
     ComputeKernel(const Device& device, const ShaderSource& source, std::span<const Binding> bindings,
                   uint32_t push_constant_size);
 
-    // Starts `group_count` workgroups in a row. `offsets` in bytes, of the bindings that have one.
+    // Dispatches `group_count` workgroups. `offsets` in bytes, for dynamic bindings.
     void record(const vk::raii::CommandBuffer& commands, const void* push_constants, uint32_t group_count,
                 vk::ArrayProxy<const uint32_t> offsets = {}) const;
 

@@ -40,7 +40,7 @@ bool contains(const std::vector<vk::ExtensionProperties>& extensions, std::strin
                                [&](const auto& extension) { return extension.extensionName.data() == name; });
 }
 
-// What a device must offer. The ray tracing structures count only where the extensions are there.
+// Required features; the ray tracing ones count only with their extensions.
 using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                     vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
                                     vk::PhysicalDeviceRayTracingPipelineFeaturesKHR,
@@ -57,7 +57,7 @@ bool computes(const vk::QueueFamilyProperties& family) {
     return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
 }
 
-// What the device lacks for every backend.
+// Features that all backends need and the device lacks.
 std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device,
                                             const Features& features) {
     std::vector<std::string> missing;
@@ -70,7 +70,7 @@ std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& devi
     return missing;
 }
 
-// Of all heaps, or where the CPU's memory is far away, of those that are the device's own.
+// Bytes of all heaps, or of the device's own where it does not share the CPU's memory.
 size_t usable_memory(const vk::raii::PhysicalDevice& device, bool shares_memory) {
     const auto memory = device.getMemoryProperties();
     size_t sum = 0;
@@ -96,7 +96,7 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         .api_version = version_text(general.apiVersion),
         .shares_memory = shares_memory,
         .memory = usable_memory(device, shares_memory),
-        // The place of a part has 32 bits.
+        // Offsets of parts have 32 bits.
         .largest_buffer = std::min<size_t>(
             properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),
         .missing = {},
@@ -135,7 +135,7 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
         layers.push_back(validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
-    // Drivers that have most of Vulkan, such as macOS's, show only where one asks for them.
+    // Drivers that lack parts of Vulkan, such as macOS's, show only on request.
     vk::InstanceCreateFlags flags;
     if (contains(context.enumerateInstanceExtensionProperties(),
                  VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
@@ -172,7 +172,7 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-// Index of the chosen device: by number, by part of a name, or the fastest kind among those that can be used.
+// Index of the chosen device: by number, by part of a name, or the first usable one of the fastest kind.
 size_t choose_device(const std::vector<DeviceDescription>& devices, const std::string& choice) {
     if (!choice.empty() && choice.find_first_not_of("0123456789") == std::string::npos) {
         if (choice.size() < 6 && std::stoul(choice) < devices.size()) return std::stoul(choice);
@@ -267,7 +267,7 @@ void Device::create_device() {
         if (description_.supports(backend))
             for (const char* extension : extensions_for(backend)) extensions.insert(extension);
     if (*surface_) extensions.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    constexpr const char* portability = "VK_KHR_portability_subset";  // must be named where a device has it
+    constexpr const char* portability = "VK_KHR_portability_subset";  // must be enabled where a device has it
     if (contains(physical_.enumerateDeviceExtensionProperties(), portability)) extensions.insert(portability);
     vulkan12.bufferDeviceAddress = has_acceleration_structures();
     const auto switch_on = [&]<typename Structure>(vk::Bool32 Structure::*feature, bool is_there) {
@@ -301,7 +301,7 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eTopOfPipe, *timestamps_, 0);
     record(command_buffer_);
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, 1);
-    // What it has written is visible to the host.
+    // Make what it has written visible to the host.
     command_buffer_.pipelineBarrier(
         vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
         vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
@@ -321,14 +321,13 @@ VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebug
                                  const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages) {
     auto& received = *static_cast<Messages*>(messages);
     const std::lock_guard lock(received.mutex);
-    // Loader and driver report as 'general'; the layers check our use of Vulkan as 'validation' and
-    // 'performance'.
+    // Loader and driver send 'general' messages; the layers send 'validation' and 'performance'.
     auto& list = type == VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT ? received.driver : received.validation;
     list.emplace_back(data->pMessage);
     return VK_FALSE;
 }
 
-// The driver checks that a pipeline cache is its own; the name only keeps several devices apart.
+// The name keeps devices apart; the driver itself checks that a pipeline cache is its own.
 static std::string pipeline_cache_name(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties();
     const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()),
@@ -349,7 +348,7 @@ Device::~Device() {
             write_cache(pipeline_cache_name(physical_),
                         {reinterpret_cast<const char*>(contents.data()), contents.size()});
     } catch (const vk::SystemError&) {
-        // A lost device has no pipelines to keep.
+        // A lost device keeps no pipelines.
     }
 }
 

@@ -1,5 +1,4 @@
-// A Vulkan device with one queue, for compute and where asked for a window, and what the validation layers
-// had to say about its use.
+// A Vulkan device with one queue, for compute and optionally a window, and its validation messages.
 #pragma once
 #include <functional>
 #include <map>
@@ -23,30 +22,31 @@ inline constexpr Backend all_backends[] = {Backend::pipeline, Backend::query, Ba
 std::string to_string(Backend backend);
 
 struct DeviceOptions {
-    std::string choice;  // index or part of the name (any case) as in --list-devices; empty: the fastest kind
-    bool validation = false;  // switches the validation layer on; an error if it is not installed
-    // What a window needs to show pictures of the device; nothing without one.
+    std::string choice;       // index or part of the name as in --list-devices; empty: the fastest kind
+    bool validation = false;  // needs the validation layer to be installed
+    // For a window; empty without one.
     std::vector<const char*> instance_extensions = {};
     std::function<VkSurfaceKHR(VkInstance)> make_surface = {};
 };
 
-// What --list-devices tells of a device.
+// A device as --list-devices shows it.
 struct DeviceDescription {
     std::string name;
     std::string kind;    // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
-    std::string driver;  // name and version as the driver tells them
+    std::string driver;  // name and version
     std::string api_version;
-    bool shares_memory = false;                           // all of it with the CPU
-    size_t memory = 0;                                    // bytes that shaders can work in
-    size_t largest_buffer = 0;                            // bytes of one that shaders see in parts
-    std::map<Backend, std::vector<std::string>> missing;  // what the device lacks for each backend
+    bool shares_memory = false;                           // with the CPU
+    size_t memory = 0;                                    // bytes that shaders can use
+    size_t largest_buffer = 0;                            // bytes of a buffer that is bound part by part
+    std::map<Backend, std::vector<std::string>> missing;  // features that a backend lacks
 
     bool supports(Backend backend) const { return missing.at(backend).empty(); }
 };
 
 class Device {
   public:
-    // Throws DeviceError: no driver (with what to install), no such device, or one that lacks a feature.
+    // Throws DeviceError without a driver (saying what to install) or such a device, or if it lacks a
+    // feature.
     explicit Device(const DeviceOptions& options);
     ~Device();
     Device(const Device&) = delete;
@@ -57,7 +57,7 @@ class Device {
     const vk::raii::PipelineCache& pipeline_cache() const { return pipeline_cache_; }
     const DeviceDescription& description() const { return description_; }
     const vk::PhysicalDeviceLimits& limits() const { return limits_; }
-    // Those in a structure of their own.
+    // Properties in a structure of their own.
     template <typename Properties>
     Properties properties() const {
         return physical_.getProperties2<vk::PhysicalDeviceProperties2, Properties>()
@@ -67,19 +67,18 @@ class Device {
         return description_.supports(Backend::pipeline) || description_.supports(Backend::query);
     }
 
-    // For what shows pictures in a window. The surface is null where the device cannot present to it.
+    // For windows. The surface is null if the device cannot present to it.
     const vk::raii::Instance& instance() const { return instance_; }
     const vk::raii::SurfaceKHR& surface() const { return surface_; }
     const vk::raii::Queue& queue() const { return queue_; }
     uint32_t queue_family() const { return queue_family_; }
-    // Whoever uses queue() holds this lock: submit() does, and may be called by several threads.
+    // Hold this lock while using queue(). submit() takes it itself, from any thread.
     std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
 
-    // Records commands, submits them, waits, and returns the seconds they took on the device.
+    // Records and submits commands, waits for them, and returns their seconds on the device.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
-    // Errors and warnings of the validation layers so far, and the driver's own messages. Empty without
-    // validation.
+    // Messages of the validation layers and of the driver so far; empty without validation.
     const std::vector<std::string>& validation_messages() const { return messages_.validation; }
     const std::vector<std::string>& driver_messages() const { return messages_.driver; }
 
@@ -87,7 +86,7 @@ class Device {
     struct Messages {
         std::vector<std::string> validation;
         std::vector<std::string> driver;
-        std::mutex mutex;  // they come from whatever thread uses the device
+        std::mutex mutex;  // any thread may add messages
     };
     static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                     VkDebugUtilsMessageTypeFlagsEXT type,
@@ -117,10 +116,10 @@ class Device {
     size_t pipeline_cache_size_ = 0;
 };
 
-// Whatever has been written before can be read, and written again, by the commands that follow.
+// A barrier: commands that follow see, and may overwrite, all that was written before.
 void wait_for_writes(const vk::raii::CommandBuffer& commands);
 
-// All devices of this machine in the order of their indices. Throws DeviceError if there is no Vulkan driver.
+// All devices in the order of their indices. Throws DeviceError without a Vulkan driver.
 std::vector<DeviceDescription> list_devices();
 
 // What an exception means to a user of a program or a window.

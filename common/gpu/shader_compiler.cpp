@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The name in a line #include "name", if it is one.
+// The name in a line #include "name".
 std::optional<std::string> included_name(std::string_view line) {
     const auto skip = [&](std::string_view word) {
         line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -37,10 +37,10 @@ std::optional<std::string> included_name(std::string_view line) {
     return std::string(line.substr(0, end));
 }
 
-// Puts the text of included files in place of their #include "…" lines, each file once. #line directives keep
-// the names and lines of messages right. One text then serves as input of the compiler and as key of the
-// cache. Shaders come from elsewhere: what they include must lie in the folder of a file that is named here,
-// in shaders/ or in chapters/. Line ends and the mark at the beginning may be those of Windows.
+// Replaces #include "…" by the text of the file, each file once, with #line directives. The result is the
+// compiler's input and the key of the cache. Shaders may come from strangers, so included files must lie in
+// the folder of a named file, in shaders/ or in chapters/. Line ends and byte order mark may be those of
+// Windows.
 class Includer {
   public:
     explicit Includer(const ShaderSource& source) : named_(source.named_includes) {
@@ -63,11 +63,11 @@ class Includer {
         return text;
     }
 
-    // Those in the text so far, without the first one.
+    // Files included so far.
     const std::set<fs::path>& included() const { return seen_; }
 
   private:
-    // What stands for a line of the includer.
+    // The replacement of an #include line.
     std::string include(const std::string& name, const fs::path& includer, int line) {
         const std::string place = includer.generic_string() + ":" + std::to_string(line) + ": ";
         const fs::path file = find(name, includer, place);
@@ -120,8 +120,8 @@ constexpr struct {
     {"l-value required", "what is const cannot be assigned"},
 };
 
-// Whether a message of glslang, "file:line: 'token' : text", names one byte of a character that is not ASCII,
-// which no terminal shows.
+// Finds the token in a message "file:line: 'token' : text" of glslang that is a single byte of a non-ASCII
+// character.
 size_t find_lone_byte(const std::string& line) {
     const size_t token = line.find(": '");
     const bool is_lone = token != std::string::npos && token + 4 < line.size() &&

@@ -1,4 +1,4 @@
-// Compiles GLSL at run time with glslang, so that a shader can be edited without rebuilding the program.
+// Compiles GLSL at run time by glslang, so that shaders can be edited without rebuilding the program.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -12,21 +12,20 @@ namespace lab {
 constexpr uint64_t max_shader_bytes = 1 << 20;  // of each file
 
 struct ShaderSource {
-    std::filesystem::path file;             // its ending names the stage: .comp, .rgen, .rmiss or .rchit
+    std::filesystem::path file;             // stage by extension: .comp, .rgen, .rmiss or .rchit
     std::vector<std::string> defines = {};  // "NAME" or "NAME value"
-    // What #include "name" stands for. Other names are looked up beside the includer, in shaders/ and in
-    // chapters/, and may not lead out of these files' folders, shaders/ and chapters/. A file is included
-    // once, even where an #if skips it.
+    // Files for #include "name". Other names are looked up beside the includer, in shaders/ and in chapters/,
+    // and must not lead out of the folders of these files, shaders/ and chapters/. Each file is included once,
+    // even where an #if skips it.
     std::map<std::string, std::filesystem::path> named_includes = {};
-    // Changes the whole text before it is compiled, if there is anything to change; line by line the same.
+    // Edits the text before it is compiled; lines keep their numbers.
     std::function<std::string(const std::string&)> edit = {};
 };
 
-// The shader's file and all that it includes. Throws UserError if one is missing or refused.
+// The shader's file and all included ones. Throws UserError if one is missing or refused.
 std::vector<std::filesystem::path> shader_files(const ShaderSource& source);
 
-// SPIR-V 1.5 words, from the cache where the same text was compiled before.
-// Throws UserError with lines of the form "file:line: message".
+// Returns SPIR-V 1.5, from the cache if possible. Throws UserError with lines "file:line: message".
 std::vector<uint32_t> compile_shader(const ShaderSource& source);
 
 }  // namespace lab

@@ -9,9 +9,9 @@
 namespace lab {
 namespace {
 
-constexpr int level = 4;  // what is noise hardly gets smaller by more work
+constexpr int level = 4;  // noise hardly gets smaller with more work
 
-// All of a stream or a part of it: raw parts have neither header nor checksum, and end at a whole byte.
+// A whole stream or, with negative window bits, a raw part without header and checksum.
 std::string deflate_all(std::string_view bytes, int window_bits, int flush) {
     z_stream stream{};
     if (deflateInit2(&stream, level, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY) != Z_OK)

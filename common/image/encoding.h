@@ -1,4 +1,4 @@
-// What the writers of image files share: numbers as bytes, and compression by zlib.
+// Numbers as bytes, and compression by zlib.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -7,17 +7,17 @@
 
 namespace lab {
 
-// Of the number's own size.
+// The bytes of a number.
 template <typename Number>
 std::string little_endian(Number number) {
     static_assert(std::endian::native == std::endian::little);
     return {reinterpret_cast<const char*>(&number), sizeof number};
 }
 
-// One zlib stream, made by the calling thread.
+// A zlib stream, made by the calling thread.
 std::string compress(std::string_view bytes);
 
-// One zlib stream as well, made by all threads: it consists of pieces that know nothing of each other.
+// A zlib stream of independent pieces, made by all threads.
 std::string compress_in_parallel(std::string_view bytes);
 
 }  // namespace lab

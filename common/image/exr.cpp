@@ -1,4 +1,4 @@
-// OpenEXR files through tinyexr, behind checks: damaged headers make tinyexr abort or allocate without bound.
+// Reads OpenEXR by tinyexr, behind checks: damaged headers make it abort or allocate without bound.
 #include <tinyexr.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace {
     fail(file, "damaged or unsupported OpenEXR file: " + reason.substr(0, reason.find('\n')));
 }
 
-// Walks over the attributes of a file (name, type, size and value each) for the one that tinyexr trusts: it
-// aborts if the optional attribute "type" is not of its list.
+// Walks over the attributes (name, type, size, value) to check "type", at whose unknown values tinyexr
+// aborts.
 void check_attributes(const std::filesystem::path& file, std::string_view bytes) {
     bytes.remove_prefix(8);  // magic number and version
     const auto take_string = [&] { return take_until('\0', file, bytes); };
@@ -41,7 +41,7 @@ void check_attributes(const std::filesystem::path& file, std::string_view bytes)
     }
 }
 
-// Sizes that fit the limits and the file, and channels that fill the whole image.
+// Checks that sizes fit the limits and the file, and that channels fill the whole image.
 void check_header(const std::filesystem::path& file, const EXRHeader& header, uint64_t file_size) {
     const EXRBox2i& window = header.data_window;
     const int64_t width = int64_t{window.max_x} - window.min_x + 1;
@@ -93,7 +93,7 @@ ExrFile collect(const std::filesystem::path& file, const EXRHeader& header, cons
         if (std::string_view(attribute.type) != "string") continue;
         std::string value(reinterpret_cast<const char*>(attribute.value),
                           static_cast<size_t>(attribute.size));
-        if (value == std::string(1, '\0')) value.clear();  // how tinyexr hands over an empty string
+        if (value == std::string(1, '\0')) value.clear();  // tinyexr's empty string
         exr.attributes[attribute.name] = value;
     }
     return exr;
@@ -106,7 +106,7 @@ ExrFile read_exr(const std::filesystem::path& file) {
     const size_t size = bytes.size();
     if (size < 8 || !bytes.starts_with("\x76\x2f\x31\x01")) fail(file, "not an OpenEXR file");
     check_attributes(file, bytes);
-    // PIZ tables, of at most 8 KiB, are read without regard to the end of the file: let them end in zeros.
+    // tinyexr reads PIZ tables of up to 8 KiB past the end of the file: append zeros.
     bytes.resize(size + 16384);
     const auto* memory = reinterpret_cast<const unsigned char*>(bytes.data());
     try {
@@ -123,7 +123,7 @@ ExrFile read_exr(const std::filesystem::path& file) {
         check_header(file, header, size);
         std::fill_n(header.requested_pixel_types, header.num_channels, TINYEXR_PIXELTYPE_FLOAT);
         header.chunk_count = 0;  // tinyexr computes it then, and does not allocate what the file claims
-        header.line_order = 0;   // rows carry their number; tinyexr would turn decreasing ones upside down
+        header.line_order = 0;   // rows carry their number; tinyexr would flip decreasing ones
         EXRImage decoded;
         InitEXRImage(&decoded);
         const std::unique_ptr<EXRImage, decltype(&FreeEXRImage)> frees_image(&decoded, FreeEXRImage);

@@ -1,5 +1,5 @@
-// Writes OpenEXR files, as tools/references/exr.py does: 32-bit floats in scan lines, 16 rows a block, each
-// compressed on its own, so that all threads can work.
+// Writes OpenEXR files: 32-bit floats in scan lines, in blocks of 16 rows that all threads compress.
+// (tinyexr's writer uses one thread.)
 #include <algorithm>
 #include <cstring>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t rows_per_block = 16;
 
-// A channel's numbers in memory: number i at first[i * stride].
+// A channel in memory: number i is first[i * stride].
 struct Plane {
     const float* first;
     size_t stride;

@@ -1,4 +1,4 @@
-// Images in memory, and the files they come from and go to. Readers refuse damaged files: UserError.
+// Images and their files. Readers throw UserError for damaged files, all writers replace the file atomically.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,23 +20,22 @@ struct Image {
     std::vector<float> pixels;
 };
 
-// Eight bits a channel, sRGB-encoded colour and linear alpha; pixels has 4 * width * height bytes.
+// RGBA with 8 bits per channel: sRGB-encoded colour, linear alpha; pixels has 4 * width * height bytes.
 struct Texture {
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<uint8_t> pixels;
 };
 
-// An OpenEXR file: channels R, G, B (32-bit float), named further channels and string attributes. Names have
-// at most 31 characters; there are at most 128 attributes, none named like one that every OpenEXR file has
-// ("type", ...).
+// An OpenEXR file: R, G, B as 32-bit floats, further channels and string attributes. Names have at most 31
+// characters. There are at most 128 attributes, none with a standard name such as "type".
 struct ExrFile {
     Image image;
     std::map<std::string, std::vector<float>> channels;  // each has width * height numbers
     std::map<std::string, std::string> attributes;
 };
 
-// Largest width and height of any image read or written.
+// Largest width and height of an image.
 inline constexpr uint32_t max_image_extent = 16384;
 
 // Reads single-part scan line files, uncompressed or RLE, ZIP or PIZ; 16-bit floats are widened.
@@ -48,19 +47,18 @@ Image read_radiance(const std::filesystem::path& file);
 // Colour from .png, .jpg, .bmp or .tga.
 Texture read_texture(const std::filesystem::path& file);
 
-// Writers: the file appears complete or not at all (a temporary file is renamed).
 void write_exr(const std::filesystem::path& file, const ExrFile& exr);
 void write_hdr(const std::filesystem::path& file, const Image& image);
 void write_png(const std::filesystem::path& file, const Texture& image);
 void write_jpg(const std::filesystem::path& file, const Texture& image);
 
-// check_writable() of files/file.h for an image.
+// check_writable() for an image.
 inline void check_writable(const std::filesystem::path& file) {
     check_writable(file, {".exr", ".hdr", ".png", ".jpg"});
 }
 
-// The sRGB transfer function (IEC 61966-2-1) from linear [0,1] to encoded [0,1]; clamps. Linear near black,
-// where a power would have infinite slope. In double, so that bytes survive the way to linear and back.
+// The sRGB transfer function (IEC 61966-2-1) from linear to encoded values, clamped to [0,1]. In double, so
+// that bytes survive the way to linear and back.
 inline float linear_to_srgb(float linear) {
     const double value = std::clamp(static_cast<double>(linear), 0.0, 1.0);
     return static_cast<float>(value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055);

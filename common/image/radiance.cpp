@@ -1,4 +1,4 @@
-// Radiance from .hdr (RGBE, as of Ward's Radiance) and .exr files.
+// Reads radiance from .hdr (RGBE) and .exr files.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -25,8 +25,8 @@ void read_resolution(const std::filesystem::path& file, std::string_view line, I
     check_image_size(file, image.width, image.height);
 }
 
-// One row of four bytes a pixel. Rows of 8 pixels or more are run-length encoded, channel by channel, if they
-// start with 2, 2 and their width.
+// Reads a row of four bytes per pixel. Rows of 8 pixels or more that start with 2, 2 and their width are
+// run-length encoded channel by channel.
 void read_row(const std::filesystem::path& file, std::string_view& bytes, std::vector<uint8_t>& row) {
     const auto next = [&] {
         if (bytes.empty()) fail_truncated(file);

@@ -14,14 +14,14 @@
 namespace lab {
 namespace {
 
-// stb_image takes zeros for what is missing from a truncated file. Reading through callbacks shows that it
-// asked for more than there is.
+// stb_image fills truncated files up with zeros. Reading by callbacks shows that it asked for more than there
+// is.
 struct ByteSource {
     std::string_view bytes;
     size_t position = 0;
     bool exhausted = false;
 
-    // stb_image fills a buffer of 128 bytes ahead: only there a short answer is normal at the end of a file.
+    // Only the 128 bytes that stb_image buffers ahead may be cut short by the end of a file.
     static int read(void* user, char* target, int size) {
         auto& source = *static_cast<ByteSource*>(user);
         const size_t count = std::min(static_cast<size_t>(size), source.bytes.size() - source.position);
@@ -47,10 +47,9 @@ struct ByteSource {
 
 constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSource::at_end};
 
-// stb_image up to version 2.27 writes past its array for a Huffman table of more than 256 codes, and a
-// progressive file can let it pass over a large image in many scans of a few bytes each: encoders make about
-// ten. Walks over the segments of a .jpg file, each a marker byte after 0xff and a length of two bytes, as
-// stb_image does.
+// stb_image up to 2.27 overruns an array for Huffman tables of more than 256 codes, and many scans of a few
+// bytes let it pass over a large progressive image again and again (encoders make about ten scans). Walks
+// over the segments of a .jpg file (0xff, marker, length in two bytes) as stb_image does.
 bool is_harmless_jpg(std::string_view jpg) {
     constexpr size_t max_scans = 64;
     size_t scans = 0;
@@ -94,8 +93,8 @@ Texture read_texture(const std::filesystem::path& file) {
     if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels))
         fail(file, "not a texture: it must be a .png, .jpg, .bmp or .tga file");
     check_image_size(file, width, height);
-    // A file cannot hold more pixels, and memory is not allocated for them: in .png a bit a pixel, deflated;
-    // elsewhere a bit for each 8 x 8 pixels of .jpg is the least.
+    // A pixel takes at least a deflated bit in .png, and 1/64 bit in .jpg (a bit per 8 x 8 block): refuse
+    // more before allocating.
     const uint64_t max_pixels_a_byte = bytes.starts_with("\x89PNG") ? 8 * max_deflate_ratio : 8 * 64;
     if (static_cast<uint64_t>(width) * height > max_pixels_a_byte * bytes.size()) fail_truncated(file);
 

@@ -1,5 +1,5 @@
-// The one place where the code of the stb single-header libraries is compiled.
-// radiance.cpp reads .hdr itself: stb_image does not end on some truncated ones.
+// Compiles the stb libraries. radiance.cpp reads .hdr itself, because stb_image does not end on some
+// truncated files.
 #include <cstring>
 
 #include "image/encoding.h"

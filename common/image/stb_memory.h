@@ -1,4 +1,4 @@
-// The memory that stb_image takes: what a damaged file claims to need is not known before it is decoded.
+// Limits the memory of stb_image, since damaged files may claim any amount.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,8 +17,7 @@ inline void* stb_allocate(void* block, size_t size) {
         stb_memory.exceeded = true;
         return nullptr;
     }
-    // New blocks hold zeros: stb_image up to version 2.27 decodes with tables that a damaged .jpg has not
-    // defined.
+    // Zeroed, because stb_image up to 2.27 uses tables that a damaged .jpg has not defined.
     return block ? std::realloc(block, size) : std::calloc(1, size);
 }
 

@@ -13,7 +13,7 @@
 namespace lab {
 namespace {
 
-// Samples of an image of at most 128 x 128 pixels per second on the device. They are thrown away.
+// Samples per second of the device, for an image of at most 128 x 128 pixels.
 double measure_speed(Backend backend, const Device& device, const GpuScene& scene, const Estimator& estimator,
                      const RenderParameters& parameters) {
     const auto structure = build_acceleration_structure(backend, device, scene);
@@ -82,7 +82,7 @@ Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene&
 
 bool can_show(const View& view, Backend backend) {
     if (backend == Backend::compute) return true;
-    // Our own hierarchy is that of the backend compute. Lanes may be counted in compute shaders only.
+    // Only `compute` traverses our own hierarchy, and only compute shaders can count lanes.
     if (view.name == "bvh-steps") return false;
     return view.name != "idle-lanes" || backend == Backend::query;
 }

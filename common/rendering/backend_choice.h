@@ -4,13 +4,12 @@
 
 namespace lab {
 
-// Whether a view can be shown with this backend.
+// Whether a backend supports a view.
 bool can_show(const View& view, Backend backend);
 
-// The backend that the job's options name; for "auto" the one that a short measurement on this scene finds
-// fastest. The choice is kept for the device, its driver and the decade of the number of triangles, so only
-// the first run pays for it. Views trace camera rays only, so that their speed says nothing about renders:
-// "auto" is `compute` there. Throws UserError for a view that does not work with the backend.
+// The backend of the job's options; "auto" measures which is fastest on this scene and caches the choice by
+// device, driver and decade of the triangle count. Views trace only camera rays, which would mislead the
+// measurement: they use `compute`. Throws UserError for a view that the backend does not support.
 Backend choose_backend(const RenderJob& job, const Device& device, const GpuScene& scene);
 
 }  // namespace lab

@@ -5,7 +5,7 @@
 namespace lab {
 namespace {
 
-// Windows begin and end at multiples of this: no device asks for more.
+// Of windows, in bytes: no device asks for more.
 constexpr size_t alignment = 256;
 
 }  // namespace

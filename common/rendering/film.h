@@ -1,39 +1,38 @@
-// The film collects the samples of all pixels on the device and keeps them exactly enough for 10^7 samples a
-// pixel.
+// Sums the samples of all pixels on the device, exactly enough for 10^7 samples per pixel.
 #pragma once
 #include "film/film_image.h"
 #include "gpu/compute_kernel.h"
 
 namespace lab {
 
-// Blocks of pixels that cover an image, as in shaders/blocks.glsl.
+// Number of blocks of pixels that cover an image, as in shaders/blocks.glsl.
 uint32_t count_blocks(uvec2 image_size);
 
-// What shaders see of a film at a time: all of it, unless that is more than a device can bind.
+// The part of the film that is bound: all of it, unless that is more than the device can bind.
 struct FilmWindow {
     uint32_t first_pixel;  // index, row by row
-    uint32_t end_block;    // the blocks before this one are in it, from the one that was asked for
+    uint32_t end_block;    // blocks from the requested one up to this one are in it
     uint32_t offset() const { return first_pixel * uint32_t{sizeof(FilmPixel)}; }  // in bytes
 };
 
 class Film {
   public:
-    // What a film of this size allocates.
+    // Memory of a film of this size.
     static MemoryNeed memory_need(uint32_t width, uint32_t height);
-    // Of the largest film that a device can hold.
+    // Pixels of the largest film that a device can hold.
     static size_t max_pixels(const DeviceDescription& device);
 
-    // Starts without samples. A window has at most so many bytes, and room for a row of blocks.
+    // Starts without samples. A window has at most `max_window` bytes, and room for a row of blocks.
     Film(const Device& device, uint32_t width, uint32_t height, size_t max_window = SIZE_MAX);
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    // Of a window, whose offset each dispatch gives.
+    // Binding of a window, at an offset that dispatches give.
     Binding binding() const;
     FilmWindow window_from(uint32_t block) const;
 
-    void clear();  // to no samples
-    // To a size of at most as many pixels as the first one, without samples.
+    void clear();
+    // Clears the film and gives it a size of at most the first number of pixels.
     void resize(uint32_t width, uint32_t height);
     FilmImage read() const;
     void write(const FilmImage& image);  // of the same size

@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// Accepts finite numbers in [low, high]: `nan` and `inf` parse as numbers too.
+// Accepts finite numbers in [low, high]; CLI11 itself takes nan and inf, too.
 CLI::Validator within(double low, double high, const std::string& meaning) {
     return {[=](std::string& text) -> std::string {
                 char* end = nullptr;
@@ -21,7 +21,7 @@ CLI::Validator within(double low, double high, const std::string& meaning) {
             meaning};
 }
 
-// To be used with transform(): takes zeros off that stand in front, which would make the number an octal one.
+// For transform(): removes leading zeros, which would make the number octal.
 CLI::Validator whole_number(uint32_t low, uint32_t high) {
     const std::string meaning = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
     return {[=](std::string& text) -> std::string {
@@ -112,7 +112,7 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
     app.add_flag("--quiet", run.quiet, "Print errors only");
 }
 
-// What only some chapters have.
+// Options of this chapter.
 void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options) {
     std::map<std::string, Strategy> strategies;
     for (const Strategy strategy : chapter.strategies) strategies[to_string(strategy)] = strategy;
@@ -138,7 +138,7 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
     }
 }
 
-// A scene is a file or the name of one in assets/scenes.
+// Finds a scene by its file or its name in assets/scenes.
 std::filesystem::path find_scene(const std::string& name) {
     std::error_code ignored;  // a name that the file system refuses is reported when it is read
     if (std::filesystem::exists(name, ignored)) return name;

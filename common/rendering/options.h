@@ -10,8 +10,8 @@
 
 namespace lab {
 
-// A picture of something else than radiance: what shaders/view.glsl shows when `define` is defined, or what
-// `observer`, a file in shaders/, finds when it watches the chapter's estimator.
+// A picture of something else than radiance: shaders/view.glsl with `define`, or the file `observer` of
+// shaders/, which watches the chapter's estimator.
 struct View {
     std::string name;
     std::string define;
@@ -20,10 +20,10 @@ struct View {
 };
 const std::vector<View>& views();
 
-// Whether a window opens: yes, no, or where there is a display and someone at a terminal who can see it.
+// Whether to open a window; automatic: at a terminal with a display.
 enum class WindowChoice { automatic, always, never };
 
-// What is read from files.
+// Read from files.
 struct SceneOptions {
     std::filesystem::path file;
     bool specular = false;
@@ -49,35 +49,35 @@ struct CameraOptions {
     bool operator==(const CameraOptions&) const = default;
 };
 
-// Which light the picture shows.
+// Light in the picture.
 struct LightOptions {
     std::optional<vec3> background;
     std::optional<uint32_t> max_path_length, only_path_length;
     bool operator==(const LightOptions&) const = default;
 };
 
-// What changes the samples, but not their expectation.
+// Change samples, but not their expectation.
 struct SampleOptions {
     uint32_t seed = 1;
     uint32_t first_sample = 0;
-    std::vector<std::optional<double>> chapter_values;  // one for each of the chapter's options, if given
+    std::vector<std::optional<double>> chapter_values;  // per option of the chapter, if given
     bool operator==(const SampleOptions&) const = default;
 };
 
-// What changes no sample.
+// Change no sample.
 struct AppearanceOptions {
-    std::optional<uint32_t> sample_count;  // of a pixel
+    std::optional<uint32_t> sample_count;  // per pixel
     float exposure = 0;                    // stops
     bool operator==(const AppearanceOptions&) const = default;
 };
 
-// Where it runs, and what is made of the picture.
+// Device, outputs and limits of the run.
 struct RunOptions {
     std::string backend = "auto";
     std::string device;
     bool list_devices = false;
     std::vector<std::filesystem::path> outputs;
-    bool has_default_outputs = false;  // whether nobody has named them
+    bool has_default_outputs = false;  // not named by the user
     std::filesystem::path reference;
     std::filesystem::path report;
     std::optional<double> target_error;  // square root of rel_mse
@@ -89,7 +89,7 @@ struct RunOptions {
     bool quiet = false;
 };
 
-// In groups that are compared and taken over as wholes.
+// In groups that are compared and copied as wholes.
 struct Options {
     SceneOptions scene;
     EstimatorOptions estimator;
@@ -101,11 +101,11 @@ struct Options {
     RunOptions run;
 };
 
-// Whether it asks for what only a run without a window does: measurements and stopping by itself.
+// Whether options ask for measurements or limits, which only runs without a window have.
 bool needs_no_window(const Options& options);
 
-// Parses the command line. Returns nothing where the program is already done (--help, --version), after
-// printing. Throws UserError with one line for anything it does not understand.
+// Parses the command line. Prints and returns nothing for --help and --version. Throws UserError for anything
+// it does not understand.
 std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments);
 
 }  // namespace lab

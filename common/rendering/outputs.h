@@ -1,4 +1,4 @@
-// The files that a render leaves behind.
+// Files that a render writes: pictures and reports.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -12,33 +12,32 @@
 
 namespace lab {
 
-// Writes the film in the format that the file's ending asks for. PNG and JPG show it as --view and --exposure
-// say.
+// Writes the film in the format of the file's extension. --view and --exposure affect PNG and JPG.
 void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record,
                    const Options& options);
 
-// After a failure of the device or of memory: writes the film that was last read, and throws DeviceFailure
-// with what has happened first and what is left. Other errors are thrown again.
+// After a failure of device or memory: calls write() for the film that was last read, then throws
+// DeviceFailure with cause and remains. Rethrows other errors.
 [[noreturn]] void keep_after(const std::exception& error, const FilmImage& film,
                              const std::function<void()>& write);
 
-// Writes all files, also those after one that cannot be written; then throws the first UserError, if any.
+// Writes all files even if some fail; then throws the first UserError.
 void write_each(const std::vector<std::filesystem::path>& files,
                 const std::function<void(const std::filesystem::path&)>& write);
 
 struct ReportRow {
-    uint32_t samples = 0;       // a pixel
-    double seconds = 0;         // that a user waits for while it renders, without those of making rows
-    double device_seconds = 0;  // that the device was busy in this run
+    uint32_t samples = 0;       // per pixel
+    double seconds = 0;         // of rendering, without the making of rows
+    double device_seconds = 0;  // of the device in this run
     uint64_t rays = 0;
     std::array<double, 3> mean{};  // radiance of the image
     std::optional<ErrorMetrics> error;
 };
 
-// What the errors of a report are: against a reference, or estimated from two halves of the samples.
+// Errors are against a reference, or estimated from two halves of the samples.
 enum class ErrorSource { reference, halves };
 
-// Writes .json or .csv, by the file's ending.
+// Writes .json or .csv.
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
                   const AccelerationStructure& acceleration_structure, ErrorSource source,
                   const std::vector<ReportRow>& rows);

@@ -14,29 +14,28 @@ struct RenderJob {
     Estimator estimator;
     std::shared_ptr<const Scene> scene;
     RenderParameters parameters{};
-    uint32_t samples = 0;  // wanted in every pixel
+    uint32_t samples = 0;  // wanted per pixel
     FilmRecord record = {};
     bool low_discrepancy = false;          // of the chapter
     std::optional<FilmFile> resumed = {};  // the run that this one continues
 
-    // Whether the first half of 2^k samples is independent of the second, so that they tell the error. Of
-    // low-discrepancy points samples 2^k to 2^(k+1) - 1 share a scramble, counted from 0.
+    // Whether the two halves of 2^k samples are independent, so that their difference gives the error.
+    // Low-discrepancy samples 2^k to 2^(k+1) - 1, counted from 0, share a scramble.
     bool has_independent_halves() const { return !low_discrepancy || record.first_sample == 0; }
-    // The error of a film, told from an earlier state of it that has half the samples. Unknown for others,
-    // and for films in which no sample has found light yet.
+    // Estimates the error of a film from an earlier state with half the samples. Unknown for other counts,
+    // and while the film is black.
     std::optional<ErrorMetrics> error_from(const FilmImage& half, const FilmImage& whole) const;
 };
 
-// Samples a pixel at which a render that has fewer than `target` looks at its error next: at powers of two
-// and at the target. A look at every dispatch would prefer images that look converged by chance.
+// The sample count at which a render looks at its error next: a power of two or the target. Looking at every
+// dispatch would favour images that look converged by chance.
 uint32_t next_look(uint32_t samples, uint32_t target);
 
-// Everything about the render that needs no device, so that mistakes show before one is asked for. Throws
-// UserError for a scene that the chapter would render wrongly, and for options that contradict each other or
-// what --resume continues.
+// Prepares everything that needs no device, so that mistakes show first. Throws UserError for scenes that the
+// chapter cannot render, and for options that contradict each other or what --resume continues.
 RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_ptr<const Scene> scene);
 
-// Puts other options into a job of the same scene and estimator; what it continues is forgotten.
+// Changes the options of a job with the same scene and estimator, which no longer continues an earlier run.
 void set_options(RenderJob& job, const Chapter& chapter, const Options& options);
 
 }  // namespace lab

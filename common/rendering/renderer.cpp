@@ -8,13 +8,12 @@
 namespace lab {
 namespace {
 
-// Workgroups that keep a large device busy, which works on 4000 at a time. Of images with fewer blocks of
-// pixels several share a block. That is compiled in: the mere possibility makes large images slower
+// Workgroups that keep a device busy that runs 4000 at a time. In images with fewer blocks, several
+// workgroups share a block. This is a define, because the mere possibility slows large images down
 // (docs/backends.md).
 constexpr uint32_t enough_groups = 8192;
-// Samples of pixels that are shared wait to be added to the film: at most so many of each group's pixels. The
-// more a thread renders, the less it waits for others at the end. All of them fit into 128 MiB, which is as
-// much as some devices let shaders see of a buffer.
+// Samples per workgroup and pixel that wait to be added to the film. More would let threads wait less for
+// others at the end; all must fit into 128 MiB, the largest binding of some devices.
 constexpr uint32_t samples_per_group = 20;
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }

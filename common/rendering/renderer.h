@@ -10,54 +10,54 @@ namespace lab {
 // Key of the random start states for a seed.
 uvec2 seed_key(uint32_t seed);
 
-// The bounce at which Russian roulette begins where there is none.
+// The first bounce of Russian roulette where there is none.
 inline constexpr uint32_t no_roulette = UINT32_MAX;
 
-// To render a scene as its file asks, with seed 1, without splitting and roulette; the second from another
-// camera.
+// Parameters to render a scene as its file asks, with seed 1, without splitting and roulette; optionally from
+// another camera.
 RenderParameters default_parameters(const Scene& scene, uvec2 image_size);
 RenderParameters default_parameters(const Scene& scene, const CameraPose& camera, uvec2 image_size);
 
 class Renderer {
   public:
-    // What a renderer of images of this size allocates.
+    // Memory of a renderer for this image size.
     static std::vector<MemoryNeed> memory_needs(uvec2 image_size);
 
-    // The device and the acceleration structure must outlive the renderer. An estimator may have bindings of
-    // its own. `max_film_window` as of Film.
+    // Device and acceleration structure must outlive the renderer. `further_bindings` are the estimator's
+    // own, `max_film_window` is Film's.
     Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
              const Estimator& estimator, const RenderParameters& parameters,
              std::span<const Binding> further_bindings = {}, size_t max_film_window = SIZE_MAX);
 
-    // One dispatch of about `dispatch_seconds` on the way to `target_samples` samples in every pixel; true
-    // while more are needed. Short dispatches keep driver watchdogs quiet and the program responsive: one
-    // sample of a large image can take a minute on a slow device.
+    // Makes one dispatch of about `dispatch_seconds` towards `target_samples` per pixel; true while more are
+    // needed. Short dispatches keep driver watchdogs quiet and the program responsive: a sample of a large
+    // image can take a minute on a slow device.
     bool advance(uint32_t target_samples);
 
     Film& film() { return film_; }
     const Film& film() const { return film_; }
     uint64_t rays() const { return rays_; }                    // traced so far
-    double device_seconds() const { return device_seconds_; }  // spent by the device so far
+    double device_seconds() const { return device_seconds_; }  // on the device so far
     // Samples per pixel so far, averaged over the image.
     double samples() const;
 
-    // Begins anew with other parameters, of an image of at most as many pixels as the first one.
+    // Restarts with other parameters, for an image of at most the first number of pixels.
     void restart(const RenderParameters& parameters);
-    // Goes on from an image of the same size instead of from nothing.
+    // Continues from an image of the same size.
     void resume(const FilmImage& image);
     void set_dispatch_seconds(double seconds) { dispatch_seconds_ = seconds; }
 
   private:
     uint32_t block_count() const;
-    // Brings blocks from next_block_ on, which are in the window, from finished_samples_ to pass_samples_.
+    // Renders `blocks` from next_block_ on, all in the window, from finished_samples_ to pass_samples_.
     void record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const;
 
     const Device* device_;
     Buffer parameters_;
-    std::optional<Buffer> samples_;  // of shared pixels, rendered and not yet added to the film
+    std::optional<Buffer> samples_;  // of shared pixels, not yet added to the film
     Buffer ray_counters_;
     Film film_;
-    std::optional<ComputeKernel> adder_;  // where pixels are shared
+    std::optional<ComputeKernel> adder_;  // for shared pixels
     std::unique_ptr<Tracer> tracer_;
 
     double dispatch_seconds_ = 0.1;

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// All images in assets/references that say they show this file, in the order of their names.
+// All references of this scene file, sorted by name.
 std::vector<Reference> references_of(const fs::path& scene_file) {
     std::vector<fs::path> files;
     std::error_code none;  // a project without references has no verdict
@@ -32,7 +32,7 @@ bool are_equal(const Camera& a, const Camera& b) {
     return a.position == b.position && a.forward == b.forward && a.right == b.right && a.up == b.up;
 }
 
-// What makes the image another one than that of the scene's file, if anything.
+// Why the image differs from that of the scene's file; empty if it does not.
 std::string difference_from_file(const Scene& scene, const RenderParameters& parameters) {
     const RenderParameters of_file = default_parameters(scene, parameters.image_size);
     if (!are_equal(parameters.camera, of_file.camera)) return "the camera has moved";

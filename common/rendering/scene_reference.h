@@ -1,4 +1,4 @@
-// The image that a scene should converge to, if one has been made (./lab reference).
+// The reference image of a scene, made by ./lab reference.
 #pragma once
 #include <variant>
 
@@ -7,13 +7,12 @@
 
 namespace lab {
 
-// The reference in assets/references that shows what is rendered with these parameters, or why there is none:
-// in one line, to be shown after "no verdict: ". Moved cameras, another sky and other path lengths have other
-// images.
+// Finds the reference for a render with these parameters, or says why there is none in a line that follows
+// "no verdict: ": camera, sky and path length must match.
 std::variant<Reference, std::string> find_reference(const Scene& scene, const RenderParameters& parameters);
 
-// What a reference says about itself that is not so of the image, in one line: it is of another scene or of
-// other path lengths. Empty where it says nothing of the kind.
+// How a reference's attributes contradict the image, in one line: another scene or path length. Empty if they
+// do not.
 std::string mismatch(const Reference& reference, const Scene& scene, const RenderParameters& parameters);
 
 }  // namespace lab

@@ -17,15 +17,15 @@ bool is_emissive(const Scene& scene, uint32_t triangle) {
     return scene.material_of(triangle).emission != vec3(0);
 }
 
-// Lets the second triangle's corners run the other way round from the first one's first corner: then a point
-// has the same barycentric coordinates in both, exchanged.
+// Rotates the second triangle's corners to start with the first triangle's first, so that a point has the
+// same barycentric coordinates in both, exchanged.
 void align(Scene& scene, uint32_t first, uint32_t second) {
     uvec3& corners = scene.triangles[second];
     while (scene.corner(second, 0) != scene.corner(first, 0))
         corners = uvec3(corners.y, corners.z, corners.x);
 }
 
-// A triangle in the place of an emissive one. The first of those that face the same way stays.
+// A triangle in the place of an emissive one, in the order of preference.
 struct Candidate {
     Place place;
     bool is_dark;
@@ -94,7 +94,7 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
             (left_out.size() > 1 ? ", as " + std::to_string(left_out.size() - 1) + " others" : ""));
     }
 
-    // Where the triangles that stay will be.
+    // New indices of the triangles that stay.
     std::vector<uint32_t> moved(mesh.triangle_count);
     auto next_left_out = left_out.begin();
     uint32_t count = 0;
@@ -139,7 +139,7 @@ std::vector<std::string> coincident_light_warnings(const Scene& scene, const std
         lights.push_back({get_place(scene, scene.instances[instance], triangle), instance, triangle});
         for (const auto& [x, y, z] : lights.back().place.corners) bounds.grow({x, y, z});
     });
-    // Any difference within a place shows in its first or its last light.
+    // Any difference within a place shows in its first or last light.
     std::sort(lights.begin(), lights.end(), [&](const PlacedLight& a, const PlacedLight& b) {
         const auto key = [&](const PlacedLight& light) {
             const vec3 e = scene.material_of(light.triangle).emission;

@@ -9,14 +9,14 @@
 
 namespace lab {
 
-// Parses JSON text. UserError in one line, with the line number, for syntax errors and deep nesting.
+// Parses JSON. Throws UserError with the line number for syntax errors, and for deep nesting.
 nlohmann::json parse_json(const std::string& file, const std::string& text);
 
-// An object whose keys are read one by one. Every function throws a UserError for a value of the wrong type
-// or out of range; those that return an optional return nothing if the key is absent. All numbers are finite.
+// An object whose keys are read one by one. Functions throw UserError for values of the wrong type or out of
+// range, and return nothing for absent keys. All numbers are finite.
 class JsonObject {
   public:
-    // `where` is what errors call the object. UserError if it is no object or has a key that is not `known`.
+    // Errors call the object `where`. Throws UserError if it is no object or has a key that is not `known`.
     JsonObject(const nlohmann::json& value, std::string file, std::string where,
                std::initializer_list<const char*> known);
 
@@ -31,7 +31,7 @@ class JsonObject {
     std::optional<bool> boolean(const char* key) const;
     std::optional<std::string> text(const char* key) const;
 
-    // What an optional holds; UserError if the key is absent.
+    // The value; throws UserError if the key is absent.
     template <typename Value>
     Value required(const char* key, const std::optional<Value>& value) const {
         if (!value) fail(key, "is missing");

@@ -25,8 +25,7 @@ double get_world_area(const Scene& scene, const LightTriangle& light) {
     return 0.5 * glm::length(glm::cross(side(1), side(2)));
 }
 
-// Rays find one of several instances' emissive triangles in the same place: the table counts the first, too,
-// and keeps the order.
+// Of emissive triangles of several instances in the same place rays find one: keeps the first.
 void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& lights) {
     std::vector<std::pair<Place, size_t>> places;
     places.reserve(lights.size());
@@ -146,11 +145,10 @@ namespace {
 
 constexpr size_t rows_at_once = 64;
 
-// The mean over each texel of what linear filtering makes of a row of numbers: 1/8 of both neighbours.
+// The mean of a row of texels over one of them after linear filtering: each neighbour gets 1/8.
 double filtered(double before, double here, double after) { return (before + 6 * here + after) / 8; }
 
-// The mean luminance of the filtered probe in each texel. The probe repeats from side to side and ends at the
-// poles.
+// The mean luminance of the filtered probe in each texel. It wraps around horizontally and ends at the poles.
 std::vector<float> filtered_luminances(const Image& probe) {
     const size_t width = probe.width, height = probe.height;
     std::vector<float> rows(width * height), texels(width * height);

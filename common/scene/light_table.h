@@ -1,4 +1,4 @@
-// All emissive triangles of a scene, for next event estimation.
+// Tables to choose light samples from: emissive triangles and the cells of a light probe.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,39 +14,39 @@ namespace lab {
 double get_luminance(const vec3& colour);
 
 struct LightTable {
-    // Chosen with probability proportional to area times luminance of the emission. Empty if nothing emits.
+    // Chosen with probability proportional to area times luminance. Empty if nothing emits.
     std::vector<LightTriangle> triangles;
-    // The scene's, with their light_density: luminance over the sum of all areas times luminances. Whoever
-    // finds a light knows the density of its light samples without a search through the table.
+    // The scene's, with light_density: luminance over the sum of areas times luminances. So bounces that hit
+    // a light know the density of its light samples without a search.
     std::vector<Material> materials;
 };
 
-// `probability`: that a light sample goes to the triangles at all; the densities hold it.
-// Throws UserError if the instances have more than 2^24 emissive triangles together.
+// `probability` is that of a light sample going to the triangles at all; densities include it. Throws
+// UserError for more than 2^24 emissive triangles in all instances.
 LightTable build_light_table(const Scene& scene, double probability = 1);
 
 // Walker's alias table, built by Vose's method (IEEE Transactions on Software Engineering 17(9), 1991) in
-// double. To choose an item take two random 32-bit words: entry i is the high word of word_1 * n; the item is
-// i itself if word_2 < threshold of i, else alias of i.
+// double, chooses one of n items in constant time. With two random 32-bit words, i is the high word of word_1
+// * n; the item is i if word_2 < threshold of i, else alias of i.
 struct AliasTable {
     struct Entry {
         uint32_t threshold = 0;
         uint32_t alias = 0;
     };
     std::vector<Entry> entries;
-    // Of each item, exactly as the table's integers make them. The weights are met up to 2^-32: estimators
-    // that divide by these probabilities stay unbiased.
+    // Of each item, exactly as the table's integers make them, so that estimators that divide by them are
+    // unbiased. They match the weights up to 2^-32.
     std::vector<double> probabilities;
 };
 
-// Probabilities are proportional to the weights, which must be finite and not negative, at least one
-// positive. An item of weight 0 is never chosen, one of positive weight always has a positive probability.
+// Probabilities are proportional to the weights: finite, not negative, at least one positive. Only items of
+// weight 0 have probability 0.
 AliasTable build_alias_table(std::span<const double> weights);
 
-// Cells row by row from the top, one a texel (larger ones where MAX_PROBE_CELL_COLUMNS or _ROWS is exceeded),
-// chosen with probability proportional to the mean luminance of the filtered probe times the solid angle. So
-// each cell in which anything shines has a positive probability. A black probe has uniform directions.
-// `probability`: that a light sample goes to the probe at all; the densities hold it.
+// The cells of a light probe row by row from the top, one per texel (or larger, at most
+// MAX_PROBE_CELL_COLUMNS times _ROWS), chosen with probability proportional to solid angle times mean
+// luminance of the filtered probe, so that no bright direction has density 0. A black probe gives uniform
+// directions. `probability` as above, for the probe.
 std::vector<ProbeCell> build_probe_table(const Image& probe, double probability = 1);
 
 }  // namespace lab

@@ -14,7 +14,7 @@ namespace {
 
 using glm::dvec3;
 
-// Narrower lobes than this exponent makes are narrower than what directions of 32 bits are exact to.
+// Larger exponents make lobes narrower than the rounding of 32-bit directions.
 constexpr float largest_exponent = 1e8f;
 
 struct CornerHash {
@@ -26,7 +26,7 @@ struct CornerHash {
     }
 };
 
-// A vector that has a direction. (In double the square of a float neither overflows nor vanishes.)
+// Whether a vector has a direction. (In double the square of a float neither overflows nor vanishes.)
 bool has_direction(const dvec3& vector) {
     const double square = glm::dot(vector, vector);
     return square > 0 && std::isfinite(square);
@@ -53,7 +53,7 @@ class Assembly {
           with_normals_(std::ranges::any_of(files, has_normals)),
           with_texture_coordinates_(std::ranges::any_of(files, has_textures)) {}
 
-    // Returns the line of its file for each of the mesh's triangles.
+    // Returns the line of each of the mesh's triangles.
     std::vector<uint32_t> add(const ObjFile& obj) {
         vertices_.clear();
         vertices_.reserve(obj.positions.size());
@@ -86,7 +86,7 @@ class Assembly {
     }
 
   private:
-    // False if the triangle has no area: it has no normal then.
+    // False if the triangle has no area and so no normal.
     bool add_triangle(const ObjFile& obj, const ObjCorner* source) {
         ObjCorner corners[3] = {source[0], source[1], source[2]};
         const dvec3 origin(obj.positions[corners[0].position]);
@@ -115,8 +115,8 @@ class Assembly {
         return true;
     }
 
-    // A vertex that was added before with the same attributes, or a new one. The geometric normal belongs to
-    // one triangle: a corner that takes it is not shared.
+    // Finds or adds a vertex. A corner that takes the geometric normal, which belongs to one triangle, is not
+    // shared.
     uint32_t add_vertex(const ObjFile& obj, ObjCorner corner, const dvec3& geometric_normal) {
         if (!with_texture_coordinates_) corner.texture_coordinates = ObjCorner::none;
         const auto next = static_cast<uint32_t>(scene_.positions.size());

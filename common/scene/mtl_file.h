@@ -9,18 +9,17 @@
 
 namespace lab {
 
-// A material as its file states it: Kd, Ks and their sum may still exceed 1, albedo_texture is not yet set.
+// A material as its file states it: Kd + Ks may exceed 1, albedo_texture is not set yet.
 struct MtlMaterial {
     std::string name;
     Material material;
     std::filesystem::path albedo_texture;  // map_Kd, or empty
 };
 
-// Kd, map_Kd, Ke, Ks and Ns as in Material; Kd is white for a material with map_Kd alone. d < 1 or Tr > 0 (=
-// 1 - d) makes a smooth dielectric of refractive index Ni in [0.01,100] that absorbs -ln Tf per unit of
-// length, nothing without Tf; Tf 0 would be infinite absorption and is refused. Other keywords have no
-// effect, which a warning says. Textures are relative to texture_folder. UserError for numbers that are
-// missing, not finite or out of range.
+// Reads Kd, map_Kd, Ke, Ks and Ns as in Material; Kd defaults to white with map_Kd. d < 1 or Tr > 0 (= 1 - d)
+// makes a smooth dielectric of refractive index Ni in [0.01,100] that absorbs -ln Tf per unit of length
+// (nothing without Tf). A warning names keywords without effect. Textures are relative to texture_folder.
+// Throws UserError for numbers that are missing, not finite or out of range, Tf 0 included.
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file,
                                   const std::filesystem::path& texture_folder, SourceFiles& files,
                                   std::vector<std::string>& warnings);

@@ -1,4 +1,4 @@
-// Triangles from Wavefront .obj files.
+// Wavefront .obj files, and the scene's arrays made from them.
 #pragma once
 #include <limits>
 
@@ -7,7 +7,7 @@
 
 namespace lab {
 
-// A corner of a triangle: indices into the arrays of an ObjFile. All but the position may be absent.
+// Indices into the arrays of an ObjFile; all but the position may be absent.
 struct ObjCorner {
     static constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
     uint32_t position = none;
@@ -16,28 +16,27 @@ struct ObjCorner {
     bool operator==(const ObjCorner&) const = default;
 };
 
-// The contents of an .obj file, polygons cut into triangles. All numbers are finite, all indices in range.
+// An .obj file with its polygons cut into triangles. All numbers are finite, all indices in range.
 struct ObjFile {
     std::string file;
     std::vector<vec3> positions;
     std::vector<vec2> texture_coordinates;  // as in the file: v points up
     std::vector<vec3> normals;              // as in the file: of any length
-    std::vector<ObjCorner> corners;         // three a triangle, at least one triangle
+    std::vector<ObjCorner> corners;         // three per triangle, at least one triangle
     std::vector<uint32_t> triangle_materials;
     std::vector<uint32_t> triangle_lines;  // of the file, counted from 1
     std::vector<MtlMaterial> materials;
 };
 
-// UserError naming the line for coordinates that are not finite numbers, indices out of range and faces of
-// fewer than 3 or more than 256 corners. Faces without a material, or with one that is nowhere, get a grey
-// one (Kd 0.5), with a warning.
+// Reads an .obj file and its material files. Throws UserError naming the line for coordinates that are not
+// finite numbers, indices out of range and faces of fewer than 3 or more than 256 corners. Faces without a
+// known material become grey (Kd 0.5), with a warning.
 ObjFile read_obj(const std::filesystem::path& file, SourceFiles& files, std::vector<std::string>& warnings);
 
-// Fills the scene's vertices, triangles, materials, textures and meshes (one a file). Corners with the same
-// position, normal and texture coordinates become one vertex; triangles without area are left out, and so are
-// materials without triangles. Calls resolve_coincident_lights() for each mesh. Reads the textures. UserError
-// for damaged textures and for files in which no triangle has an area. Returns the line of its file for each
-// of the scene's triangles.
+// Fills the scene's vertices, triangles, materials, textures and meshes (one per file). Equal corners become
+// one vertex; triangles without area and materials without triangles are left out. Resolves coincident
+// lights. Reads textures. Throws UserError for damaged textures and files in which no triangle has an area.
+// Returns each triangle's line in its file.
 std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources,
                                       Scene& scene);
 

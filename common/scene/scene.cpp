@@ -25,7 +25,7 @@ Instance make_instance(const MeshPlacement& placement) {
     return instance;
 }
 
-// Reads each mesh file once, however often it is placed, and places it.
+// Reads each mesh file once and places its instances.
 void load_meshes(const SceneDescription& description, bool specular, SourceFiles& sources, Scene& scene) {
     std::map<std::filesystem::path, uint32_t> mesh_of_file;
     std::vector<ObjFile> files;
@@ -93,7 +93,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
 
     Scene& scene = description.scene;
     scene.file = file;
-    // A mistake in a file that the scene names may be a mistake of the scene.
+    // Errors in files name the scene that refers to them, too.
     const auto load = [&](const auto& load_part) {
         try {
             load_part();

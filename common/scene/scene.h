@@ -12,8 +12,8 @@
 
 namespace lab {
 
-// The triangles of one mesh file: a contiguous range of the scene's triangles, in object space. The
-// dielectric ones come last, so that the triangles of a material class are contiguous too.
+// The triangles of a mesh file, a range of the scene's triangles in object space. Dielectric ones come last,
+// so each material class is a range, too.
 struct Mesh {
     std::string file;
     uint32_t first_triangle = 0;
@@ -33,14 +33,13 @@ struct MaterialClassRange {
 std::vector<MaterialClassRange> material_class_ranges(
     const Mesh& mesh);  // diffuse before dielectric; none is empty
 
-// Longest path that a scene or a flag may ask for: a sample must end in bounded time.
+// Longest path length that a scene or a flag may ask for, so that samples end in bounded time.
 inline constexpr uint32_t path_length_limit = 1000000;
 
-// Most triangles of a mesh file, and of all instances together where the tree of `compute` has to refer to
-// each.
+// Most triangles of a mesh file, and of all instances together for the tree of `compute`.
 inline constexpr size_t max_triangle_count = (size_t{1} << 28) - 1;
 
-// What a scene asks for where neither a flag nor a key says otherwise.
+// Settings without a flag or a key of the scene.
 struct RenderDefaults {
     uint32_t width = 512;
     uint32_t height = 512;
@@ -59,27 +58,28 @@ struct Scene {
     std::filesystem::path file;
     std::string description;
 
-    std::vector<vec3> positions;  // object space
-    std::vector<vec3> normals;    // unit length, one a position; empty if no mesh has vertex normals
-    std::vector<vec2> texture_coordinates;  // one a position, v down from the top row; empty without textures
-    std::vector<uvec3> triangles;           // three positions, counter-clockwise seen from the front
+    std::vector<vec3> positions;            // object space
+    std::vector<vec3> normals;              // unit length, per position; empty if no mesh has vertex normals
+    std::vector<vec2> texture_coordinates;  // per position, v down from the top row; empty without textures
+    std::vector<uvec3> triangles;           // indices of positions, counter-clockwise seen from the front
     std::vector<uint32_t> triangle_materials;
     std::vector<Material> materials;
-    std::vector<uvec2> double_sided;  // opaque triangles in the same place that face opposite ways: of the
-                                      // second, the corners run the other way round from the same first one
+    std::vector<uvec2>
+        double_sided;  // pairs of opaque triangles in one place that face opposite ways; the second has the
+                       // corners of the first in reverse, starting from the same one
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
-    std::vector<uint32_t> instance_meshes;  // one an instance
+    std::vector<uint32_t> instance_meshes;  // per instance
     std::vector<Texture> textures;
 
     CameraPose camera;
-    vec3 background{0};                // constant sky, or factor of the light probe
+    vec3 background{0};                // radiance of a constant sky, or factor of the light probe
     std::optional<Image> light_probe;  // equirectangular, +Y up, image centre towards -Z
     float probe_rotation = 0;          // radians
     RenderDefaults defaults;
-    bool has_added_lobes = false;  // Phong lobes that --specular has switched on, not the file
+    bool has_added_lobes = false;  // --specular switched Phong lobes on, not the file
 
-    std::vector<std::string> warnings;  // one line each, to be shown to the user
+    std::vector<std::string> warnings;  // for the user, one line each
     uint64_t hash = 0;                  // FNV-1a of all files that the scene was read from
 
     const Mesh& mesh_of(uint32_t instance) const { return meshes[instance_meshes[instance]]; }
@@ -87,7 +87,7 @@ struct Scene {
     const vec3& corner(uint32_t triangle, int i) const { return positions[triangles[triangle][i]]; }
 };
 
-// Triangles of all instances together, each instance's counted; never overflows.
+// Number of triangles of all instances together; does not overflow.
 uint64_t instanced_triangle_count(const Scene& scene);
 
 // Axis-aligned bounding box.
@@ -96,19 +96,18 @@ struct Bounds {
     vec3 high{-std::numeric_limits<float>::infinity()};
     void grow(const vec3& point) { low = glm::min(low, point), high = glm::max(high, point); }
 };
-// Contains all instances in world space; tight unless a mesh is rotated. Without instances low > high.
+// World-space bounds of all instances, tight unless a mesh is rotated. Without instances low > high.
 Bounds world_bounds(const Scene& scene);
 
-// Reads a .json scene or a bare .obj. `specular` switches the Phong lobe on, as the scene's key of that name
-// does. Scenes that state no camera get the one of framing_pose(); a bare .obj without lights gets a white
-// sky. Throws UserError: one line with the file, what is wrong and what to do.
+// Reads a .json scene or a bare .obj. `specular` switches the Phong lobe on, like the scene's key. The
+// default camera is framing_pose(); a bare .obj without lights gets a white sky. Throws UserError.
 Scene load_scene(const std::filesystem::path& file, bool specular = false);
 
-// Shows everything inside the bounds, from the side of +Z and slightly above, in images that are not upright.
+// A view of everything inside the bounds, from +Z and slightly above, for images that are not upright.
 CameraPose framing_pose(const Bounds& bounds);
 
-// Camera for a pose and image size in pixels. An `up` along the line of sight is replaced.
-// Throws UserError for a pose without a direction or `up`, or with a field of view outside (0,180) degrees.
+// The camera of a pose for an image size in pixels. An `up` along the line of sight is replaced. Throws
+// UserError for a pose without a direction or `up`, or with a field of view outside (0,180) degrees.
 Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height);
 
 }  // namespace lab

@@ -18,7 +18,7 @@ glm::dmat4 read_rotation(const JsonObject& rotation) {
     return glm::rotate(glm::dmat4(1), glm::radians(degrees), axis);
 }
 
-// The first of scale, rotation and translation to act on a point is the last factor.
+// Scale acts on points first, so it is the last factor.
 MeshPlacement read_placement(const JsonObject& entry, const std::filesystem::path& folder) {
     MeshPlacement placement;
     placement.file = folder / entry.required("file", entry.text("file"));

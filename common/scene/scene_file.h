@@ -11,7 +11,7 @@ struct MeshPlacement {
     glm::dmat4x3 object_to_world{1};  // translation * rotation * scale
 };
 
-// What a scene file states. The files that it names are not read yet; their paths start in its folder.
+// The contents of a scene file. The files that it names are not read yet; their paths start in its folder.
 struct SceneDescription {
     Scene scene;  // without what is in those files
     std::vector<MeshPlacement> meshes;
@@ -20,8 +20,8 @@ struct SceneDescription {
     bool specular = false;
 };
 
-// UserError naming the line of a syntax error, or the key that is unknown, missing, of the wrong type or out
-// of range.
+// Throws UserError naming the line of a syntax error, or the key that is unknown, missing, of the wrong type
+// or out of range.
 SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles& files);
 
 }  // namespace lab

@@ -11,7 +11,7 @@
 
 namespace lab {
 
-// Reads files and hashes their contents in reading order, to recognise changed scenes.
+// Reads files and hashes their contents in reading order, so that changed scenes are recognised.
 class SourceFiles {
   public:
     // As read_file().

@@ -62,7 +62,7 @@ struct WorldTriangle {
     Bounds bounds;
 };
 
-// Those of a part that may touch what lies in the box.
+// Triangles of a part that may touch what lies in the box.
 std::vector<WorldTriangle> triangles_near(const Scene& scene, const Part& part, const Bounds& box) {
     std::vector<WorldTriangle> triangles;
     const glm::dmat4x3 object_to_world(scene.instances[part.instance].object_to_world);
@@ -96,7 +96,7 @@ bool pierces(const WorldTriangle& a, const WorldTriangle& b, double depth) {
     return false;
 }
 
-// Whether the surfaces of two parts cross. What merely touches does not: 1/10,000 of the glass is not seen.
+// Whether the surfaces of two parts cross by more than 1/10,000 of the glass.
 bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, size_t& pair_count) {
     const double depth = 1e-4 * glm::distance(dvec3(glass.bounds.low), dvec3(glass.bounds.high));
     const auto glass_triangles = triangles_near(scene, glass, object.bounds);
@@ -109,10 +109,11 @@ bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, s
     return false;
 }
 
-// Edges of a mesh's dielectric triangles at which the surface ends, or where a front meets a back.
+// Counts edges at which a mesh's dielectric surface ends, or a front meets a back.
 size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
     if (mesh.dielectric_count > max_glass_triangles) return 0;
-    std::vector<std::pair<std::pair<Point, Point>, int>> edges;  // and +1 or -1 for a triangle's way along it
+    std::vector<std::pair<std::pair<Point, Point>, int>>
+        edges;  // and +1 or -1 for the triangle's direction along it
     for (const uint32_t triangle :
          mesh.triangles() | std::views::drop(mesh.triangle_count - mesh.dielectric_count))
         for (int i = 0; i < 3; ++i) {

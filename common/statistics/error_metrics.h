@@ -1,4 +1,4 @@
-// How far an image is from a reference, or from its own expectation.
+// The error of an image against a reference, or estimated from the image itself; the noise of its parts.
 #pragma once
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@
 
 namespace lab {
 
-// With a reference x - r is the error; the variance of the reference, where known, is subtracted.
+// The error of a number x is x - r. Where the variance of the reference r is known, it is subtracted.
 struct ErrorMetrics {
     double mse = 0;                  // mean over pixels and channels of (x - r)^2
     double rel_mse = 0;              // mean of (x - r)^2 / (r^2 + 0.01 r̄^2), r̄ the mean of the reference
@@ -25,8 +25,7 @@ struct Reference {
     std::optional<Image> variance;  // of the mean, from the channels variance.R, variance.G, variance.B
     std::map<std::string, std::string> attributes = {};  // of the file: scene, scene_hash, max_path_length, …
 
-    // Mean of a channel over the rectangle with this corner and size in pixels, and the variance of that mean
-    // (0 if unknown).
+    // Mean of a channel over a rectangle of pixels, and the variance of that mean (0 if unknown).
     struct Part {
         double mean;
         double variance;
@@ -37,29 +36,27 @@ struct Reference {
 // Throws UserError if the file is damaged.
 Reference read_reference(const std::filesystem::path& file);
 
-// Both images have the same size.
+// Image and reference have the same size.
 ErrorMetrics compare(const Image& image, const Reference& reference);
 
-// Expected error of the mean (first + second) / 2 of two independent renders with equally many samples,
-// estimated from their difference: its expected square is four times the variance of the mean. The unknown
-// reference is replaced by the mean over blocks of 8 x 8 pixels: a noisy pixel's own value would excuse its
-// error.
+// Estimates the error of (first + second) / 2 for two independent renders with equally many samples: the
+// expected square of their difference is four times the variance of that mean. Errors are relative to means
+// over 8 x 8 pixels, since a noisy pixel's own value would excuse its error.
 ErrorMetrics estimate_error(const Image& first, const Image& second);
 
-// Of a rectangle of pixels.
+// The noise of a rectangle of pixels.
 struct NoiseEstimate {
     glm::dvec3 mean{0};
-    // Root mean square of the standard deviation of the pixels' means, over pixels and channels, and the same
-    // as part of the mean of the rectangle.
+    // Root mean square of the pixels' standard errors, over pixels and channels; relative to the rectangle's
+    // mean below.
     double standard_error = 0;
     double relative_error = 0;
     double samples = 0;  // a pixel, on average
     uint64_t invalid_samples = 0;
 };
 
-// From an earlier and a later state of the same film: their samples differ by independent ones, whose mean
-// differs from the earlier mean by noise only. The standard error is 0 where there are no samples in either
-// part.
+// Estimates noise from two states of a film: the samples added in between are independent of the earlier
+// ones, so the two means differ by noise only. The standard error is 0 where either part has no samples.
 NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, glm::uvec2 corner,
                              glm::uvec2 size);
 

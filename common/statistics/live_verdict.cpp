@@ -12,10 +12,9 @@ namespace {
 constexpr uint32_t tile = 8;  // pixels of the reference
 constexpr uint32_t first_test = 16;
 constexpr double power = 0.99;
-// Paths from which on the mean of a region is normally distributed, also where one path in 1000 meets a
-// light.
+// Paths that make a region's mean normally distributed even if only one in 1000 meets a light.
 constexpr double reliable_paths = 1 << 17;
-// In tiles that light hardly reaches, what is a small part of the image's mean is taken for noise.
+// Differences below this fraction of the image's mean count as noise.
 constexpr double tile_floor = 5e-4;
 // Another renderer rounds differently.
 constexpr double renderer_rounding = 1e-5;
@@ -24,7 +23,7 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-// As many digits as the interval has one.
+// Rounded to the first digit of the interval.
 std::string interval_text(const Difference& difference) {
     const double half_width = 1.96 * difference.standard_error;
     const int digits =
@@ -72,7 +71,7 @@ Reference::Part LiveVerdict::expected(const Region& region, int channel) const {
     return reference_.part(channel, corner, end - corner);
 }
 
-// Of a channel's mean over a region, in units of radiance.
+// Of a channel's mean over a region, in radiance.
 Difference LiveVerdict::difference(const Region& region, int channel) const {
     const glm::uvec2 corner = region.first * tile;
     const glm::uvec2 end =
@@ -81,23 +80,23 @@ Difference LiveVerdict::difference(const Region& region, int channel) const {
     for (uint32_t y = corner.y; y < end.y; ++y)
         for (uint32_t x = corner.x; x < end.x; ++x)
             pixels.push_back(differences_[size_t{y} * reference_.mean.width + x][channel]);
-    // A single pixel has no spread: it may be off by anything.
+    // A single pixel has no spread.
     if (pixels.size() == 1) return {.standard_error = INFINITY, .degrees_of_freedom = 1};
     Difference difference = difference_from(pixels, 0);
     double variance = square(difference.standard_error);
-    // Where light is found by chance, too few finds make the mean and its spread too small together. Rare
-    // events have a variance proportional to their mean: what the reference's mean would give counts.
+    // Too few chance hits of a light make mean and spread too small together. The variance of rare events is
+    // proportional to their mean: scale it to the reference's.
     const Reference::Part reference = expected(region, channel);
     const double mean = reference.mean + difference.value;
     if (mean > 0) variance *= std::max(reference.mean / mean, 1.0);
-    // What never occurred yet does not show in the spread at all. The reference's renderer has seen it.
+    // Events that have not occurred yet do not show in the spread, but in the reference's variance.
     const double reference_samples = reference_samples_ / square(scale_);
     variance = std::max(variance, reference.variance * reference_samples / samples_);
     difference.standard_error = std::sqrt(variance + square(renderer_rounding * reference.mean));
     return difference;
 }
 
-// Smallest edge, in tiles, of square regions with enough paths; 0 if not even the image has them.
+// Edge in tiles of the smallest square regions with enough paths; 0 if not even the image has enough.
 uint32_t LiveVerdict::finest_reliable_edge() const {
     const double paths_of_tile = square(tile * scale_) * samples_;
     for (uint32_t edge = 1; edge < std::max(tiles_.x, tiles_.y); edge *= 2)
@@ -123,7 +122,7 @@ void LiveVerdict::test() {
         verdict.smallest_detectable[channel] = of_image.smallest_detectable(sidak(level, 3), power);
         verdict.is_biased |= of_image.p_value() < sidak(level, 3);
     }
-    // Of a region the channel that is farthest off, as part of the reference's mean there.
+    // The channel of a region that is farthest off, relative to the reference's mean there.
     const auto worst = [&](uint32_t x, uint32_t y, uint32_t edge) {
         Difference farthest;
         for (int channel = 0; channel < 3; ++channel) {

@@ -1,4 +1,4 @@
-// What the backends share with each other and with the function that chooses among them.
+// Shared by the backends and build_acceleration_structure().
 #pragma once
 #include "tracing/tracer.h"
 
@@ -8,10 +8,10 @@ std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& devic
 std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device, const GpuScene& scene);
 std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene);
 
-// A shader of shaders/ that renders the estimator on the scene.
+// A shader of shaders/ compiled for this scene and estimator.
 ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator);
 
-// A tree of a scene, and the kind of tracer that goes through it. A backend adds the shaders.
+// A scene's tree and the tracer for it. Backends add their shaders.
 template <typename Tree, typename TreeTracer>
 class SceneTree : public AccelerationStructure {
   public:

@@ -10,15 +10,14 @@
 
 namespace lab {
 
-// Four children side by side, 128 bytes = 8 texels: bounds as low/high rows of x, y and z, then references.
-// A reference is the index of an inner node, or (number of triangles << 28) | first triangle for a leaf, or 0
-// where there is no child (no child is the root).
+// Four children in 128 bytes = 8 texels: bounds as low/high rows of x, y and z, then references. A reference
+// is the index of an inner node, (triangle count << 28) | first triangle of a leaf, or 0 for no child.
 struct BvhNode {
     std::array<std::array<std::array<float, 4>, 2>, 3> bounds;  // [axis][low, high][child]; none: low > high
     std::array<uint32_t, 4> children;
     std::array<uint32_t, 4> padding;
 
-    // The bounds of a child: those of its triangles, grown by bvh_padding times their largest coordinate.
+    // The child's bounds, grown by bvh_padding times their largest coordinate.
     Bounds child_bounds(size_t child) const {
         const auto& [x, y, z] = bounds;
         return {{x[0][child], y[0][child], z[0][child]}, {x[1][child], y[1][child], z[1][child]}};
@@ -26,16 +25,16 @@ struct BvhNode {
 };
 static_assert(sizeof(BvhNode) == 128);
 
-// Covers the rounding errors of boxes and triangles in the traversal, which adds as much for the ray's
-// origin: these are a few times 2^-24 of the coordinates.
+// Covers the rounding errors of box and triangle tests, a few times 2^-24 of the coordinates. The traversal
+// adds as much for the ray's origin.
 inline constexpr float bvh_padding = 0x1p-20f;
 
 inline constexpr uint32_t bvh_leaf_shift = 28;
 static_assert(max_triangle_count < size_t{1} << bvh_leaf_shift);
 inline bool is_bvh_leaf(uint32_t reference) { return reference >> bvh_leaf_shift != 0; }
 
-// World-space coordinates of a triangle's vertices, one axis after the other, with its ids in the fourth
-// components: 48 bytes = 3 texels. So the traversal permutes the axes by the order in which it reads them.
+// World-space vertices of a triangle axis by axis, with ids in the fourth components: 48 bytes = 3 texels.
+// The traversal permutes the axes by the order in which it reads them.
 struct BvhTriangle {
     vec3 x;
     uint32_t instance;
@@ -46,7 +45,7 @@ struct BvhTriangle {
 };
 static_assert(sizeof(BvhTriangle) == 48);
 
-// An array that grows without being set to zero, so that all threads can fill it.
+// A vector whose resize() leaves elements uninitialised, so that all threads can fill it.
 template <typename T>
 struct Uninitialized : std::allocator<T> {
     template <typename U>
@@ -62,7 +61,7 @@ using LargeArray = std::vector<T, Uninitialized<T>>;
 struct Bvh {
     LargeArray<BvhNode> nodes;          // node 0 is the root; children follow their parents
     LargeArray<BvhTriangle> triangles;  // in the order of the leaves
-    uint32_t max_stack_entries = 1;  // for a traversal that pushes all but the nearest child, and a sentinel
+    uint32_t max_stack_entries = 1;  // of a traversal that pushes all but the nearest child, with a sentinel
     double build_seconds = 0;
 };
 
@@ -73,10 +72,10 @@ uint64_t countable_triangles(const Scene& scene);
 // and for coordinates beyond 1e18, whose products would overflow in the triangle test.
 LargeArray<BvhTriangle> world_triangles(const Scene& scene);
 
-// Binned surface area heuristic (up to 32 bins, 3 axes; all ways to divide up to 4 triangles, which may be a
-// leaf), collapsed to four children.
-// Takes any number of triangles below 2^28, also none. Large inputs are built by several threads; the result
-// does not depend on how many. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007.
+// Builds the tree of 0 to 2^28 - 1 triangles by the binned surface area heuristic (Wald, "On fast
+// construction of SAH-based bounding volume hierarchies", 2007): up to 32 bins on 3 axes, all divisions of up
+// to 4 triangles, binary splits collapsed to four children. The result does not depend on the number of
+// threads.
 Bvh build_bvh(std::span<const BvhTriangle> triangles);
 
 }  // namespace lab

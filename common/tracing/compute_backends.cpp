@@ -1,5 +1,4 @@
-// The backends of one compute shader: `compute` goes through a bounding volume hierarchy of our own, `query`
-// through the driver's.
+// The backends that are compute shaders: `compute` traverses our hierarchy, `query` the driver's.
 #include "tracing/backends.h"
 #include "tracing/gpu_bvh.h"
 #include "tracing/hardware_bvh.h"

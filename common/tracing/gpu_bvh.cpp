@@ -7,7 +7,7 @@ namespace {
 
 using Usage = vk::BufferUsageFlagBits;
 
-// Many devices read texel buffers faster, but those of some have no more than 65536 texels.
+// Many devices read texel buffers faster, but some limit them to 65536 texels.
 Usage usage_for(const Device& device, size_t bytes) {
     const size_t texels = largest_visible(device, Usage::eUniformTexelBuffer),
                  storage = largest_visible(device, Usage::eStorageBuffer);

@@ -1,4 +1,4 @@
-// A bounding volume hierarchy on the device, as shaders/trace_ray/bvh.glsl declares it.
+// Our bounding volume hierarchy on the device, as shaders/trace_ray/bvh.glsl declares it.
 #pragma once
 #include "gpu/compute_kernel.h"
 #include "tracing/bvh.h"
@@ -14,7 +14,7 @@ class GpuBvh {
     // Throws DeviceFailure if the device cannot hold or address it. The device must outlive the result.
     GpuBvh(const Device& device, const Bvh& bvh);
 
-    // BINDING_BVH_NODES and BINDING_BVH_TRIANGLES, and the defines that the shader needs.
+    // BINDING_BVH_NODES and BINDING_BVH_TRIANGLES, and defines for the shader.
     std::vector<Binding> bindings() const;
     std::vector<std::string> defines() const;
 

@@ -11,7 +11,7 @@ using LevelType = vk::AccelerationStructureTypeKHR;
 
 constexpr auto addressable = vk::BufferUsageFlagBits::eShaderDeviceAddress;
 
-// Only the classes that the scene has get a record, in ascending order.
+// Only material classes in the scene have a record, in ascending order.
 uint32_t hit_record_offset(const Scene& scene, const Mesh& mesh) {
     const auto classes = material_classes(scene);
     const auto ranges = material_class_ranges(mesh);
@@ -35,7 +35,7 @@ vk::AccelerationStructureInstanceKHR describe_instance(const Scene& scene, uint3
     instance.instanceCustomIndex = index & 0xffffffu;
     instance.mask = 0xffu;
     instance.instanceShaderBindingTableRecordOffset = hit_record_offset(scene, mesh) & 0xffffffu;
-    // Surfaces reflect on both sides, so no triangle is culled for the way it faces.
+    // Surfaces reflect on both sides, so nothing is culled.
     instance.flags =
         static_cast<VkGeometryInstanceFlagsKHR>(vk::GeometryInstanceFlagBitsKHR::eTriangleFacingCullDisable);
     instance.accelerationStructureReference = mesh_address;

@@ -1,5 +1,5 @@
-// The driver's acceleration structure: a bottom level (BLAS) of triangles for every mesh file and a top level
-// (TLAS) of instances. The backends `pipeline` and `query` trace rays through it.
+// The driver's acceleration structure for `pipeline` and `query`: a bottom level (BLAS) per mesh file, a top
+// level (TLAS) of instances.
 #pragma once
 #include <optional>
 
@@ -7,23 +7,23 @@
 
 namespace lab {
 
-// Material classes that the scene uses, in ascending order: the pipeline has a hit group for each.
+// Material classes of the scene in ascending order: the pipeline has a hit group for each.
 std::vector<uint32_t> material_classes(const Scene& scene);
 
 class HardwareBvh {
   public:
-    // Builds and compacts. The device must have acceleration structures. Throws DeviceFailure if memory runs
-    // out.
+    // Builds and compacts. The device must support acceleration structures. Throws DeviceFailure if memory
+    // runs out.
     HardwareBvh(const Device& device, const GpuScene& scene);
 
-    // The top level, and for every instance the first triangle of each of its mesh's geometries.
+    // The top level, and the first triangle of each geometry of each instance.
     std::vector<Binding> bindings() const;
 
     size_t bytes() const { return bytes_; }                  // of device memory, after compaction
     double build_seconds() const { return build_seconds_; }  // on the device
 
   private:
-    // An acceleration structure and the buffer that it lives in.
+    // An acceleration structure and its buffer.
     struct Level {
         Buffer buffer;
         vk::raii::AccelerationStructureKHR handle = nullptr;

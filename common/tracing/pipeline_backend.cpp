@@ -15,8 +15,7 @@ vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) {
     return (size + alignment - 1) / alignment * alignment;
 }
 
-// The shaders in the order of their records: ray generation, the miss shader, a hit group for each material
-// class.
+// Shaders in the order of their records: ray generation, the miss shader, a hit group per material class.
 constexpr uint32_t first_miss_group = 1;
 constexpr uint32_t first_hit_group = 2;
 
@@ -62,15 +61,15 @@ class PipelineTracer : public Tracer {
                                 is_hit ? VK_SHADER_UNUSED_KHR : index, is_hit ? index : VK_SHADER_UNUSED_KHR,
                                 VK_SHADER_UNUSED_KHR, VK_SHADER_UNUSED_KHR);
         }
-        // Rays are traced from the ray generation shader alone: the loop over a path needs no recursion.
+        // Only the ray generation shader traces rays: the loop over a path needs no recursion.
         constexpr uint32_t max_recursion_depth = 1;
         const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {},
                                                        *layout_);
         pipeline_ = {device.handle(), nullptr, device.pipeline_cache(), info};
     }
 
-    // The table of shader handles that the driver reads. A record is a handle with room behind it, and each
-    // section of records starts at a multiple of the larger of two alignments: here every record does.
+    // Fills the driver's table of shader handles. Sections of records must be aligned to the larger of two
+    // alignments; here every record is.
     void fill_shader_binding_table(const Device& device, uint32_t group_count) {
         const auto properties = device.properties<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
         const vk::DeviceSize handle_size = properties.shaderGroupHandleSize;

@@ -1,4 +1,4 @@
-// Work in a thread of its own, for a window that must go on meanwhile.
+// Work in a background thread while the window continues.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -11,8 +11,8 @@
 
 namespace lab {
 
-// To be called where an exception of the work is caught: what the window shows of it while it goes on. The
-// loss of the device is thrown again, since nothing can go on without it.
+// Call in a handler of the work's exceptions: returns the message for the window, or rethrows the loss of the
+// device.
 inline std::string window_message(const std::exception& error) {
     if (dynamic_cast<const vk::DeviceLostError*>(&error)) throw;
     return failure_of(error).message;
@@ -21,13 +21,13 @@ inline std::string window_message(const std::exception& error) {
 template <typename Result>
 class BackgroundWork {
   public:
-    // What is under way is abandoned. The work must not refer to anything that may go before this object.
+    // Abandons work in progress. The work must only refer to what outlives this object.
     void start(std::function<Result()> work) {
         abandon();
         work_ = std::async(std::launch::async, std::move(work));
     }
 
-    // Gives up the result without waiting for it. Only the end of this object waits.
+    // Gives up the result without waiting. The destructor waits.
     void abandon() {
         std::erase_if(abandoned_, [](const auto& work) { return is_ready(work); });
         if (work_.valid()) abandoned_.push_back(std::move(work_));
@@ -36,7 +36,7 @@ class BackgroundWork {
     bool is_under_way() const { return work_.valid(); }  // until its result is taken
     bool is_done() const { return work_.valid() && is_ready(work_); }
     void wait(std::chrono::milliseconds longest) const { work_.wait_for(longest); }
-    // The result, once. Throws what the work has thrown.
+    // Returns the result, once, or rethrows the work's exception.
     Result take() { return work_.get(); }
 
   private:

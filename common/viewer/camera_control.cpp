@@ -14,11 +14,11 @@ using glm::dvec3;
 constexpr double radians_per_height = 2;    // of the picture dragged
 constexpr double speed_per_notch = 1.2;     // of the wheel
 constexpr double distance_per_notch = 0.9;  // in orbit
-constexpr double steepest_sine = 0.999;  // of looking up or down: beyond, left and right would change sides
+constexpr double steepest_sine = 0.999;     // of elevation: beyond, left and right would swap
 
 dvec3 rotate(const dvec3& v, double angle, const dvec3& axis) { return glm::angleAxis(angle, axis) * v; }
 
-// Turns the direction about the upright axis and then up or down, never past that axis.
+// Turns a direction about the upright axis, then up or down, never past that axis.
 dvec3 turn(dvec3 direction, const dvec3& up, double right_angle, double up_angle) {
     direction = rotate(direction, -right_angle, up);
     const double elevation = std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
@@ -26,7 +26,7 @@ dvec3 turn(dvec3 direction, const dvec3& up, double right_angle, double up_angle
     const double turned =
         std::clamp(elevation + up_angle, std::min(-limit, elevation), std::max(limit, elevation));
     dvec3 level = direction - glm::dot(direction, up) * up;
-    if (glm::length(level) < 1e-9) return direction;  // straight up: no side to turn to
+    if (glm::length(level) < 1e-9) return direction;  // straight up: no direction to turn to
     level = glm::normalize(level);
     return std::cos(turned) * level + std::sin(turned) * up;
 }
@@ -61,7 +61,7 @@ CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motio
     CameraPose moved = pose;
     moved.position = vec3(position + step);
     moved.target = vec3(target + step);
-    // Far away from the origin the two may round to the same point: such a camera would see nothing.
+    // Far from the origin both may round to the same point.
     return moved.position == moved.target ? pose : moved;
 }
 

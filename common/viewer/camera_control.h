@@ -1,4 +1,4 @@
-// Moves a camera as mouse and keyboard say: pure arithmetic.
+// Moves a camera by mouse and keyboard input.
 #pragma once
 #include <string>
 
@@ -8,10 +8,10 @@ namespace lab {
 
 enum class Navigation { first_person, orbit };
 
-// What the user did since the last frame.
+// The user's input since the last frame.
 struct CameraMotion {
-    vec3 steps{0};   // to the right, up and forward, in units of the speed times seconds
-    vec2 drag{0};    // of the mouse, in fractions of the picture's height; right and down are positive
+    vec3 steps{0};   // right, up and forward, in seconds of motion
+    vec2 drag{0};    // of the mouse, relative to the picture's height; right and down are positive
     float zoom = 0;  // notches of the wheel, forward is positive
 
     bool is_none() const { return steps == vec3(0) && drag == vec2(0) && zoom == 0; }
@@ -19,16 +19,16 @@ struct CameraMotion {
 
 class CameraControl {
   public:
-    // Speed and steps follow the size of what is looked at.
+    // Adapts the speed to the size of the scene.
     void fit_to(const Bounds& bounds);
 
-    // First person: the drag turns the head, the wheel changes the speed. Orbit: the drag turns the camera
-    // about its target, the wheel brings it nearer. Steps move camera and target in either. `up` stays the
-    // axis that is upright in the picture.
+    // First person: dragging turns the head, the wheel changes the speed. Orbit: dragging turns the camera
+    // about its target, the wheel changes the distance. Steps move both camera and target. `up` stays the
+    // upright axis.
     CameraPose move(const CameraPose& pose, const CameraMotion& motion);
 
     Navigation navigation = Navigation::first_person;
-    float speed() const { return speed_; }  // scene units a second
+    float speed() const { return speed_; }  // scene units per second
 
   private:
     float size_ = 1;  // diagonal of the scene

@@ -8,7 +8,7 @@
 namespace lab {
 namespace {
 
-// `own` with everything that decides what is seen taken from `shown`.
+// `own` with the scene and view of `shown`.
 Options with_same_view(Options own, const Options& shown) {
     own.scene = shown.scene;
     own.image = shown.image;
@@ -40,7 +40,7 @@ void Comparison::start(const Session& first, const std::string& chapter) {
             std::find(strategies.begin(), strategies.end(), *options.estimator.strategy) == strategies.end())
             options.estimator.strategy.reset();
     }
-    // Other random numbers: equal ones would make differences look smaller than they are.
+    // Equal random numbers would make differences look smaller than they are.
     ++options.samples.seed;
     options.run.resume.clear();
     work_.start([&device = device_, of = chapter_, options, scene = first.build().job.scene] {
@@ -75,7 +75,7 @@ void Comparison::update(Session& first, double seconds, bool is_moving) {
     const auto progress = [&](const Session& session) {
         return equal == Equal::time ? session.seconds() : session.samples();
     };
-    // A reduced picture is about to be replaced: there is nothing to compare yet.
+    // Reduced pictures are about to be replaced.
     const bool are_complete = first.reduction() == 1 && second_->reduction() == 1;
     first.waits = are_complete && progress(first) > progress(*second_);
     second_->waits = are_complete && progress(*second_) > progress(first);
@@ -100,7 +100,7 @@ std::vector<Layer> Comparison::layers(const Session& first, const Rectangle& whe
 std::optional<Difference> Comparison::difference(const Session& first) const {
     if (!second_ || first.earlier_snapshot().pixels.empty() || second_->earlier_snapshot().pixels.empty())
         return std::nullopt;
-    // Snapshots of images of another size are about to be replaced.
+    // Images of different sizes are about to be replaced.
     const FilmImage &a = first.last_snapshot(), &b = second_->last_snapshot();
     if (a.pixels.size() != b.pixels.size()) return std::nullopt;
     const glm::uvec2 size(a.width, a.height);

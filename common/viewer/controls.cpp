@@ -20,7 +20,7 @@ constexpr int longest_shown_path = 16;  // of the sliders, like the slides' rows
 
 float panel_width() { return 24 * ImGui::GetFontSize(); }
 
-// A slider for a whole number that may be left to `automatic`, shown with a box to tick.
+// A slider with a checkbox; unchecked leaves the number to `automatic`.
 void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t automatic, int high) {
     ImGui::PushID(label);
     bool is_given = value.has_value();
@@ -37,7 +37,7 @@ void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t
     ImGui::PopID();
 }
 
-// A field for a whole number that takes effect when it is left with the enter key.
+// A field for a whole number that takes effect on Enter.
 bool number_field(const char* label, uint32_t& number) {
     return ImGui::InputScalar(label, ImGuiDataType_U32, &number, nullptr, nullptr, "%u",
                               ImGuiInputTextFlags_EnterReturnsTrue);

@@ -1,4 +1,4 @@
-// The panel at the left of the window.
+// The panel on the left of the window.
 #pragma once
 #include <functional>
 #include <string>
@@ -13,12 +13,11 @@ class Controls {
   public:
     Controls();
 
-    // To be called between Screen::begin_frame() and Screen::show().
-    // `further` draws sections of the panel that belong to others.
+    // Call between Screen::begin_frame() and Screen::show(). `further` draws other sections of the panel.
     void draw(Session& session, CameraControl& camera_control, double frames_per_second,
               const std::function<void()>& further);
     int width() const;                               // pixels of the framebuffer
-    vec2 seed_field() const { return seed_field_; }  // where it was drawn last, for tests
+    vec2 seed_field() const { return seed_field_; }  // for tests
 
   private:
     void draw_actions(Session& session);
@@ -28,7 +27,7 @@ class Controls {
     void save(Session& session, const char* ending);
 
     std::vector<std::filesystem::path> scenes_;  // of assets/scenes
-    std::string notice_;                         // what was just done
+    std::string notice_;                         // what was done last
     vec2 seed_field_{0};
 };
 

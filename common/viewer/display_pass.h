@@ -1,4 +1,4 @@
-// Shows a film on the device: the transform of film/display.h, without reading anything back.
+// Shows a film without reading it back: to_display() on the device.
 #pragma once
 #include <memory>
 
@@ -10,17 +10,16 @@ namespace lab {
 
 class DisplayPass {
   public:
-    // Device and film must outlive the pass. The film, whatever its size, fills the picture.
+    // Device and film must outlive the pass. A film of any size fills the picture.
     DisplayPass(const Device& device, const Film& film, std::shared_ptr<StorageImage> picture);
 
-    // Brings the picture up to date; where the film has no samples yet the picture stays as it was.
-    // `exposure` in stops.
+    // Updates the picture; pixels without samples stay as they were. `exposure` in stops.
     void record(const vk::raii::CommandBuffer& commands, DisplayTransform transform, float exposure) const;
     const StorageImage& picture() const { return *picture_; }
     const std::shared_ptr<StorageImage>& shared_picture() const { return picture_; }
 
   private:
-    // One pass over the picture for each part of the film that can be seen at a time.
+    // A pass over the picture for each window of the film.
     void record_parts(const vk::raii::CommandBuffer& commands, DisplayParameters parameters) const;
 
     const Device* device_;

@@ -1,4 +1,4 @@
-// What the window that looks inside the render draws.
+// Drawings of the inside view.
 #pragma once
 #include <imgui.h>
 
@@ -7,7 +7,7 @@
 
 namespace lab {
 
-// Where the picture is in coordinates of the user interface: those of the framebuffer but for its scale.
+// The picture in coordinates of the user interface, which are the framebuffer's without its scale.
 struct Placement {
     explicit Placement(const Rectangle& picture);
     ImVec2 at(const vec2& image_position) const {
@@ -17,11 +17,11 @@ struct Placement {
     glm::vec2 corner, size;
 };
 
-// A path over the picture: rays in blue, light samples in yellow or, where something is in between, grey. The
-// chosen vertex stands out.
+// Draws a path over the picture: rays blue, light samples yellow or, if occluded, grey; the chosen vertex
+// stands out.
 void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, const Rectangle& picture);
 
-// The disc of a HemisphereView among the controls, times a factor. Coarser than the picture to be fast.
+// Draws the disc of a HemisphereView times a factor, coarser to be fast.
 void draw_disc(const Image& picture, float scale, float width);
 
 }  // namespace lab

@@ -110,7 +110,7 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
 
 void InsidePanel::draw_verdict(const Session& session) {
     const VerdictState state = session.verdict_state();
-    // Always as high, so that what follows does not jump.
+    // Of constant height, so that nothing below jumps.
     ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false,
                       ImGuiWindowFlags_NoScrollbar);
     ImGui::PushStyleColor(ImGuiCol_Text, colour_of(state));
@@ -146,7 +146,7 @@ void InsidePanel::draw_pixel(const Session& session) {
 void InsidePanel::draw_sample() {
     auto& selection = *inspection_.selection();
     const RecordedPath& path = *inspection_.path();
-    // Buttons come first: they stay where they are, whatever the numbers.
+    // Buttons first, so that numbers do not move them.
     if (ImGui::SmallButton("<") && selection.sample > 0) --selection.sample;
     ImGui::SameLine();
     if (ImGui::SmallButton(">")) ++selection.sample;
@@ -198,7 +198,7 @@ void InsidePanel::draw_hemisphere() {
     }
     const HemisphereView& view = inspection_.hemisphere();
     if (view.samples() < 1) return;
-    // Twice as many samples look different enough; also fewer, after the point has changed.
+    // Updates at twice the samples, or after the point has changed.
     if (pictures_samples_ < 0 || view.samples() < pictures_samples_ ||
         view.samples() >= 2 * pictures_samples_) {
         pictures_ = view.pictures();

@@ -1,4 +1,4 @@
-// Looks inside the render: the live verdict, tiles of the picture, a pixel's path and what its points see.
+// The inside view: live verdict, tiles, a pixel's path, and what its points see.
 #pragma once
 #include "viewer/inspection.h"
 #include "viewer/tile_overlay.h"
@@ -9,15 +9,15 @@ class InsidePanel {
   public:
     explicit InsidePanel(const Device& device) : inspection_(device) {}
 
-    // Over the picture, and where a pixel has been clicked a panel for its path. Between
-    // Screen::begin_frame() and Screen::show(); renders hemispheres for about so many seconds.
+    // Draws over the picture, and a panel for the path of a selected pixel. Renders hemispheres for about so
+    // many seconds. Call between Screen::begin_frame() and Screen::show().
     void draw(const Session& session, const Rectangle& picture, const Rectangle& panel, double seconds);
-    int height() const;  // of the panel, in pixels of the framebuffer
-    // A section of the controls.
+    int height() const;  // of the panel, in framebuffer pixels
+    // Draws a section of the controls.
     void draw_controls(const Session& session);
     const Inspection& inspection() const { return inspection_; }
     void show_next_overlay() { overlay_.show_next(); }
-    vec2 next_sample_button() const { return next_sample_button_; }  // where it was drawn last, for tests
+    vec2 next_sample_button() const { return next_sample_button_; }  // for tests
 
   private:
     void select_clicked_pixel(const Session& session, const Rectangle& picture);
@@ -31,7 +31,7 @@ class InsidePanel {
     Inspection inspection_;
     TileOverlay overlay_;
     std::optional<glm::uvec2> hovered_;  // pixel
-    bool was_dragged_ = false;           // the mouse, since its button went down
+    bool was_dragged_ = false;           // since the mouse button went down
     HemisphereView::Pictures pictures_;
     double pictures_samples_ = -1;
     vec2 next_sample_button_{0};

@@ -7,12 +7,12 @@
 
 namespace lab {
 
-// Not of glass, which reflects and refracts into single directions.
+// Glass has none: it reflects and refracts into single directions.
 static bool has_brdf(const PathVertex& vertex, const Scene& scene) {
     return vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
 }
 
-// Whether there are tools for what the session renders; if not, starts making them.
+// Whether the tools for the session's estimator are there; if not, starts making them.
 bool Inspection::have_tools(const Session& session) {
     if (work_.is_under_way()) {
         if (!work_.is_done()) return false;
@@ -68,7 +68,7 @@ void Inspection::update(const Session& session, double seconds) {
             path_ = tools_->recorder->record(parameters, selection_->pixel,
                                              parameters.first_sample + selection_->sample);
         has_hemisphere_ = false;
-        if (const auto& vertices = path_->vertices; !vertices.empty()) {  // else it traces no ray
+        if (const auto& vertices = path_->vertices; !vertices.empty()) {  // else it traced no ray
             selection_->vertex = std::min(selection_->vertex, vertices.size() - 1);
             const PathVertex& vertex = vertices[selection_->vertex];
             has_hemisphere_ = has_brdf(vertex, *tools_->scene);

@@ -1,4 +1,4 @@
-// What happens at a pixel that the user has chosen: one path after the other, and what its points see.
+// The paths of a selected pixel, one at a time, and what their points see.
 #pragma once
 #include "inside/hemisphere_view.h"
 #include "viewer/session.h"
@@ -13,28 +13,27 @@ class Inspection {
     void deselect() { selection_.reset(); }
     struct Selection {
         uvec2 pixel;
-        uint32_t sample;  // counted from the render's first one
-        size_t vertex;    // of its path, whose hemisphere is shown
+        uint32_t sample;  // relative to the render's first
+        size_t vertex;    // whose hemisphere is shown
         bool operator==(const Selection&) const = default;
     };
-    // Changes take effect with the next update.
+    // Changes take effect at the next update.
     std::optional<Selection>& selection() { return selection_; }
     const std::optional<Selection>& selection() const { return selection_; }
 
-    // Brings path and hemisphere up to date with the session and renders the hemisphere for about so many
-    // seconds.
+    // Updates the path, and renders the hemisphere for about so many seconds.
     void update(const Session& session, double seconds);
 
-    bool is_building() const { return work_.is_under_way(); }  // its shaders, in the background
-    const std::string& message() const { return message_; }    // why there is nothing to see; may be empty
-    // None while the shaders are compiled or the camera moves.
+    bool is_building() const { return work_.is_under_way(); }  // shaders, in the background
+    const std::string& message() const { return message_; }    // why there is nothing to see, or empty
+    // None while shaders compile or the camera moves.
     const std::optional<RecordedPath>& path() const { return path_; }
     const RenderParameters& parameters() const { return parameters_; }  // of the path
     bool has_hemisphere() const { return has_hemisphere_; }             // at the chosen vertex
     const HemisphereView& hemisphere() const { return *tools_->hemisphere; }
 
   private:
-    // They keep what they need of a build that may be replaced.
+    // Keep what they need of a build that may be replaced.
     struct Tools {
         std::shared_ptr<const Scene> scene;
         std::shared_ptr<const GpuScene> gpu_scene;
@@ -51,7 +50,7 @@ class Inspection {
     std::optional<Selection> selection_, shown_;
     std::shared_ptr<Tools> tools_;
     BackgroundWork<std::shared_ptr<Tools>> work_;
-    uint64_t work_hash_ = 0;  // that the tools in progress are for
+    uint64_t work_hash_ = 0;  // of the tools in progress
     uint64_t failed_hash_ = 0;
     std::string message_;
     std::optional<RecordedPath> path_;

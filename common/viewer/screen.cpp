@@ -19,7 +19,7 @@ void check(VkResult result) {
         throw DeviceFailure("drawing the user interface failed: " + vk::to_string(vk::Result(result)));
 }
 
-// Colours are encoded by ourselves: formats that encode once more come last.
+// We encode sRGB ourselves: prefer formats without.
 vk::SurfaceFormatKHR choose_format(const Device& device) {
     const auto formats = device.physical().getSurfaceFormatsKHR(*device.surface());
     for (const auto& format : formats)
@@ -28,7 +28,7 @@ vk::SurfaceFormatKHR choose_format(const Device& device) {
     return formats.front();
 }
 
-// A font that reads well and is mostly there; without any, Dear ImGui's own of pixels.
+// A readable font that most systems have, or Dear ImGui's bitmap font.
 void add_font(ImFontAtlas& fonts, float scale) {
     for (const char* file : {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
                              "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
@@ -41,7 +41,7 @@ void add_font(ImFontAtlas& fonts, float scale) {
     fonts.AddFontDefault(&font);
 }
 
-// Over an image that was written by a blit, which is then presented.
+// Draws over an image that a blit has written, for presenting.
 vk::raii::RenderPass make_render_pass(const Device& device, vk::Format format) {
     const vk::AttachmentDescription attachment(
         {}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore,
@@ -178,7 +178,7 @@ double Screen::show(std::span<const Layer> layers) {
     const auto start = Clock::now();
     uint32_t image = 0;
     try {
-        // A hidden window may get no image at all: it must be possible to close it nevertheless.
+        // A hidden window may get no image, but must be able to close.
         constexpr uint64_t longest_wait = 100'000'000;  // ns
         const auto [result, index] = swapchain_.acquireNextImage(longest_wait, *acquired_);
         if (result == vk::Result::eTimeout || result == vk::Result::eNotReady) return seconds_since(start);
@@ -243,7 +243,7 @@ void Screen::draw(const vk::raii::CommandBuffer& commands, vk::Image image, cons
     constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
     const Rectangle& where = layer.where;
     const glm::ivec2 end = where.corner + where.size;
-    // It was laid out for another window where that has just changed.
+    // False if the window has just changed its size.
     const bool fits = glm::all(glm::greaterThan(where.size, glm::ivec2(0))) &&
                       glm::all(glm::lessThanEqual(end, glm::ivec2(size())));
     const int width = static_cast<int>(layer.pass->picture().width()),
@@ -263,7 +263,7 @@ void Screen::draw(const vk::raii::CommandBuffer& commands, vk::Image image, cons
     const vk::ImageBlit blit(
         whole_layer, {vk::Offset3D(from, 0, 0), vk::Offset3D(to, height, 1)}, whole_layer,
         {vk::Offset3D(place(from), where.corner.y, 0), vk::Offset3D(place(to), end.y, 1)});
-    // Enlarged pixels stay visible as such.
+    // Enlarged pixels stay sharp.
     const bool enlarges = where.size.x >= width;
     commands.blitImage(source, vk::ImageLayout::eTransferSrcOptimal, image, target_layout, blit,
                        enlarges ? vk::Filter::eNearest : vk::Filter::eLinear);

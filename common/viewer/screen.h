@@ -1,4 +1,4 @@
-// What a window shows: a picture of the device and the user interface on top of it.
+// Presents pictures with the user interface on top.
 #pragma once
 #include <memory>
 #include <optional>
@@ -16,7 +16,7 @@ struct Rectangle {
     glm::ivec2 size{0};
 };
 
-// A picture in the window, or the part of it between two fractions of its width.
+// A picture in the window, from one fraction of its width to another.
 struct Layer {
     const DisplayPass* pass;
     DisplayTransform transform;
@@ -27,33 +27,33 @@ struct Layer {
 
 class Screen {
   public:
-    // The device has the window's surface. There is at most one screen at a time, since Dear ImGui has one
-    // context. Window and device must outlive it.
+    // The device must have the window's surface, and both must outlive the screen. At most one exists at a
+    // time, because Dear ImGui has one context.
     Screen(const Device& device, const Window& window);
     ~Screen();
 
-    // Starts a frame of the user interface: Dear ImGui may be used until show().
+    // Starts a frame: use Dear ImGui until show().
     void begin_frame();
 
-    // Ends the frame and shows it: the pictures, and the user interface on top of them. Nothing is shown
-    // while the window is minimised. Returns the seconds that went into waiting for the display.
+    // Ends and shows the frame, unless the window is minimised. Returns the seconds of waiting for the
+    // display.
     double show(std::span<const Layer> layers);
 
     uvec2 size() const { return {extent_.width, extent_.height}; }  // pixels
-    // What the window shows from the next show() on is also kept for a screenshot.
+    // The next show() also keeps a screenshot.
     void capture_next() { captures_ = true; }
     const Texture& captured() const { return captured_; }
 
   private:
     void start_user_interface();
-    // Of the window's size. Needs the lock of the queue once something else uses it.
+    // Needs the queue's lock once something else uses it.
     void make_swapchain();
-    // An image of the swapchain and what it takes to draw to it.
+    // An image of the swapchain.
     struct Target {
         vk::Image image;
         vk::raii::ImageView view;
         vk::raii::Framebuffer framebuffer;
-        vk::raii::Semaphore drawn;  // one each: presenting may still wait for it
+        vk::raii::Semaphore drawn;  // one each, since presenting may still wait for it
     };
     void record(const vk::raii::CommandBuffer& commands, const Target& target, std::span<const Layer> layers);
     void draw(const vk::raii::CommandBuffer& commands, vk::Image image, const Layer& layer) const;

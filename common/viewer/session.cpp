@@ -15,12 +15,12 @@
 namespace lab {
 namespace {
 
-// Whether a render goes on with these options: they differ at most in what shows it.
+// Whether a render can continue with other options.
 bool has_same_samples(const Options& a, const Options& b) {
     return a.samples == b.samples && a.camera == b.camera && a.light == b.light;
 }
 
-// Names of files in messages start at the project's folder.
+// Removes the project's folder from file names in a message.
 std::string shortened(std::string message) {
     const std::string folder = project_folder().generic_string() + "/";
     for (size_t at = message.find(folder); at != std::string::npos; at = message.find(folder))
@@ -56,7 +56,7 @@ void Session::set_camera(const CameraPose& pose) {
     change(options);
 }
 
-// Flags are for the scene of the command line.
+// Flags apply to the scene of the command line.
 CameraOptions Session::first_camera() const {
     return options_.scene.file == first_options_.scene.file ? first_options_.camera : CameraOptions{};
 }
@@ -82,7 +82,7 @@ void Session::update(double dispatch_seconds, bool is_moving) {
         begin(find_reduction(dispatch_seconds));
     else if (reduction_ > 1 && !is_moving && build_->renderer->samples() >= 1)
         begin(1);
-    // What is built matters more than the picture that it replaces: both may need the same processor.
+    // The build matters more than the picture that it replaces; both may need the same processor.
     render(is_building() ? 0.1 * dispatch_seconds : dispatch_seconds);
 }
 
@@ -91,7 +91,7 @@ void Session::look_for_changed_shaders() {
     if (seconds_since(last_look_) < interval) return;
     last_look_ = Clock::now();
     if (failed_shader_hash_ != 0) try {
-            // The file that did not compile may include others than the one that did.
+            // The broken shader may include other files than the last good one.
             watched_shaders_ = shader_files(make_estimator(chapter_, options_));
         } catch (const UserError&) {
             // One is missing: the message says so.
@@ -139,7 +139,7 @@ void Session::adopt_finished_build() {
 
 void Session::take_back(const std::string& why) {
     message_ = shortened(why);
-    // The shaders have failed only if nothing else was new, and if they are still those that were compiled.
+    // Blame the shaders only if nothing else was new and they are still the compiled ones.
     if (work_stage_ == BuildStage::nothing && hash_of(watched_shaders_) == work_shader_hash_)
         failed_shader_hash_ = work_shader_hash_;
     options_ = build_->job.options;
@@ -165,7 +165,7 @@ void Session::begin(uint32_t reduction) {
     verdict_ = find_verdict();
 }
 
-// Or why there is none.
+// Starts a verdict, or says why there is none.
 std::variant<LiveVerdict, std::string> Session::find_verdict() const {
     const RenderJob& job = build_->job;
     if (reduction_ > 1) return "the picture is reduced";
@@ -204,9 +204,9 @@ void Session::render(double seconds) {
     const auto start = Clock::now();
     const double first_samples = renderer.samples();
     double elapsed = 0;
-    // A reduced picture is shown when it is complete, unless that takes far too long.
+    // A reduced picture should be complete when shown, unless that takes far too long.
     const auto goes_on = [&] {
-        // A change is shown also while it pauses.
+        // Changes show even while paused.
         if ((is_paused || waits) && renderer.samples() >= 1) return false;
         return elapsed < 0.75 * seconds ||
                (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
@@ -226,7 +226,7 @@ void Session::render(double seconds) {
 }
 
 void Session::take_snapshots(uint32_t samples, double seconds) {
-    // Reading the film back takes time: not while powers of two pass by in quick succession.
+    // Reading the film back takes time: skip the first powers of two.
     constexpr double seconds_of_first_snapshot = 0.25;
     auto* live_verdict = std::get_if<LiveVerdict>(&verdict_);
     const bool is_for_verdict = live_verdict && samples == live_verdict->next_samples();
@@ -294,7 +294,7 @@ uint64_t hash_of(const std::set<std::filesystem::path>& files) {
 std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job,
                                                BuildStage first, const WindowBuild* before) {
     auto build = std::make_unique<WindowBuild>();
-    // Before they are compiled: what is changed meanwhile has another hash.
+    // Hash before compiling, so that changes in between show.
     build->shader_files = shader_files(job.estimator);
     build->shader_hash = hash_of(build->shader_files);
     static_cast<Build&>(*build) = make_build(device, chapter, std::move(job), first, before);

@@ -12,7 +12,7 @@ namespace lab {
 namespace {
 
 constexpr float opacity = 0.7f;
-constexpr uint32_t most_tiles = 64;  // in a row: more would take long to draw
+constexpr uint32_t most_tiles = 64;  // per row: more would be slow to draw
 
 // From dark blue for 0 to yellow for 1.
 uint32_t heat(double value) {
@@ -26,14 +26,14 @@ std::string text(const char* format, double a, double b) {
     return buffer;
 }
 
-// The round part of the reference that a colour of tiles reaches to: 1, 2, 5, … 100 %.
+// The bias of saturated colour, rounded up to 1, 2, 5, … 100 %.
 double full_colour_at(double largest) {
     for (const double part : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
         if (largest <= part) return part;
     return 1;
 }
 
-// Edge of square tiles that are neither too small nor too many.
+// Edge of square tiles, neither too small nor too many.
 uint32_t tile_size_for(const glm::uvec2& image_size) {
     return std::max(8u, (std::max(image_size.x, image_size.y) + most_tiles - 1) / most_tiles);
 }
@@ -60,7 +60,7 @@ void TileOverlay::draw(const Session& session, const Rectangle& picture) {
         }
 }
 
-// Only when there is something new to see.
+// Recolours only if something is new.
 void TileOverlay::update(const Session& session) {
     if (shown == Overlay::none || session.reduction() > 1) {
         colours_.clear();
@@ -102,7 +102,7 @@ void TileOverlay::colour_bias(const Session& session) {
         legend_ += "5 standard errors";
         return;
     }
-    // Noise may be any part of what little light a tile has: only what is certain is coloured.
+    // In dark tiles noise may be any fraction of the mean: colour only what is certain.
     const auto certain = [&](size_t i) {
         return std::abs(verdict->map.values[i]) >= 5 ? verdict->map_differences[i].value : 0;
     };
@@ -123,7 +123,7 @@ void TileOverlay::explain(const Session& session, const glm::uvec2& pixel) const
                       interval_text(verdict->map_differences[i]).c_str(), verdict->map.values[i]);
 }
 
-// By `heat_of` what is estimated of each tile.
+// Colours each tile by `heat_of` its estimate.
 void TileOverlay::colour_tiles(const FilmImage& earlier, const FilmImage& later,
                                const std::function<double(const NoiseEstimate&)>& heat_of) {
     for (uint32_t y = 0; y < tiles_.y; ++y)

@@ -1,4 +1,4 @@
-// Colours tiles of the picture by what is known about them.
+// Colours tiles of the picture by bias, noise or sample count.
 #pragma once
 #include <functional>
 #include <string>
@@ -20,9 +20,9 @@ class TileOverlay {
     Overlay shown = Overlay::none;
     void show_next();
 
-    // Between Screen::begin_frame() and Screen::show(), over the picture.
+    // Draws over the picture. Call between Screen::begin_frame() and Screen::show().
     void draw(const Session& session, const Rectangle& picture);
-    // Says at the pointer what a tile of bias is, in numbers.
+    // Shows a tile's bias in numbers at the pointer.
     void explain(const Session& session, const glm::uvec2& pixel) const;
     const std::string& legend() const { return legend_; }  // of the colours
 

@@ -12,10 +12,10 @@
 namespace lab {
 namespace {
 
-// Follows a series of numbers with a memory of about ten of them.
+// Exponential moving average over about ten numbers.
 double smooth(double average, double number) { return average + 0.1 * (number - average); }
 
-// Makes the first build in the background, so that the window answers and says what it is doing.
+// Makes the first build in the background while the window says so.
 std::unique_ptr<WindowBuild> build_while_waiting(Window& window, Screen& screen, const Device& device,
                                                  const Chapter& chapter, const RenderJob& job) {
     BackgroundWork<std::unique_ptr<WindowBuild>> work;
@@ -66,7 +66,7 @@ bool Viewer::frame() {
     window_.clear_events();
 
     const auto rendering = Clock::now();
-    constexpr double rest = 0.2;  // seconds without motion after which the picture is rendered as asked for
+    constexpr double rest = 0.2;  // seconds without motion before the picture is rendered at full size
     comparison_.update(session_, budget, seconds_since(last_motion_) < rest);
     const double rendered = seconds_since(rendering);
 

@@ -1,4 +1,4 @@
-// The window of a chapter: shows the picture while it is rendered, and lets its user change everything.
+// The window of a chapter: shows the picture while it renders, and lets users change everything.
 #pragma once
 #include <algorithm>
 
@@ -14,12 +14,10 @@ namespace lab {
 
 class Viewer {
   public:
-    // Window and device (made for this window) must outlive the viewer. Throws what a first render would
-    // throw.
+    // Window and device (made for this window) must outlive the viewer. Throws like make_build().
     Viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
 
-    // Handles what the user did, renders for a part of a frame's time and shows the result. False once the
-    // window is closed.
+    // Handles input, renders and shows a frame. False once the window is closed.
     bool frame();
 
     Session& session() { return session_; }
@@ -27,8 +25,8 @@ class Viewer {
     const Controls& controls() const { return controls_; }
     const InsidePanel& inside_panel() const { return inside_panel_; }
     Comparison& comparison() { return comparison_; }
-    Rectangle picture_rectangle() const;  // where the window shows the picture
-    Rectangle path_rectangle() const;     // below it: the path that is looked into; of no height without one
+    Rectangle picture_rectangle() const;  // in the window
+    Rectangle path_rectangle() const;     // panel of the selected path below; of height 0 without one
 
   private:
     void move_camera(double seconds);
@@ -38,7 +36,7 @@ class Viewer {
     Screen screen_;
     Session session_;
     CameraControl camera_control_;
-    std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed fits to
+    std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed was adapted to
     Controls controls_;
     InsidePanel inside_panel_;
     Comparison comparison_;
@@ -49,17 +47,15 @@ class Viewer {
     Clock::time_point last_motion_{};
 };
 
-// Opens the window and renders until it is closed; then writes the outputs that the options name, as a run
-// without a window does. Throws DeviceFailure if the device is lost, after writing what was last read from
-// it.
+// Renders until the window is closed, then writes the outputs. Throws DeviceFailure if the device is lost,
+// after writing what was last read.
 void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
 
-// Seconds of a frame that rendering may take, after frames that took `interface_seconds` for everything else
-// but waiting. A fast device fills what is left of the display's period. Where the interface itself is slow,
-// as on a CPU, a frame takes longer than a period, so that most of the time goes into the picture, but not so
-// long that there are fewer than 5 frames a second, while the interface leaves that choice.
+// Seconds of a frame for rendering, given those of everything else but waiting. A fast device fills the
+// display's period. Where the interface is slow, as on a CPU, frames get longer, so that most of the time
+// goes into the picture, but not below 5 frames per second if the interface allows.
 inline double rendering_seconds(double refresh_seconds, double interface_seconds) {
-    constexpr double slowest_frame = 0.16;  // leaves some room for blocks that take longer than expected
+    constexpr double slowest_frame = 0.16;  // leaves room for blocks that take longer than expected
     constexpr double shortest = 0.002;
     const double frame =
         std::clamp(4 * interface_seconds, refresh_seconds, std::max(refresh_seconds, slowest_frame));

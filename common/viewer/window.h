@@ -1,4 +1,4 @@
-// A window of the desktop.
+// A window on the desktop, by GLFW.
 #pragma once
 #include <filesystem>
 #include <set>

@@ -1,5 +1,4 @@
-// The program of every chapter: chapter.json in its folder says what it is, path_trace.glsl is the path
-// tracer.
+// The program of every chapter, whose folder holds chapter.json and path_trace.glsl.
 #include "app/run_chapter.h"
 
 int main(int argument_count, char** arguments) {
