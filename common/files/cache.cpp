@@ -6,7 +6,6 @@
 
 #include "error.h"
 #include "files/file.h"
-#include "files/hash.h"
 #include "platform.h"
 
 namespace lab {

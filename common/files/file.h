@@ -1,5 +1,6 @@
-// Whole files in memory: read with checks, written completely or not at all.
+// Whole files in memory: read with checks, written completely or not at all. Hashes of their contents.
 #pragma once
+#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -32,5 +33,17 @@ std::string in_quotes(std::string_view name);
 
 // The extension in lower case, with its dot.
 std::string lower_case_extension(const std::filesystem::path& file);
+
+// FNV-1a of a text, continued from `hash`.
+inline uint64_t hash_text(std::string_view text, uint64_t hash = 14695981039346656037ull) {
+    for (const char c : text) hash = (hash ^ static_cast<uint8_t>(c)) * 1099511628211ull;
+    return hash;
+}
+
+// The hash as records and reports write it, without leading zeros.
+inline std::string hexadecimal(uint64_t number) {
+    char text[16];
+    return {text, std::to_chars(text, text + sizeof text, number, 16).ptr};
+}
 
 }  // namespace lab

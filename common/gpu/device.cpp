@@ -6,7 +6,7 @@
 
 #include "error.h"
 #include "files/cache.h"
-#include "files/hash.h"
+#include "files/file.h"
 #include "platform.h"
 
 namespace lab {
@@ -21,18 +21,13 @@ std::string version_text(uint32_t version) {
 }
 
 std::string kind_text(vk::PhysicalDeviceType type) {
-    switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu:
-            return "discrete GPU";
-        case vk::PhysicalDeviceType::eIntegratedGpu:
-            return "integrated GPU";
-        case vk::PhysicalDeviceType::eVirtualGpu:
-            return "virtual GPU";
-        case vk::PhysicalDeviceType::eCpu:
-            return "CPU";
-        default:
-            return "other";
-    }
+    static const std::map<vk::PhysicalDeviceType, std::string> kinds{
+        {vk::PhysicalDeviceType::eDiscreteGpu, "discrete GPU"},
+        {vk::PhysicalDeviceType::eIntegratedGpu, "integrated GPU"},
+        {vk::PhysicalDeviceType::eVirtualGpu, "virtual GPU"},
+        {vk::PhysicalDeviceType::eCpu, "CPU"}};
+    const auto found = kinds.find(type);
+    return found == kinds.end() ? "other" : found->second;
 }
 
 bool contains(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name) {
@@ -192,15 +187,7 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
 }  // namespace
 
 std::string to_string(Backend backend) {
-    switch (backend) {
-        case Backend::pipeline:
-            return "pipeline";
-        case Backend::query:
-            return "query";
-        case Backend::compute:
-            return "compute";
-    }
-    return "compute";
+    return backend == Backend::pipeline ? "pipeline" : backend == Backend::query ? "query" : "compute";
 }
 
 Device::Device(const DeviceOptions& options)

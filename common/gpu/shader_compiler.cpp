@@ -15,7 +15,6 @@
 #include "error.h"
 #include "files/cache.h"
 #include "files/file.h"
-#include "files/hash.h"
 #include "files/project_folder.h"
 
 namespace lab {

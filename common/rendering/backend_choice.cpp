@@ -7,7 +7,7 @@
 #include "clock.h"
 #include "error.h"
 #include "files/cache.h"
-#include "files/hash.h"
+#include "files/file.h"
 #include "tracing/gpu_bvh.h"
 
 namespace lab {

@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "error.h"
-#include "files/hash.h"
+#include "files/file.h"
 #include "rendering/settings.h"
 
 namespace lab {

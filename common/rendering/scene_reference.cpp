@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "files/hash.h"
+#include "files/file.h"
 #include "files/project_folder.h"
 
 namespace lab {

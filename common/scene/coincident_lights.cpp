@@ -76,34 +76,32 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
     }
     std::sort(places.begin(), places.end());
 
-    std::vector<std::pair<uint32_t, uint32_t>> left_out;  // and what stays in its place
+    std::vector<bool> is_left_out(mesh.triangle_count);
+    std::pair<uint32_t, uint32_t> first_left_out{UINT32_MAX, 0};  // and what stays in its place
     size_t kept = 0;
     for (size_t i = 1; i < places.size(); ++i) {
-        if (places[i].place == places[kept].place)
-            left_out.emplace_back(places[i].triangle, places[kept].triangle);
-        else
+        if (places[i].place == places[kept].place) {
+            is_left_out[places[i].triangle - first] = true;
+            first_left_out = std::min(first_left_out, {places[i].triangle, places[kept].triangle});
+        } else {
             places[++kept] = places[i];
+        }
+    }
+    const size_t others = places.size() - kept - 2;  // left out, too
+    if (kept + 1 < places.size()) {
+        const auto [triangle, other] = first_left_out;
+        scene.warnings.push_back(mesh.file + ":" + std::to_string(lines[triangle - first]) +
+                                 ": lies in the same place as line " + std::to_string(lines[other - first]) +
+                                 ", faces the same way, and one of them emits: left out" +
+                                 (others > 0 ? ", as " + std::to_string(others) + " others" : ""));
     }
     places.resize(kept + 1);
-    std::sort(left_out.begin(), left_out.end());
-    if (!left_out.empty()) {
-        const auto [triangle, other] = left_out.front();
-        scene.warnings.push_back(
-            mesh.file + ":" + std::to_string(lines[triangle - first]) + ": lies in the same place as line " +
-            std::to_string(lines[other - first]) + ", faces the same way, and one of them emits: left out" +
-            (left_out.size() > 1 ? ", as " + std::to_string(left_out.size() - 1) + " others" : ""));
-    }
 
-    // New indices of the triangles that stay.
-    std::vector<uint32_t> moved(mesh.triangle_count);
-    auto next_left_out = left_out.begin();
+    std::vector<uint32_t> moved(mesh.triangle_count);  // new indices of the triangles that stay
     uint32_t count = 0;
     for (uint32_t i = 0; i < mesh.triangle_count; ++i) {
         moved[i] = first + count;
-        if (next_left_out != left_out.end() && next_left_out->first == first + i) {
-            ++next_left_out;
-            continue;
-        }
+        if (is_left_out[i]) continue;
         scene.triangles[first + count] = scene.triangles[first + i];
         scene.triangle_materials[first + count] = scene.triangle_materials[first + i];
         lines[count++] = lines[i];

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "files/file.h"
-#include "files/hash.h"
 
 namespace lab {
 

@@ -2,7 +2,6 @@
 
 #include "error.h"
 #include "files/file.h"
-#include "files/hash.h"
 #include "files/project_folder.h"
 #include "tracing/backends.h"
 
@@ -76,15 +75,9 @@ uint64_t estimator_hash(const Estimator& estimator) {
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
                                                                     const GpuScene& scene) {
     require_support(backend, device.description());
-    switch (backend) {
-        case Backend::pipeline:
-            return build_pipeline_backend(device, scene);
-        case Backend::query:
-            return build_query_backend(device, scene);
-        case Backend::compute:
-            return build_compute_backend(device, scene);
-    }
-    return nullptr;
+    if (backend == Backend::pipeline) return build_pipeline_backend(device, scene);
+    if (backend == Backend::query) return build_query_backend(device, scene);
+    return build_compute_backend(device, scene);
 }
 
 }  // namespace lab

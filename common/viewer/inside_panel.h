@@ -1,9 +1,64 @@
 // The inside view: live verdict, tiles, a pixel's path, and what its points see.
 #pragma once
-#include "viewer/inspection.h"
+#include "inside/hemisphere_view.h"
+#include "viewer/session.h"
 #include "viewer/tile_overlay.h"
 
 namespace lab {
+
+// The paths of a selected pixel, one at a time, and what their points see.
+class Inspection {
+  public:
+    explicit Inspection(const Device& device) : device_(device) {}
+
+    void select(uvec2 pixel) { selection_ = {pixel, 0, 0}; }
+    void deselect() { selection_.reset(); }
+    struct Selection {
+        uvec2 pixel;
+        uint32_t sample;  // relative to the render's first
+        size_t vertex;    // whose hemisphere is shown
+        bool operator==(const Selection&) const = default;
+    };
+    // Changes take effect at the next update.
+    std::optional<Selection>& selection() { return selection_; }
+    const std::optional<Selection>& selection() const { return selection_; }
+
+    // Updates the path, and renders the hemisphere for about so many seconds.
+    void update(const Session& session, double seconds);
+
+    bool is_building() const { return work_.is_under_way(); }  // shaders, in the background
+    const std::string& message() const { return message_; }    // why there is nothing to see, or empty
+    // None while shaders compile or the camera moves.
+    const std::optional<RecordedPath>& path() const { return path_; }
+    const RenderParameters& parameters() const { return parameters_; }  // of the path
+    bool has_hemisphere() const { return has_hemisphere_; }             // at the chosen vertex
+    const HemisphereView& hemisphere() const { return *tools_->hemisphere; }
+
+  private:
+    // Keep what they need of a build that may be replaced.
+    struct Tools {
+        std::shared_ptr<const Scene> scene;
+        std::shared_ptr<const GpuScene> gpu_scene;
+        std::shared_ptr<const AccelerationStructure> acceleration_structure;
+        Estimator estimator;
+        uint64_t hash;  // of what they are compiled from
+        uvec2 image_size;
+        std::unique_ptr<PathRecorder> recorder = nullptr;
+        std::unique_ptr<HemisphereView> hemisphere = nullptr;
+    };
+    bool have_tools(const Session& session);
+
+    const Device& device_;
+    std::optional<Selection> selection_, shown_;
+    std::shared_ptr<Tools> tools_;
+    BackgroundWork<std::shared_ptr<Tools>> work_;
+    uint64_t work_hash_ = 0;  // of the tools in progress
+    uint64_t failed_hash_ = 0;
+    std::string message_;
+    std::optional<RecordedPath> path_;
+    RenderParameters parameters_{};
+    bool has_hemisphere_ = false;
+};
 
 class InsidePanel {
   public:

@@ -6,7 +6,6 @@
 
 #include "error.h"
 #include "files/file.h"
-#include "files/hash.h"
 #include "files/project_folder.h"
 #include "rendering/outputs.h"
 #include "rendering/scene_reference.h"

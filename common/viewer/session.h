@@ -7,7 +7,7 @@
 #include "rendering/build.h"
 #include "statistics/live_verdict.h"
 #include "viewer/background_work.h"
-#include "viewer/display_pass.h"
+#include "viewer/screen.h"
 
 namespace lab {
 

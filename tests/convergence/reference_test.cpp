@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "files/hash.h"
+#include "files/file.h"
 #include "files/project_folder.h"
 #include "statistics/error_metrics.h"
 #include "support/expect_statistics.h"

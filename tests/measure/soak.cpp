@@ -14,7 +14,6 @@
 
 #include "error.h"
 #include "files/file.h"
-#include "files/hash.h"
 #include "files/project_folder.h"
 #include "measure/measurement.h"
 #include "rendering/renderer.h"

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "support/gpu_test.h"
-#include "viewer/display_pass.h"
+#include "viewer/screen.h"
 
 namespace lab {
 namespace {
