@@ -1,5 +1,5 @@
 #version 460
-// One point of a sampler an invocation, as COLUMNS numbers. A define says which sampler.
+// Each invocation writes one point of a sampler, as COLUMNS numbers. A define chooses the sampler.
 #ifdef LIGHT_POINTS
 #define FEATURE_LIGHT_TRIANGLES
 #endif
@@ -17,7 +17,7 @@ layout(scalar, binding = 1) readonly buffer Inputs {
 #include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 
-// Notes where on the light the estimator chooses its point.
+// Records the point on the light that the estimator chooses.
 vec2 light_barycentrics;
 LightPoint get_and_note_light_point(LightTriangle light, vec2 barycentrics) {
     light_barycentrics = barycentrics;
@@ -28,11 +28,11 @@ LightPoint get_and_note_light_point(LightTriangle light, vec2 barycentrics) {
 #endif
 
 #if defined(DIRECTIONS) || defined(LIGHT_POINTS)
-// Runs the estimator at a white floor under a white sky.
+// Runs the estimator on a white floor below a white sky.
 vec3 run_estimator(uvec2 seed) {
     Material white = Material(vec3(1.0), -1, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     set_surface(vec3(0.0, 0.0, 1.0), white, max_path_length);
-    // What lights.glsl looks up: a triangle above the floor that faces it.
+    // The light triangle that lights.glsl looks up: it is above the floor and faces it.
     positions[3] = vec3(0.0, 0.0, 1.0);
     positions[4] = vec3(0.0, 1.0, 1.0);
     positions[5] = vec3(1.0, 0.0, 1.0);
@@ -42,7 +42,7 @@ vec3 run_estimator(uvec2 seed) {
 #endif
 
 #if defined(DIRECTIONS)
-// A direction and its weight. One that the estimator has dropped has none.
+// A direction and its weight, all 0 if the estimator traces no direction.
 void write_point(uint i, uvec2 seed) {
     float weight = run_estimator(seed).r;
     vec3 direction = ray_count == 2u ? traced_direction : vec3(0.0);
@@ -56,7 +56,7 @@ void write_point(uint i, uvec2 seed) {
     for (int axis = 0; axis < 2; ++axis) results[COLUMNS * i + axis] = light_barycentrics[axis];
 }
 #elif defined(BLOG_HASH)
-// The hash that the blog takes for random numbers, at hit points 0.02 apart on a floor, 256 in a row.
+// The hash that the blog uses for random numbers, at hit points on a floor: rows of 256 with a distance of 0.02.
 float hash(vec3 p) { return fract(sin(dot(p, vec3(12.9898, 78.233, 45.164))) * 43758.5453123); }
 void write_point(uint i, uvec2 seed) {
     vec3 position = 0.02 * vec3(i % 256u, 0.0, i / 256u);
@@ -64,7 +64,7 @@ void write_point(uint i, uvec2 seed) {
     results[COLUMNS * i + 1u] = hash(position + vec3(1.0, 0.0, 0.0));
 }
 #elif defined(SOBOL)
-// Sobol's points as they are, before they are scrambled.
+// Sobol's points without scrambling.
 void write_point(uint i, uvec2 seed) {
     vec2 point = to_numbers(bitfieldReverse(uvec2(i % samples, get_second_dimension(i % samples))));
     for (int axis = 0; axis < 2; ++axis) results[COLUMNS * i + axis] = point[axis];

@@ -68,12 +68,12 @@ exit /b %errorlevel%
 
 :help
 echo Usage: lab COMMAND, with COMMAND one of
-echo   run N [ARGUMENTS]       renders with chapter N; --help tells what it understands
+echo   run N [ARGUMENTS]       renders with chapter N; --help lists its options
 echo   run                     lists the chapters
 echo   merge A.exr B.exr ... -o C.exr    joins renders of different samples of the same picture
 echo These need Python 3 with numpy, scipy, matplotlib and pillow (python -m pip install ...), and tell more with --help:
 echo   check N [FILE]          grades a shader of chapter N: correct, biased or noisy
 echo   diff N                  the lesson of chapter N: what its shaders change of the chapter before, and what they add
 echo   sample NAME [...]       plots points of a sampler and what they integrate
-echo   report [SCENE or N ...] speed against error of chapters and scenes
+echo   report [SCENE or N ...] error against time of chapters and scenes
 exit /b 0

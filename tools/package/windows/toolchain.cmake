@@ -1,5 +1,5 @@
-# Programs for Windows, compiled on Debian or Ubuntu. What they link that no package has for Windows, CMakeLists.txt beside
-# this file has built into the folder LAB_WINDOWS_LIBRARIES.
+# Compiles programs for Windows on Debian or Ubuntu. LAB_WINDOWS_LIBRARIES has the libraries that the CMakeLists.txt beside this
+# file has built.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)
@@ -14,6 +14,6 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 
-# A program is one file: all libraries are part of it, and no time. Its stack is as large as on Linux.
+# A program is one file with all libraries in it and without a time stamp. Its stack is as large as on Linux.
 set(ZLIB_USE_STATIC_LIBS ON)
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-static -s -Wl,--no-insert-timestamp -Wl,--stack,8388608")
