@@ -13,12 +13,11 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, commit, duration_text, failure_text, has_low_discrepancy,
+from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, commit, failure_text, has_low_discrepancy,
                      program_file, read_json, run_program, show_progress, write_json)
 from references.images import averaged, read_reference, read_rgb, rel_mse
 
 PILOT_PART = 0.3  # of a run's seconds: a pilot tells how many samples a run takes
-START_UP_SECONDS = {False: 0.4, True: 2.0}  # of a chapter and of a peer, for a first guess of the duration
 DEVICE_LOST = 3  # exit code
 LARGE = 1024  # side in pixels of a second size on GPUs, which small pictures do not fill
 
@@ -190,19 +189,11 @@ class Measurement:
         if self.pictures:
             yield from ((self.render_equal_error, case, 1) for case in cases)
 
-    def expected_seconds(self):
-        settings, total = self.record["settings"], 0
-        for case in self.record["cases"]:
-            total += (settings["repetitions"] + 2) * START_UP_SECONDS[case["is_peer"]]
-            total += settings["seconds"] * (1 + 1.5 * PILOT_PART / settings["repetitions"])
-        return total
-
     def measure(self):
         """Does all steps that the record lacks."""
         cases, steps = self.record["cases"], list(self.steps())
-        print(f"{len(cases)} cases, {self.record['settings']['repetitions']} runs of {self.run_seconds():.2g} s each: about "
-              f"{duration_text(self.expected_seconds())}. Ctrl-C keeps what is there, and the same command goes on.",
-              file=sys.stderr)
+        print(f"{len(cases)} cases, {self.record['settings']['repetitions']} runs of {self.run_seconds():.2g} s each. "
+              "Ctrl-C keeps what is there, and the same command goes on.", file=sys.stderr)
         open_steps = [step for step in steps if self.is_open(*step)]
         started = time.monotonic()
         for done, (do, case, seed) in enumerate(open_steps, 1):

@@ -85,29 +85,24 @@ class Series(NamedTuple):
         return log_interval(mean, [mean_part([x / mean for x in self.numbers.values()]), (self.shift**2, KNOWN)])
 
 
-def ratio(now, base):
-    """[quotient, low, high] of the means of two series whose runs are independent."""
-    if now.mean <= 0 or base.mean <= 0:
+def ratio(now, base, is_paired=False):
+    """[quotient, low, high] of the means of two series. Runs are independent, or paired by their seeds."""
+    if is_paired:
+        seeds = sorted(now.numbers.keys() & base.numbers.keys())
+        now, base = (Series({seed: of.numbers[seed] for seed in seeds}, of.shift) for of in (now, base))
+    if not now.numbers or now.mean <= 0 or base.mean <= 0:
         return [None, None, None]
-    quotient = now.mean / base.mean
-    if min(len(now.numbers), len(base.numbers)) < 2:
+    quotient, relative = now.mean / base.mean, [[x / of.mean for x in of.numbers.values()] for of in (now, base)]
+    if min(map(len, relative)) < 2:
         return [quotient, None, None]
-    parts = [mean_part([x / series.mean for x in series.numbers.values()]) for series in (now, base)]
+    parts = [mean_part([a - b for a, b in zip(*relative)])] if is_paired else list(map(mean_part, relative))
     return log_interval(quotient, parts + [((now.shift - base.shift) ** 2, KNOWN)])
 
 
 def paired_ratio(now, base):
     """The same for runs with the same seeds. They share random numbers, so their errors are correlated, and the interval follows
     from the spread of the differences between runs with the same seed."""
-    seeds = sorted(now.numbers.keys() & base.numbers.keys())
-    now, base = (Series({seed: of.numbers[seed] for seed in seeds}, of.shift) for of in (now, base))
-    if not seeds or now.mean <= 0 or base.mean <= 0:
-        return [None, None, None]
-    quotient = now.mean / base.mean
-    if len(seeds) < 2:
-        return [quotient, None, None]
-    differences = [now.numbers[seed] / now.mean - base.numbers[seed] / base.mean for seed in seeds]
-    return log_interval(quotient, [mean_part(differences), ((now.shift - base.shift) ** 2, KNOWN)])
+    return ratio(now, base, is_paired=True)
 
 
 # ---------------------------------------------------------------------------------------------- of runs
