@@ -20,7 +20,6 @@ from docs.cost_tables import feature_table, growth_tables, seconds_text
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from project import ROOT, Parser, UserError, load_records, scene_of, table
-from report.differences import DIFFERENCES
 from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
 from report.studies import examples, table_names
 
@@ -154,8 +153,7 @@ OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
     # Tables of docs/results.md are for all devices.
     "best chapters": best_table, "chapters": of_records("chapters", chapter_tables), "backends": of_records("backends", backend_table),
-    "differences": lambda: "".join(f"- {text}\n" for text in DIFFERENCES), "peers": of_records("peers", peer_table),
-    "features": of_records("cost", feature_table), "growth": of_records("cost", growth_tables),
+    "peers": of_records("peers", peer_table), "features": of_records("cost", feature_table), "growth": of_records("cost", growth_tables),
     "check": of_records("check", confusion_table), **examples(),
 }
 
