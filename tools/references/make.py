@@ -1,7 +1,7 @@
 """Renders reference images of our scenes with Mitsuba 3, a renderer that shares no code with ours.
 
     ./lab reference SCENE --output FILE.exr   renders one scene, also one of your own
-    ./lab reference --all                     renders those of the list below that assets/references lacks
+    ./lab reference --all                     renders those in assets/references anew whose scenes have changed
 
 A reference is an EXR file with the mean of all samples in R, G and B, the variance of that mean, estimated from
 independent batches, in variance.R, variance.G and variance.B, and its settings as attributes. Path lengths
@@ -25,13 +25,6 @@ from references.images import FOLDERS
 from references.scenes import read_scene
 
 GOES_ON = True
-# The references that the tests use: maximal path lengths for each scene.
-SHIPPED = {"cornell_box": (1, 6), "torus": (5,), "heart_light": (4,), "textured": (4,), "glossy": (5,), "instances": (4,),
-           "glass": (8,), "clear_glass": (8,), "check_room": (2, 6), "check_glass": (8,), "plates": (3,), "sunny": (4,), "studio": (4,),
-           "check_sky": (4,)}
-SHIPPED_SIZES = {"plates": (144, 96)}  # others: 128 x 128
-SHIPPED_SAMPLES = {"sunny": 16384, "studio": 16384, "check_sky": 16384}  # others: 65536
-
 BATCHES = 64  # for the variance of the mean: known to 18 %
 MIN_BATCHES = 32  # of an interrupted render
 
@@ -85,7 +78,7 @@ def main():
     positive = number(int, 1)
     parser.add_argument("scene", nargs="?", type=Path, help="a .json or .obj file")
     parser.add_argument("--all", action="store_true",
-                        help="all that the tests use, into assets/references; only --seed and --variant count")
+                        help="those in assets/references whose scenes have changed; only --seed and --variant count")
     parser.add_argument("--output", type=Path, metavar="FILE.exr", help="default: output/references/SCENE.exr")
     parser.add_argument("--width", type=positive, help="default: as the scene says, else 512")
     parser.add_argument("--height", type=positive, help="default: as the scene says, else 512")
@@ -107,7 +100,7 @@ def make(options):
         output = options.output or FOLDERS[1] / f"{options.scene.stem}.exr"
         make_reference(options.scene, output, options.width, options.height, options.max_path_length, options.samples, options.seed)
         return
-    for name, lengths in SHIPPED.items():
-        for length in lengths:
-            make_reference(ROOT / f"assets/scenes/{name}.json", FOLDERS[0] / f"{name}_{length}.exr",
-                           *SHIPPED_SIZES.get(name, (128, 128)), length, SHIPPED_SAMPLES.get(name, 65536), options.seed, keep=True)
+    for file in sorted(FOLDERS[0].glob("*.exr")):
+        stated = read_attributes(file)
+        size = (int(stated[key]) for key in ("width", "height", "max_path_length", "samples"))
+        make_reference(ROOT / "assets/scenes" / stated["scene"], file, *size, options.seed, keep=True)
