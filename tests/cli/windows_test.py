@@ -149,7 +149,7 @@ class WindowsPrograms_all(RenderTest):
         self.assertIn("--resume", out)
 
     def test_points_are_those_of_linux(self):
-        command = ["cosine", "--count=4096"]
+        command = ["directions", "02_cosine_sampling", "4096", "1", "0", "2", ""]
         windows = subprocess.run(["wine", PROGRAMS / "sample_points.exe", *command], env=os.environ | wine, check=True,
                                  capture_output=True)
         linux = subprocess.run([CHAPTER.with_name("sample_points"), *command], check=True, capture_output=True)

@@ -84,9 +84,7 @@ PLAYGROUNDS |= OF_CHAPTERS
 
 def draw(playground, count, seed, dimensions, device=None, samples=1):
     """Array [index, column] of points: the first ones of pixels, or `samples` of each pixel."""
-    command = [PROGRAM, playground.sampler, "--chapter", playground.chapter, "--count", count, "--samples", samples, "--seed", seed,
-               "--dimensions", dimensions]
-    result = run_program(command + (["--device", device] if device else []), encoding=None, errors=None)
+    result = run_program([PROGRAM, playground.sampler, playground.chapter, count, samples, seed, dimensions, device or ""], encoding=None, errors=None)
     if result.returncode != 0:
         raise UserError(result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}")
     return np.frombuffer(result.stdout, np.float32).reshape(count, -1).astype(float)

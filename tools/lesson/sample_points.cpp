@@ -1,5 +1,5 @@
-// Writes points of a sampler of a chapter as 32-bit floats to the standard output, for ./lab sample.
-#include <CLI/CLI.hpp>
+// Writes points of a sampler of a chapter as 32-bit floats to the standard output, for ./lab sample:
+// sample_points SAMPLER CHAPTER COUNT SAMPLES_OF_A_PIXEL SEED DIMENSIONS DEVICE
 #include <bit>
 #include <iostream>
 #include <map>
@@ -18,7 +18,7 @@ using namespace lab;
 
 struct Sampler {
     std::string define;  // of sample_points.comp
-    uint32_t columns;    // numbers of a point; 0: as many as --dimensions says
+    uint32_t columns;    // numbers of a point; 0: DIMENSIONS
 };
 const std::map<std::string, Sampler> samplers{{"numbers", {"NUMBERS", 0}},
                                               {"sobol", {"SOBOL", 2}},
@@ -59,32 +59,19 @@ std::vector<float> sample(const std::string& define, const std::string& chapter,
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-    CLI::App app("Writes points of a sampler as 32-bit numbers", "sample_points");
-    std::string name, chapter, device;
-    uint32_t count = 4096, samples = 1, seed = 0, dimensions = 2;
-    app.add_option("sampler", name, "Which one")->required()->check(CLI::IsMember(samplers));
-    app.add_option("--chapter", chapter, "Folder of the chapter that samples")->required();
-    app.add_option("--count", count, "Number of points")->check(CLI::Range(1u, 1u << 22));
-    app.add_option("--samples", samples, "Points of each pixel")->check(CLI::Range(1u, 1u << 22));
-    app.add_option("--seed", seed, "Chooses the random numbers");
-    app.add_option("--dimensions", dimensions, "Numbers a point of the sampler numbers")
-        ->check(CLI::Range(1u, 8u));
-    app.add_option("--device", device, "Number or part of the name of the device");
+    const std::vector<std::string> words(arguments + 1, arguments + argument_count);
+    const auto number = [&](size_t i) { return static_cast<uint32_t>(std::stoul(words[i])); };
     try {
-        app.parse(argument_count, arguments);
-        const Sampler& sampler = samplers.at(name);
-        const auto points = sample(sampler.define, chapter, sampler.columns > 0 ? sampler.columns : dimensions,
-                                   count, samples, seed, device);
+        if (words.size() != 7 || !samplers.contains(words[0]))
+            throw std::runtime_error("sample_points is a part of ./lab sample: call that");
+        const Sampler& sampler = samplers.at(words[0]);
+        const auto points =
+            sample(sampler.define, words[1], sampler.columns > 0 ? sampler.columns : number(5), number(2),
+                   number(3), number(4), words[6]);
         make_binary(stdout);
         std::cout.write(reinterpret_cast<const char*>(points.data()),
                         static_cast<std::streamsize>(points.size() * sizeof(float)));
         return std::cout ? 0 : 1;
-    } catch (const CLI::CallForHelp&) {
-        std::cout << app.help();
-        return 0;
-    } catch (const CLI::ParseError& error) {
-        std::cerr << "error: sample_points: " << error.what() << " (--help shows how it is used)\n";
-        return 1;
     } catch (const DeviceError& error) {
         std::cerr << "error: " << error.what() << "\n";
         return 2;
