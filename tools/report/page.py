@@ -84,7 +84,7 @@ def peer_tables(scene):
     best = max(ours, key=lambda case: gains[case["case"], peers[0]][0] or 0)
     starts = [[escape(case["case"]), ranged(case["seconds_to_target"]), ranged(case["start_up_seconds"])] for case in scene["cases"]]
     notes = "".join(f"<p>{escape(case['case'])}: {escape(case['note'])}.</p>" for case in scene["cases"] if case["note"])
-    notes += "<p>docs/results.md lists what differs between the programs.</p>"
+    notes += "<p>What differs between the programs: see docs/results.md.</p>"
     return ("<h3>Time to equal error: how many times faster than Mitsuba</h3>"
             f"<p>Wall time of rendering alone; the fastest is {escape(best['case'])}.</p>" + table(["", *map(escape, peers)], rows)
             + notes + f"<h3>Seconds from the command to {100 * TARGET_ERROR:.0f} % error</h3><p>With start-up: the process, the scene, its kernels "
