@@ -161,8 +161,8 @@ double cosine_sampling_error(const Device& device) {
     double worst = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const double phi = 2 * pi * numbers[i].x - pi, y = numbers[i].y;
-        worst = std::max(worst, glm::distance(dvec3(directions[i]),
-                                              direction(std::sqrt(1 - y), std::sqrt(y), phi)));
+        worst = std::max(worst,
+                         glm::distance(dvec3(directions[i]), direction(std::sqrt(1 - y), std::sqrt(y), phi)));
     }
     return worst;
 }
