@@ -130,7 +130,7 @@ def planned_knowledge(scenes, before):
         known = before.get(chapter, {})
         measured = level_digest(chapter, names)
         levels = known["levels"] if known.get("measured") == measured else None
-        knowledge[chapter] = {"measured": measured, "levels": levels, "mistakes": {}}
+        knowledge[chapter] = {"title": grading.DESCRIPTIONS[chapter]["title"], "measured": measured, "levels": levels, "mistakes": {}}
     for bug in catalogue():
         if bug.chapter in scenes:
             name, chapter = bug.mistake["name"], knowledge[bug.chapter]

@@ -44,7 +44,7 @@ TEST(CosineSampling, WeightsEveryDirectionWithTheAlbedo) {
         size_t dropped = 0;
         const auto bounces = sample_bounces(chapter, {vec3(normal), vec3(normal), material}, 1'000'000, 60);
         for (const Bounce& bounce : bounces) {
-            ASSERT_EQ(bounce.weight, bounce.ray_count == 2 ? 0.7f : 0.0f) << chapter;
+            ASSERT_FLOAT_EQ(bounce.weight, bounce.ray_count == 2 ? 0.7f : 0.0f) << chapter;
             dropped += bounce.ray_count != 2;
         }
         EXPECT_LE(dropped, 10u) << chapter;

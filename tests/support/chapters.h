@@ -23,8 +23,8 @@ bool has_roulette(const std::string& chapter);
 // Whether its random numbers are the generator's: its states decide what they do.
 bool is_pseudorandom(const std::string& chapter);
 
-// What tests.json in its folder says. Whether bounces off a Lambertian surface have the weight of its albedo,
-// exactly.
+// What tests.json in its folder says. Whether bounces off a Lambertian surface have the weight of its albedo
+// and no other.
 bool weighs_by_albedo(const std::string& chapter);
 // Whether it is another chapter path by path, but for what it adds, so that tests of that one are enough.
 bool repeats_another(const std::string& chapter);

@@ -60,11 +60,14 @@ def shader_like(chapter, file):
 
 def make_tree(chapter, file, tree, shader=None):
     """Copies what a chapter's program reads, with `file` in place of a shader that it includes or that has its name; returns the
-    program there and the file's copy."""
+    program there and the file's copy. With a file from a chapter's folder, a copy of this chapter's, come all that lie beside it."""
     shutil.copytree(ROOT / "shaders", tree / "shaders")
     for source in (*ROOT.glob("chapters/*/*.glsl"), *ROOT.glob("chapters/*/chapter.json")):
         (tree / source.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(source, tree / source.relative_to(ROOT))
+    if file.parent.parent == ROOT / "chapters":
+        shutil.copytree(file.parent, tree / "chapters" / chapter, ignore=lambda _, names: {n for n in names if not n.endswith(".glsl")},
+                        dirs_exist_ok=True)
     copy = Path(shutil.copy(file, tree / (shader or shader_like(chapter, file)).relative_to(ROOT)))
     share(ROOT / "assets", tree / "assets")
     if (libraries := BINARIES.parent / "lib").exists():  # of an archive that ./lab package made
@@ -193,10 +196,12 @@ def grade(case, recorded, comparisons):
 
 def read_levels(chapter):
     """Scene -> level of the chapter's own shader."""
-    if not knowledge_file(chapter).exists():
+    file = knowledge_file(chapter)
+    known = read_json(file) if file.exists() else {}
+    if known.get("title") != DESCRIPTIONS[chapter]["title"]:
         raise UserError(f"chapter {chapter} has a title of its own and is not measured yet: ./lab check 3 FILE grades a file as chapter 3's, "
                         "tests/mistakes/learn.py learn measures a new chapter")
-    return read_json(knowledge_file(chapter))["levels"]
+    return known["levels"]
 
 
 def early_bias(cases):
