@@ -30,8 +30,7 @@ class SceneFiles(ProgramTest):
         for name in path:
             target = target[int(name) if name.isdigit() else name]
         target[last] = value
-        with self.subTest(key=key, value=str(value)[:40]):
-            self.refuse_text(json.dumps(scene), *words)
+        self.refuse_text(json.dumps(scene), *words)
 
     def test_missing(self):
         self.refuse("nowhere.json", r"nowhere\.json")
@@ -55,8 +54,7 @@ class SceneFiles(ProgramTest):
         good = (self.folder / "quad.json").read_text()
         noise = bytes(range(256)) * 64
         for text in ("", "   ", good[: len(good) // 2], good[:-3], good + "}", "null", "[]", "3", '"text"', "{}"):
-            with self.subTest(text=text[:20]):
-                self.refuse_text(text)
+            self.refuse_text(text)
         self.refuse_text(noise)
         self.refuse_text(b"\0" * 1000)
         self.refuse_text(good.replace("quad", "qu\0ad"))
@@ -113,16 +111,14 @@ class SceneFiles(ProgramTest):
     def test_numbers_beyond_floats(self):
         good = (self.folder / "quad.json").read_text()
         for number in ("NaN", "Infinity", "1e999", "-1e999"):
-            with self.subTest(number=number):
-                self.refuse_text(good.replace("40", number))
+            self.refuse_text(good.replace("40", number))
 
 
 class MeshFiles(ProgramTest):
     def refuse(self, *words, obj=QUAD_OBJ, mtl=QUAD_MTL):
         self.write("bad.mtl", mtl)
         self.write("bad.obj", obj if isinstance(obj, bytes) else obj.replace("quad.mtl", "bad.mtl"))
-        with self.subTest(obj=obj[-60:], mtl=mtl[-60:]):
-            self.assert_refused(["bad.obj", "--background=1,1,1"], *words)
+        self.assert_refused(["bad.obj", "--background=1,1,1"], *words)
 
     def test_empty_and_binary(self):
         self.refuse(r"bad\.obj", obj="")
@@ -181,8 +177,7 @@ class ImageFiles(ProgramTest):
         for name in names:
             for contents in self.damaged():
                 self.write(name, contents)
-                with self.subTest(name=name, contents=contents[:12]):
-                    self.assert_refused([*arguments[:1], *(str(a).format(name) for a in arguments[1:])], name)
+                self.assert_refused([*arguments[:1], *(str(a).format(name) for a in arguments[1:])], name)
 
     def test_textures(self):
         for name in ("bad.png", "bad.jpg"):
@@ -208,16 +203,14 @@ class ImageFiles(ProgramTest):
             radiance = np.ones((2, 4, 3), np.float32)
             radiance[1, 2, 0] = number
             write_exr(self.use_light_probe("bad.exr"), rgb_channels(radiance), {})
-            with self.subTest(number=number):
-                self.assert_refused(["quad.json"], r"bad\.exr: pixel \(2, 1\) is negative, infinite or not a number",
-                                    program=SAMPLES_PROBES)
+            self.assert_refused(["quad.json"], r"bad\.exr: pixel \(2, 1\) is negative, infinite or not a number",
+                                program=SAMPLES_PROBES)
 
     def test_light_probes_that_are_too_large(self):
         for width, height in ((16385, 1), (1, 16385)):
             self.use_light_probe("bad.hdr", one_coloured_hdr(width, height))
-            with self.subTest(width=width, height=height):
-                self.assert_refused(["quad.json"], rf"bad\.hdr: an image of {width} x {height} pixels", "16384",
-                                    program=SAMPLES_PROBES)
+            self.assert_refused(["quad.json"], rf"bad\.hdr: an image of {width} x {height} pixels", "16384",
+                                program=SAMPLES_PROBES)
 
     def test_light_probes_of_any_shape_cover_the_sphere(self):
         options = ["--width=16", "--height=16", "--samples=256", "--max-path-length=1", "--backend=compute", "--quiet"]

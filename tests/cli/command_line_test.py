@@ -54,52 +54,40 @@ class WrongArguments(ProgramTest):
 
     def test_unknown_options(self):
         for option in ("--no-such-option", "--width-of-image=3", "-x", "--sample"):
-            with self.subTest(option=option):
-                self.assert_refused(["quad.json", option], re.escape(option.split("=")[0]))
+            self.assert_refused(["quad.json", option], re.escape(option.split("=")[0]))
 
     def test_a_second_scene(self):
         self.assert_refused(["quad.json", "quad.obj"], "quad.obj")
 
     def test_missing_values(self):
         for option in ("--width", "--output", "--background", "--device"):
-            with self.subTest(option=option):
-                self.assert_refused(["quad.json", option], option)
+            self.assert_refused(["quad.json", option], option)
 
     def test_counts(self):
         for option in ("--width", "--height", "--samples", "--max-path-length", "--only-path-length", "--seed"):
             for value in NO_COUNTS:
-                with self.subTest(option=option, value=value):
-                    self.assert_refused(["quad.json", f"{option}={value}"], option)
+                self.assert_refused(["quad.json", f"{option}={value}"], option)
         self.assert_refused(["quad.json", "--first-sample=-1"], "--first-sample")
 
     def test_counts_that_must_be_positive_or_are_too_large(self):
         for option, value in (("--width", 0), ("--height", 0), ("--samples", 0), ("--width", 1000000)):
-            with self.subTest(option=option, value=value):
-                self.refuse(option, value)
+            self.refuse(option, value)
 
     def test_numbers(self):
         for option in ("--target-error", "--time-limit", "--vertical-fov", "--exposure", "--save-every"):
             for value in NO_NUMBERS:
-                with self.subTest(option=option, value=value):
-                    self.refuse(option, value)
+                self.refuse(option, value)
 
     def test_numbers_out_of_range(self):
-        for option, values in {
-            "--target-error": (0, -1),
-            "--time-limit": (0, -1),
-            "--vertical-fov": (0, -10, 180, 400),
-            "--exposure": (1e9, -1e9),
-            "--save-every": (0, -1),
-        }.items():
+        for option, values in {"--target-error": (0, -1), "--time-limit": (0, -1), "--vertical-fov": (0, -10, 180, 400),
+                               "--exposure": (1e9, -1e9), "--save-every": (0, -1)}.items():
             for value in values:
-                with self.subTest(option=option, value=value):
-                    self.refuse(option, value)
+                self.refuse(option, value)
 
     def test_vectors(self):
         for option in ("--camera-position", "--camera-target", "--camera-up", "--background"):
             for value in NO_NUMBERS + ["1", "1,2", "1,2,3,4", "1,2,nan", "1,inf,3", "1,2,x", "1,,3"]:
-                with self.subTest(option=option, value=value):
-                    self.refuse(option, value)
+                self.refuse(option, value)
         self.refuse("--background", "1,-1,1")
 
     def test_cameras_without_a_direction(self):
@@ -127,19 +115,16 @@ class WrongOutputs(ProgramTest):
 
     def test_endings(self):
         for name in ("picture.gif", "picture", "picture.exr.txt", "exr"):
-            with self.subTest(name=name):
-                self.refuse(name, re.escape(name), r"\.exr", r"\.png")
+            self.refuse(name, re.escape(name), r"\.exr", r"\.png")
         self.refuse("report.txt", "report.txt", r"\.json", r"\.csv", option="--report")
 
     def test_unwritable_places(self):
         (self.folder / "folder.exr").mkdir()
         (self.folder / "folder.json").mkdir()
         for name in ("quad.obj/picture.exr", "folder.exr", "/proc/picture.exr", "x" * 300 + ".exr", ""):
-            with self.subTest(name=name[:40]):
-                self.refuse(name)
+            self.refuse(name)
         for name in ("quad.obj/report.json", "folder.json", "/proc/report.json"):
-            with self.subTest(name=name):
-                self.refuse(name, option="--report")
+            self.refuse(name, option="--report")
 
     def test_one_bad_output_of_two(self):
         self.assert_refused(
@@ -150,8 +135,7 @@ class WrongOutputs(ProgramTest):
 class Devices(ProgramTest):
     def test_unknown_devices(self):
         for device in ("99", "-1", "No Such Device"):
-            with self.subTest(device=device):
-                self.assert_refused(["quad.json", f"--device={device}"], re.escape(device), "--list-devices", code=2)
+            self.assert_refused(["quad.json", f"--device={device}"], re.escape(device), "--list-devices", code=2)
 
     def test_backends_work_or_are_refused(self):
         devices = self.render("--list-devices")

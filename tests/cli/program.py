@@ -86,17 +86,9 @@ class ProgramTest(unittest.TestCase):
     def start(self, *arguments, environment=None, prepare=None, program=CHAPTER):
         """Starts a program; variables of the environment that are None are taken away."""
         variables = {**os.environ, **(environment or {})}
-        return subprocess.Popen(
-            [program, *map(str, arguments)],
-            cwd=self.folder,
-            env={name: value for name, value in variables.items() if value is not None},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            preexec_fn=prepare,
-            restore_signals=False,
-            text=True,
-        )
+        variables = {name: value for name, value in variables.items() if value is not None}
+        return subprocess.Popen([program, *map(str, arguments)], cwd=self.folder, env=variables, stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, restore_signals=False, text=True)
 
     def run_program(self, *arguments, timeout=TIMEOUT_SECONDS, **options):
         """Runs to the end; returns exit code, standard output, standard error."""
@@ -142,21 +134,17 @@ class ProgramTest(unittest.TestCase):
                 prepare()
 
         before = {path: path.stat().st_mtime_ns for path in self.folder.rglob("*")}
-        actual, out, err = self.run_program(
-            *arguments,
-            timeout=BAD_INPUT_SECONDS,
-            environment=environment,
-            prepare=limit_memory,
-            program=program,
-        )
-        message = f"{arguments} printed {out!r} and the error {err!r}"
-        self.assertEqual(actual, code, message)
-        self.assertRegex(err, r"\A[^\n]{12,400}\n\Z", "one line, but " + message)
-        for word in words:
-            self.assertRegex(err, re.compile(word, re.IGNORECASE), message)
-        after = {path: path.stat().st_mtime_ns for path in self.folder.rglob("*") if path.is_file()}
-        for path, changed in after.items():
-            self.assertEqual(before.get(path), changed, f"{path.name} was written: {message}")
+        with self.subTest(arguments=str(arguments)[:200]):
+            actual, out, err = self.run_program(*arguments, timeout=BAD_INPUT_SECONDS, environment=environment, prepare=limit_memory,
+                                                program=program)
+            message = f"{arguments} printed {out!r} and the error {err!r}"
+            self.assertEqual(actual, code, message)
+            self.assertRegex(err, r"\A[^\n]{12,400}\n\Z", "one line, but " + message)
+            for word in words:
+                self.assertRegex(err, re.compile(word, re.IGNORECASE), message)
+            after = {path: path.stat().st_mtime_ns for path in self.folder.rglob("*") if path.is_file()}
+            for path, changed in after.items():
+                self.assertEqual(before.get(path), changed, f"{path.name} was written: {message}")
 
     def wait_for(self, path, process, seconds=30):
         """Waits until a running program has written a file."""

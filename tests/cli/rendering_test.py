@@ -82,8 +82,7 @@ class SampleRanges(RenderTest):
         self.picture("scene", "--samples=4", "--first-sample=4", scene="quad.json")
         self.picture("view", "--samples=4", "--first-sample=4", "--view=normals")
         for other in ("a", "overlap", "gap", "seed", "length", "size", "scene", "view"):
-            with self.subTest(other=other):
-                self.assert_refused(["a.exr", f"{other}.exr", "-o", "merged.exr"], rf"{other}\.exr", program=MERGE)
+            self.assert_refused(["a.exr", f"{other}.exr", "-o", "merged.exr"], rf"{other}\.exr", program=MERGE)
 
 
 class PathLengths(RenderTest):

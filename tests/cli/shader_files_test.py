@@ -85,8 +85,7 @@ class ShaderFiles(ProgramTest):
                 ("folder/../../../../outside.glsl", place, outside_words), ("nothing", place + "cannot find .*", '"'),
                 ("a" * 5000, place + "cannot find .*", ""), ("pipe", "", ": not a regular file"), ("folder", "", ": not a regular file"),
                 ("large.glsl", "", ": the file has 4 MiB, the limit is 1 MiB")):
-            with self.subTest(name[:40]):
-                self.assert_shader_refused(f'// one\n#include "{name}"\n{GREY}', before + re.escape(name[:40]) + after)
+            self.assert_shader_refused(f'// one\n#include "{name}"\n{GREY}', before + re.escape(name[:40]) + after)
 
     def test_includes_in_the_tree_may_be_links(self):
         self.beside("helper.glsl", HELPER)

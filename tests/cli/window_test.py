@@ -123,5 +123,4 @@ class Windows(ProgramTest):
 
     def test_a_window_does_not_go_with_everything(self):
         for option in ("--headless", "--report=r.json", "--time-limit=9", "--target-error=1", "--save-every=9"):
-            with self.subTest(option=option):
-                self.assert_refused([*RENDER, "--window", option], "--window", environment=NO_DISPLAY)
+            self.assert_refused([*RENDER, "--window", option], "--window", environment=NO_DISPLAY)
