@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import unittest
 
 import tools_path  # noqa: F401  (first: it finds the others)
 import numpy as np
@@ -231,7 +230,3 @@ class ImageFiles(ProgramTest):
         for option in ("--reference", "--resume"):
             self.assert_refused(["quad.json", f"{option}=nowhere.exr"], r"nowhere\.exr")
             self.assert_refused(["quad.json", f"{option}=quad.obj"], r"quad\.obj")
-
-
-if __name__ == "__main__":
-    unittest.main()

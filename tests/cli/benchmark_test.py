@@ -4,7 +4,6 @@ import json
 import math
 import re
 import socket
-import unittest
 
 from program import BINARIES, PROJECT, ProgramTest
 
@@ -44,7 +43,3 @@ class BenchmarkTest(ProgramTest):
             for word in words:
                 self.assertRegex(err, word)
             self.assertEqual(err.count("\n"), 1, err)
-
-
-if __name__ == "__main__":
-    unittest.main()

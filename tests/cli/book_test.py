@@ -180,7 +180,3 @@ code
     def test_long_sentences_are_named(self):
         words = "word " * readability.LONGEST_GOAL
         self.assertEqual(readability.measure(f"{words}.\n\n{words}more.\n")[1], [(readability.LONGEST_GOAL + 1, f"{words}more.")])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 """What the chapters have beyond the common command line: options of their own, scenes that they refuse."""
 
 import json
-import unittest
 
 from image_files import Exr
 from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest, RenderTest
@@ -111,7 +110,3 @@ class ChapterRenders(RenderTest):
         on = self.picture_of(3, "on", "--samples=4")
         off = self.picture_of(3, "off", "--samples=4", "--light-sampling=off")
         self.assertNotEqual(on.read_bytes(), off.read_bytes())
-
-
-if __name__ == "__main__":
-    unittest.main()

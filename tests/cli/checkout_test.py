@@ -4,7 +4,6 @@ import os
 import re
 import shutil
 import subprocess
-import unittest
 
 from program import PROJECT, ProgramTest
 
@@ -81,7 +80,3 @@ class WhatIsBuilt(ProgramTest):
         self.assertRegex(noted, r"(?m) --target shaders_tests$")
         self.assertIn(r" -R [./](ThreeThings|More)\. -E /chapter_(12_twelve|20_mine)(_all)?$" + "\n", noted)
         self.assertIn("\nctest, copy 20_mine: ", "\n" + noted)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import resource
 import shutil
 import signal
 import time
-import unittest
 from pathlib import Path
 
 from image_files import Exr, relative_mse
@@ -207,7 +206,3 @@ class StoppingEarly(RenderTest):
         self.assertLess(time.monotonic() - start, 10)
         self.assertGreaterEqual(float(picture.text("seconds")), 0.9)
         self.assertGreater(int(picture.text("samples")), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

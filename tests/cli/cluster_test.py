@@ -3,7 +3,6 @@
 import os
 import re
 import subprocess
-import unittest
 
 from image_files import Exr
 from program import BINARIES, MERGE, PROJECT, RenderTest
@@ -62,7 +61,3 @@ class ClusterTest(RenderTest):
             self.run_shell(script, SLURM_ARRAY_TASK_ID=task)
         self.run_shell("./lab merge parts/*.exr -o whole.exr")
         self.assert_is_one_render("whole.exr")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 """The command line: what it understands, and that it refuses everything else with one clear line."""
 
 import re
-import unittest
 
 from program import MERGE, ProgramTest
 
@@ -169,7 +168,3 @@ class MergeArguments(ProgramTest):
 
     def test_help(self):
         self.assertIn("-o", self.render("--help", program=MERGE))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 """The diagrams of the pages, SVG files drawn once: they are legible on white and on black."""
 
 import re
-import unittest
 import xml.etree.ElementTree as ElementTree
 
 from program import PROJECT
@@ -68,7 +67,3 @@ class DiagramsTest(unittest.TestCase):
             for line in root.iter(f"{SVG}path"):
                 for x, y in re.findall(r"([-\d.]+) ([-\d.]+)", line.get("d")):
                     self.assertTrue(0 <= float(x) <= width and 0 <= float(y) <= height, f"{name}: a line to {x}, {y}")
-
-
-if __name__ == "__main__":
-    unittest.main()

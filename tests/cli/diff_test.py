@@ -89,7 +89,3 @@ class DiffTest(unittest.TestCase):
             result = diff(word, capture_output=True)
             self.assertEqual(result.returncode, 1)
             self.assertRegex(result.stderr, r"\Aerror: [^\n]{20,}\n\Z")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -187,6 +187,3 @@ TRAPS_THAT_CANNOT_OCCUR = {"3.7"}
 
 # What the pages quote from the slides, the blog and GLSL.
 KNOWN_ELSEWHERE = {"pixel_index", "frame_index", "my_model"}
-
-if __name__ == "__main__":
-    unittest.main()

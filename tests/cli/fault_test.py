@@ -7,7 +7,6 @@ import shutil
 import signal
 import subprocess
 import time
-import unittest
 
 from image_files import Exr
 from program import CHAPTER, FAULT_LAYER, UNOPTIMISED, RenderTest
@@ -229,7 +228,3 @@ class Surroundings(RenderTest):
             _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 1, err)
         self.assertRegex(err, r"error: [^\n]*a\.exr: cannot be written: No such file or directory\n\Z")
-
-
-if __name__ == "__main__":
-    unittest.main()

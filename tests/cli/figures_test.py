@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-import unittest
 
 from program import PROJECT, TOOLS, ProgramTest  # first: it finds the tools
 from docs.bug_blocks import GALLERY
@@ -77,7 +76,3 @@ class Figures_all(ProgramTest):
                                 capture_output=True, text=True)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"\Aerror: only_0: [^\n]*no_such_scene[^\n]*\n\Z")
-
-
-if __name__ == "__main__":
-    unittest.main()

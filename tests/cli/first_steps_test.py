@@ -1,7 +1,6 @@
 """docs/first_steps.md: its shaders compile, and show what the page says; its pictures are what they render."""
 
 import re
-import unittest
 from contextlib import nullcontext
 from dataclasses import replace
 
@@ -193,7 +192,3 @@ class FirstStepsPictures_all(ProgramTest):
                 self.assertEqual(np.argmin(differences), i, f"{renders[i].name}: {differences}")
                 # Measured: at most 0.019, and 0.036 between steps 6 and 7.
                 self.assertLess(differences[i], 0.025, renders[i].name)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -49,7 +49,3 @@ class BareMachineTest(ProgramTest):
             code, _, err = self.run_program(*command, program=PROJECT / "lab", environment={"PATH": str(commands)})
             self.assertEqual(code, 1, err)
             self.assertRegex(err, r"these packages are needed[^\n]*\n +python3 +\w")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import unittest
 
 from image_files import Exr, read_png
 from program import CHAPTER, MERGE, PROJECT, RenderTest
@@ -68,7 +67,3 @@ class Poison(RenderTest):
         self.render("part.exr", "rest.exr", "-o", "merged.exr", program=MERGE)
         merged = Exr(self.folder / "merged.exr")
         self.assertEqual((merged.text("invalid_samples"), merged.text("samples")), ("1", "9"))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 """How ./lab builds: in a project of its own, whose programs take no time to compile."""
 
 import shutil
-import unittest
 
 from program import PROJECT, ProgramTest
 
@@ -59,7 +58,3 @@ class LabBuildTest(ProgramTest):
             self.program_says("second")
             self.assertEqual(self.run_chapter(self.tree / "lab"), "second\n")
             first.terminate()
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -61,7 +61,3 @@ class SwiftShader_all(RenderTest):
         for backend in ("pipeline", "query"):
             arguments = ["cornell_box", "--quiet", f"--backend={backend}"]
             self.assert_refused(arguments, "lacks VK_KHR", "these work on it: compute", code=2, environment=SWIFTSHADER)
-
-
-if __name__ == "__main__":
-    unittest.main()

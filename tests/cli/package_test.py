@@ -3,7 +3,6 @@
 import os
 import subprocess
 import tarfile
-import unittest
 
 from program import PROJECT, ProgramTest  # first: it finds the tools
 from package import make
@@ -35,7 +34,3 @@ class LinuxArchive_all(ProgramTest):
         self.assertTrue((self.folder / "output/01_uniform_sampling.png").exists())
         libraries = subprocess.run(["ldd", folder / "build/bin/01_uniform_sampling"], capture_output=True, text=True).stdout
         self.assertIn(f"{folder}/build/lib/libglfw.so.3", libraries.replace("/bin/..", ""))
-
-
-if __name__ == "__main__":
-    unittest.main()

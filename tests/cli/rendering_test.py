@@ -1,7 +1,6 @@
 """Pictures: the same command gives the same bits, parts add up to the whole, and every kind of file is right."""
 
 import re
-import unittest
 
 from image_files import Exr, read_png
 from program import MERGE, RenderTest
@@ -91,9 +90,7 @@ class PathLengths(RenderTest):
         whole = self.picture("whole", "--samples=16", f"--max-path-length={longest}").pixels()
         total = [0.0] * len(whole)
         for length in range(longest + 1):
-            only = self.picture(
-                f"only{length}", "--samples=16", f"--max-path-length={longest}", f"--only-path-length={length}"
-            )
+            only = self.picture(f"only{length}", "--samples=16", f"--max-path-length={longest}", f"--only-path-length={length}")
             total = [a + b for a, b in zip(total, only.pixels())]
         brightness = sum(whole) / len(whole)
         for a, b in zip(total, whole):
@@ -205,7 +202,3 @@ class PictureFiles(RenderTest):
             self.assertEqual(exr.text(name), value)
         self.assertTrue(exr.text("device"))
         self.assertGreater(float(exr.text("seconds")), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

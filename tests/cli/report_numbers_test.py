@@ -220,7 +220,3 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertEqual(second["efficiency"], [None] * 3)
         self.assertIsNone(second["slope_samples"])
         self.assertEqual(second["curve"], [])
-
-
-if __name__ == "__main__":
-    unittest.main()

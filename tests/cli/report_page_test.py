@@ -228,7 +228,3 @@ class StyleTest(unittest.TestCase):
     def test_no_two_chapters_look_alike(self):
         styles = [plots.style({"is_peer": False}, index, 0) for index in range(2 * len(CHAPTERS))]
         self.assertEqual(len({(style["color"], style["marker"]) for style in styles}), len(styles))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,6 @@ import math
 import os
 import re
 import statistics
-import unittest
 
 from image_files import Exr, relative_mse
 from program import BINARIES, PROJECT, QUAD_JSON, RenderTest
@@ -135,7 +134,3 @@ class Report(RenderTest):
             self.assertTrue({"seconds", "rays", "mse", "rel_mse", "rel_rmse"} <= row.keys())
             self.assertNotIn(None, row)
             self.assertGreater(float(row["seconds"]), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

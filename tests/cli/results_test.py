@@ -125,7 +125,3 @@ class StudiesTest(unittest.TestCase):
             file.write_text("{", encoding="utf-8")
             with mock.patch.multiple(studies, ROOT=Path(name), CHAPTERS={1: "01_a"}, original=int), self.assertRaisesRegex(UserError, r"01_a/measure\.json: not valid JSON: "):
                 studies.measures()
-
-
-if __name__ == "__main__":
-    unittest.main()

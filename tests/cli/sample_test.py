@@ -95,7 +95,3 @@ class SampleTest(ProgramTest):
         self.refuse(["cosine", "--dimensions=2"], "kd")
         self.refuse(["cosine", "--output=picture.bmp"], "png")
         self.refuse(["cosine", "--output=/proc/picture.png"], "cannot be written")
-
-
-if __name__ == "__main__":
-    unittest.main()

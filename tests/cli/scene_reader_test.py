@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-import unittest
 
 from program import QUAD_OBJ, ProgramTest  # first: it finds the tools
 from references.scenes import read_scene
@@ -35,7 +34,3 @@ class SceneReaderTest(ProgramTest):
         for byte in model.read_bytes() + (self.folder / "quad.mtl").read_bytes():
             value = (value ^ byte) * 0x100000001B3 % 2**64
         self.assertEqual(read_scene(model).hash, f"{value:x}")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import os
 import re
-import unittest
 from pathlib import Path
 
 from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
@@ -99,7 +98,3 @@ class ShaderFiles(ProgramTest):
 
     def test_a_shader_that_is_too_large(self):
         self.assert_shader_refused(GREY + " " * (4 << 20), r"path_trace\.glsl", "MiB")
-
-
-if __name__ == "__main__":
-    unittest.main()

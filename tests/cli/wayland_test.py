@@ -149,7 +149,3 @@ class Wayland_all(ProgramTest):
         self.start_desktop("--backend=headless")
         self.assert_refused(COMMAND, "no window", "--headless", environment=self.wayland)
         self.open_window(self.x11 | {"WAYLAND_DISPLAY": "desktop"})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -190,7 +190,3 @@ class WindowsPrograms_all(RenderTest):
     def colour_of_scene(self):
         scene = ImageGrab.grab(xdisplay=wine["DISPLAY"]).crop((500, 200, 800, 500))
         return scene.resize((1, 1), Image.Resampling.BOX).getpixel((0, 0))
-
-
-if __name__ == "__main__":
-    unittest.main()

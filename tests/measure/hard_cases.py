@@ -40,9 +40,7 @@ def python_module(test):
 
 def missing_tests():
     """Cited tests that do not exist."""
-    existing = {
-        test_report.name_of(name) for kind in PROGRAMS for name in test_report.list_tests(BINARIES / f"{kind}_tests")
-    }
+    existing = {test_report.name_of(name) for kind in PROGRAMS for name in test_report.list_tests(BINARIES / f"{kind}_tests")}
     return sorted(t for t in cited_tests() if (python_module(t) is None if is_python(t) else t not in existing))
 
 
