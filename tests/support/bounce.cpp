@@ -23,9 +23,8 @@ std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surfa
     inputs.insert(inputs.end(), seed_bytes.begin(), seed_bytes.end());
     const Estimator estimator = chapter_estimator(chapter);
     defines.insert(defines.end(), estimator.defines.begin(), estimator.defines.end());
-    TestShader shader{.name = "bounce.comp",
-                      .defines = std::move(defines),
-                      .named_includes = named_includes(estimator)};
+    TestShader shader{
+        .name = "bounce.comp", .defines = std::move(defines), .named_includes = named_includes(estimator)};
     if (surface.material.specular_albedo != vec3(0)) shader.defines.emplace_back("FEATURE_SPECULAR");
     std::vector<Bounce> bounces(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs, device);
