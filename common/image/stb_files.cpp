@@ -1,15 +1,63 @@
-// Eight-bit images through stb_image, and the writers of stb_image_write.
-#include <stb_image.h>
-#include <stb_image_write.h>
-
+// Eight-bit images through stb_image, the writers of stb_image_write, and the code of both.
+// radiance.cpp reads .hdr itself, because stb_image does not end on some truncated files.
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 
 #include "files/file.h"
+#include "image/encoding.h"
 #include "image/image.h"
 #include "image/image_checks.h"
-#include "image/stb_memory.h"
+
+namespace lab {
+
+// Limits the memory of stb_image, since damaged files may claim any amount.
+struct StbMemory {
+    size_t largest_block = SIZE_MAX;  // bytes; a larger one counts as out of memory
+    bool exceeded = false;            // whether one was asked for
+};
+static thread_local StbMemory stb_memory;
+
+static void* stb_allocate(void* block, size_t size) {
+    if (size > stb_memory.largest_block) {
+        stb_memory.exceeded = true;
+        return nullptr;
+    }
+    // Zeroed, because stb_image up to 2.27 uses tables that a damaged .jpg has not defined.
+    return block ? std::realloc(block, size) : std::calloc(1, size);
+}
+
+// For PNG: the threads that stb does not use.
+static unsigned char* compress_for_stb(unsigned char* data, int size, int* compressed_size, int) {
+    const std::string bytes =
+        compress_in_parallel({reinterpret_cast<const char*>(data), static_cast<size_t>(size)});
+    auto* result = static_cast<unsigned char*>(std::malloc(bytes.size()));
+    if (result) std::memcpy(result, bytes.data(), bytes.size());
+    *compressed_size = static_cast<int>(bytes.size());
+    return result;
+}
+
+}  // namespace lab
+
+#define STBI_MALLOC(size) lab::stb_allocate(nullptr, size)
+#define STBI_REALLOC(block, size) lab::stb_allocate(block, size)
+#define STBI_FREE(block) std::free(block)
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#define STBI_NO_STDIO
+#define STBI_ONLY_BMP
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
+#define STBI_ONLY_TGA
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBIW_ZLIB_COMPRESS lab::compress_for_stb
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
 
 namespace lab {
 namespace {

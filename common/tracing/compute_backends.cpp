@@ -21,38 +21,35 @@ class ComputeTracer : public Tracer {
     ComputeKernel kernel_;
 };
 
-class ComputeBackend : public SceneTree<GpuBvh, ComputeTracer> {
+template <typename Tree>
+class ComputeBackend : public SceneTree<Tree, ComputeTracer> {
   public:
-    using SceneTree::SceneTree;
+    ComputeBackend(const Device& device, const GpuScene& scene, Tree tree, std::vector<std::string> defines)
+        : SceneTree<Tree, ComputeTracer>(device, scene, std::move(tree)), defines_(std::move(defines)) {}
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
-        ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
-        for (const auto& define : tree_.defines()) source.defines.push_back(define);
+        ShaderSource source = shader_source("engine/render.comp", this->scene_, estimator);
+        source.defines.insert(source.defines.end(), defines_.begin(), defines_.end());
         return {source};
     }
-};
 
-class QueryBackend : public SceneTree<HardwareBvh, ComputeTracer> {
-  public:
-    using SceneTree::SceneTree;
-
-    std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
-        ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
-        source.defines.emplace_back("BACKEND_QUERY");
-        return {source};
-    }
+  private:
+    std::vector<std::string> defines_;
 };
 
 }  // namespace
 
 std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& device, const GpuScene& scene) {
     GpuBvh::require_room(device, scene.scene());
-    return std::make_unique<ComputeBackend>(device, scene,
-                                            GpuBvh(device, build_bvh(world_triangles(scene.scene()))));
+    GpuBvh bvh(device, build_bvh(world_triangles(scene.scene())));
+    auto defines = bvh.defines();
+    return std::make_unique<ComputeBackend<GpuBvh>>(device, scene, std::move(bvh), std::move(defines));
 }
 
 std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device, const GpuScene& scene) {
-    return std::make_unique<QueryBackend>(device, scene, HardwareBvh(device, scene));
+    HardwareBvh bvh(device, scene);
+    return std::make_unique<ComputeBackend<HardwareBvh>>(device, scene, std::move(bvh),
+                                                         std::vector<std::string>{"BACKEND_QUERY"});
 }
 
 }  // namespace lab
