@@ -147,7 +147,7 @@ struct FilmPixel {
     uint invalid_count;  // samples that were infinite or not a number; they add 0
 };
 
-// How shaders/display.comp turns radiance into what a screen shows.
+// How shaders/engine/display.comp turns radiance into what a screen shows.
 struct DisplayParameters {
     uvec2 film_size;          // pixels in use
     uvec2 image_size;         // of the picture; the film is scaled to it

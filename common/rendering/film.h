@@ -5,7 +5,7 @@
 
 namespace lab {
 
-// Number of blocks of pixels that cover an image, as in shaders/blocks.glsl.
+// Number of blocks of pixels that cover an image, as in shaders/engine/blocks.glsl.
 uint32_t count_blocks(uvec2 image_size);
 
 // The part of the film that is bound: all of it, unless that is more than the device can bind.

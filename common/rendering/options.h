@@ -10,7 +10,7 @@
 
 namespace lab {
 
-// A picture of something else than radiance: shaders/view.glsl with `define`, or the file `observer` of
+// A picture of something else than radiance: shaders/observation/view.glsl with `define`, or the file `observer` of
 // shaders/, which watches the chapter's estimator.
 struct View {
     std::string name;

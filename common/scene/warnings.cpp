@@ -225,7 +225,7 @@ std::vector<std::string> precision_warnings(const Scene& scene) {
         const Bounds bounds = world_bounds(scene);
         const glm::dvec3 low(bounds.low), high(bounds.high),
             farthest = glm::max(glm::abs(low), glm::abs(high));
-        // As get_surface_point() of shaders/shading_data.glsl moves rays off a surface that is not slender.
+        // As get_surface_point() of shaders/world/shading_data.glsl moves rays off a surface that is not slender.
         const double offset = 8 * rounding * (farthest.x + farthest.y + farthest.z);
         const double part = offset / glm::distance(low, high);
         if (part > 1e-3)

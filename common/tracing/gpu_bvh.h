@@ -1,4 +1,4 @@
-// Our bounding volume hierarchy on the device, as shaders/trace_ray/bvh.glsl declares it.
+// Our bounding volume hierarchy on the device, as shaders/engine/trace_ray/bvh.glsl declares it.
 #pragma once
 #include "gpu/compute_kernel.h"
 #include "tracing/bvh.h"

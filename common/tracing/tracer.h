@@ -40,7 +40,7 @@ class Tracer {
   public:
     virtual ~Tracer() = default;
     // Records the rendering of `block_count` blocks of pixels up to the dispatch's sample count. With
-    // SHARED_PIXELS shaders/add_samples.comp must add the samples to the film. `film_offset` in bytes is that
+    // SHARED_PIXELS shaders/engine/add_samples.comp must add the samples to the film. `film_offset` in bytes is that
     // of the film's binding.
     virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
                         uint32_t block_count, uint32_t film_offset) const = 0;

@@ -135,8 +135,8 @@ class EditedShaders(RenderTest):
             stream.write(f"const float added_to_{Path(shader).stem} = 1.0;\n")
 
     def test_different_estimators_are_not_joined(self):
-        for shader in ("chapters/05_russian_roulette/path_trace.glsl", "shaders/direct_light.glsl",
-                       "shaders/sampling.glsl", "shaders/random.glsl", "shaders/shading_data.glsl"):
+        for shader in ("chapters/05_russian_roulette/path_trace.glsl", "chapters/03_next_event_estimation/direct_light.glsl",
+                       "chapters/02_cosine_sampling/sample_hemisphere.glsl", "shaders/world/random.glsl", "shaders/world/shading_data.glsl"):
             with self.subTest(shader=shader):
                 self.render_range("before", 0)
                 self.edit(shader)
@@ -147,8 +147,8 @@ class EditedShaders(RenderTest):
 
     def test_other_ways_to_trace_rays_are(self):
         self.render_range("before", 0)
-        self.edit("shaders/trace_ray/compute.glsl")
-        self.edit("shaders/display.comp")
+        self.edit("shaders/engine/trace_ray/compute.glsl")
+        self.edit("shaders/engine/display.comp")
         self.render_range("after", 2)
         self.render("before.exr", "after.exr", "-o", "merged.exr", program=MERGE)
 

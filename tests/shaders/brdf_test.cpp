@@ -1,4 +1,4 @@
-// shaders/materials.glsl: the Lambertian BRDF with a normalised Phong lobe.
+// shaders/world/materials.glsl: the Lambertian BRDF with a normalised Phong lobe.
 #include <cmath>
 #include <cstdio>
 #include <numbers>

@@ -1,4 +1,4 @@
-// shaders/display.comp: a screen shows what film/display.h computes.
+// shaders/engine/display.comp: a screen shows what film/display.h computes.
 #include <algorithm>
 #include <cmath>
 #include <limits>

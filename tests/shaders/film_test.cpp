@@ -1,4 +1,4 @@
-// shaders/film.glsl: sums of millions of samples, and samples that are not numbers.
+// shaders/engine/film.glsl: sums of millions of samples, and samples that are not numbers.
 #include <array>
 #include <bit>
 #include <cmath>

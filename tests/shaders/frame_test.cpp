@@ -1,4 +1,4 @@
-// shaders/frame.glsl: the rotation from the z-axis to a normal.
+// shaders/world/frame.glsl: the rotation from the z-axis to a normal.
 #include <cmath>
 #include <random>
 

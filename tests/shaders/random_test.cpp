@@ -1,4 +1,4 @@
-// shaders/random.glsl: the generator, its start states, and how independent samples are.
+// shaders/world/random.glsl: the generator, its start states, and how independent samples are.
 #include <algorithm>
 #include <cmath>
 

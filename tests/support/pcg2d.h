@@ -1,4 +1,4 @@
-// The generator of shaders/random.glsl once more, for the CPU, and its inverse. Written from the description
+// The generator of shaders/world/random.glsl once more, for the CPU, and its inverse. Written from the description
 // in Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3) 2020.
 #pragma once
 #include <array>

@@ -20,7 +20,7 @@ void expect_at(const std::optional<vec2>& position, float x, float y) {
 }
 
 TEST(Projection, IsTheInverseOfTheCamerasRays) {
-    // As in shaders/camera.glsl.
+    // As in shaders/world/camera.glsl.
     for (const vec2 image : {vec2(0, 0), vec2(1, 1), vec2(0.3f, 0.8f), vec2(-0.5f, 1.5f)}) {
         const vec2 p = 2.0f * image - 1.0f;
         const vec3 direction = camera.forward + p.x * camera.right - p.y * camera.up;

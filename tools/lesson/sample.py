@@ -57,7 +57,7 @@ PLAYGROUNDS = {
         Integral("∫ sin(π u) du from 0 to 1", lambda k: 2 / math.pi, lambda u: np.sin(np.pi * u[:, 0]))],
         "u", dimensions=1),
     "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", dimensions=4),
-    "numbers": Playground("pairs of random numbers by PCG2D, shaders/random.glsl", "numbers", [DARTS], "u_x"),
+    "numbers": Playground("pairs of random numbers by PCG2D, shaders/world/random.glsl", "numbers", [DARTS], "u_x"),
     "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"),
 }
 
