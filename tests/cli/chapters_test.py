@@ -15,9 +15,8 @@ def description(chapter):
 
 def options_of(chapter):
     """Those of its own."""
-    switches = {"light_sampling": "--light-sampling", "strategies": "--strategy", "split_every_hit": "--split-every-hit"}
     says = description(chapter)
-    return [option for key, option in switches.items() if says.get(key)] + says.get("options", [])
+    return ["--strategy"] * ("strategies" in says) + says.get("options", [])
 
 
 class EveryChapter(ProgramTest):
@@ -58,24 +57,15 @@ class ChapterOptions(ProgramTest):
             for value in values:
                 self.refuse(number, f"{option}={value}")
 
-    def test_light_sampling(self):
-        for value in ("maybe", "", "2"):
-            self.refuse(3, f"--light-sampling={value}")
-
     def test_strategy(self):
         for value in ("none", "", "2"):
             self.refuse(7, f"--strategy={value}")
-        self.refuse(7, "--strategy=light", "--light-sampling=on")
-        self.refuse(6, "--strategy=light")
-
-    def test_splitting_at_every_hit_is_bounded(self):
-        self.refuse(4, "--split-every-hit", "--max-path-length=9")
-        self.refuse(5, "--splitting-factor=6", "--split-every-hit", "--max-path-length=8")
+        self.refuse(2, "--strategy=bounces")
+        self.refuse(3, "--strategy=both")
 
     def test_largest_settings_end(self):
         program = BINARIES / CHAPTERS[3]
         self.render("quad.json", *TINY, "--splitting-factor=1024", program=program)
-        self.render("quad.json", *TINY, "--split-every-hit", "--splitting-factor=1024", "--max-path-length=2", program=program)
         program = BINARIES / CHAPTERS[4]
         self.render("quad.json", *TINY, "--survival-cap=1", "--roulette-start=1000000", program=program)
 
@@ -93,20 +83,16 @@ class ChapterRenders(RenderTest):
 
     def test_other_settings_are_not_joined(self):
         first = self.picture_of(4, "first", "--samples=2", "--splitting-factor=2")
-        for change in ("--splitting-factor=3", "--light-sampling=off", "--split-every-hit"):
+        for change in ("--splitting-factor=3", "--strategy=bounces"):
             with self.subTest(change=change):
                 arguments = ["--samples=4", "--max-path-length=8", f"--resume={first}", change]
                 program = BINARIES / CHAPTERS[3]
                 self.assert_refused(self.command(*arguments), "settings|estimator", program=program)
 
     def test_strategies(self):
-        options = "--strategy=both", "--strategy=light", "--strategy=brdf", "--light-sampling=off"
-        both, light, brdf, off = (Exr(self.picture_of(7, f"picture_{i}", "--samples=4", option)) for i, option in enumerate(options))
-        self.assertEqual(brdf.pixels(), off.pixels())
-        self.assertEqual(len({str(picture.pixels()) for picture in (both, light, brdf)}), 3)
-        self.assertEqual(len({picture.text("settings") for picture in (both, light, brdf)}), 3)
-
-    def test_light_sampling_changes_the_noise(self):
-        on = self.picture_of(3, "on", "--samples=4")
-        off = self.picture_of(3, "off", "--samples=4", "--light-sampling=off")
-        self.assertNotEqual(on.read_bytes(), off.read_bytes())
+        for number, strategies in ((3, ("light", "bounces")), (7, ("both", "light", "bounces"))):
+            pictures = [Exr(self.picture_of(number, name, "--samples=4", f"--strategy={name}")) for name in strategies]
+            default = Exr(self.picture_of(number, "default", "--samples=4"))
+            self.assertEqual(default.pixels(), pictures[0].pixels())
+            self.assertEqual(len({str(picture.pixels()) for picture in pictures}), len(strategies))
+            self.assertEqual(len({picture.text("settings") for picture in pictures}), len(strategies))

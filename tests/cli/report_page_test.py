@@ -191,7 +191,7 @@ class LongReports_all(Reports, ProgramTest):
         self.assertNotIn(str(PROJECT), json.dumps(record))
         show = "import json, sys; sys.path.insert(0, sys.argv[1]); from docs import tables; print(tables.chapter_tables(json.load(open('record.json'))))"
         table = self.render("-B", "-c", show, TOOLS, program=sys.executable)
-        self.assertRegex(table, r"\| the same with roulette \| `--samples \d+ --split-every-hit [^|]*` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(")
+        self.assertRegex(table, r"\| splitting factor 2 \| `--samples \d+ --splitting-factor 2` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(")
 
     def test_a_peer_is_compared_with_as_each_sampler(self):
         (self.folder / "bin").mkdir()

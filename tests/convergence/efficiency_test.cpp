@@ -93,6 +93,19 @@ TEST(Efficiency, RussianRoulettePaysForLongPaths_all) {
                 measure_chapter("cornell_box", "russian_roulette", 8, 1000, 2));
 }
 
+// The blog's trees: two branches at every hit and five bounces.
+TEST(Efficiency, RoulettePaysWhereEveryHitSplits_all) {
+    RenderSettings settings{.width = 64, .height = 64, .samples = 8, .max_path_length = 5};
+    settings.splitting_factor = 2;
+    settings.estimator = every_hit_estimator();
+    settings.roulette_start = no_roulette;
+    const Scene scene = load_shipped_scene("cornell_box.json");
+    const Cost without = measure(scene, settings);
+    settings.roulette_start = 1;
+    settings.seed += 100;
+    expect_gain("roulette where every hit splits", without, measure(scene, settings));
+}
+
 // Where lights are near, light samples are noisy; where surfaces are glossy, they miss the lobe.
 TEST(Efficiency, MultipleImportanceSamplingPays_all) {
     expect_gain("multiple importance sampling against dielectrics, heart",

@@ -21,18 +21,16 @@ from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from project import ROOT, Parser, UserError, load_records, scene_of, table
 from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
-from report.studies import examples, table_names
+from report.studies import examples
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
 TABLE = re.compile(r"(<!-- table: ([^\n]+?) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
-TABLE_NAMES = table_names()
-
 
 def kind_of(case):
     """The cases of a kind and a scene stand in a table: their names differ in the last word."""
-    return TABLE_NAMES.get(case["case"], case["case"].rpartition(" ")[0])
+    return case["case"].rpartition(" ")[0]
 
 
 def kind_tables(record):

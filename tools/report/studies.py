@@ -50,12 +50,6 @@ def study_cases():
                     for place in study["on"] for name, options in study["cases"].items()]
 
 
-def table_names():
-    """Name of a case -> name of its table, where its study has one."""
-    return {name: study["table"] for measure in measures().values() for study in measure.get("studies", []) if "table" in study
-            for name in study["cases"]}
-
-
 def example_table(rows):
     """The Markdown table of a worked example."""
     names, cells = dict(vars(math), short=short), []
