@@ -43,7 +43,8 @@ def make(mistake, tree):
 
 
 def run(program, test, tree):
-    """Runs tests of a program on that tree; returns all tests that ran, with the messages of their failures."""
+    """Runs tests of a program on that tree; returns all tests that ran, with the messages of their failures. A test may be one of
+    those that only ./lab test --all takes, whose names end in _all."""
     # Programs find the shaders above themselves.
     binary = tree / "bin" / f"{program}_tests"
     binary.parent.mkdir(exist_ok=True)

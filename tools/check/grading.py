@@ -199,7 +199,7 @@ def read_levels(chapter):
     file = knowledge_file(chapter)
     known = read_json(file) if file.exists() else {}
     if known.get("title") != DESCRIPTIONS[chapter]["title"]:
-        raise UserError(f"chapter {chapter} has a title of its own and is not measured yet: ./lab check 3 FILE grades a file as chapter 3's, "
+        raise UserError(f"chapter {chapter} has a title of its own and is not measured yet: ./lab check N FILE grades a file as chapter N's, "
                         "tests/mistakes/learn.py learn measures a new chapter")
     return known["levels"]
 
