@@ -19,7 +19,7 @@ from measure import hard_cases
 from docs import numerics
 from lesson import sample
 
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/*/README.md"))]
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/**/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 COURSE = [name for name in CHAPTERS.values() if (ROOT / "chapters" / name / "exercise.json").exists()]
 CHAPTERS.setdefault(20, CHAPTERS[3])  # the pages call a student's copy of a chapter 20
@@ -131,7 +131,7 @@ class DocumentationTest(unittest.TestCase):
     def test_every_exercise_has_a_solution(self):
         for chapter in COURSE:  # of exercise 1 it is the chapter's shader
             exercises = re.findall(r"^(\d+)\. \*([\w ]+)\.\*", text_of(ROOT / "chapters" / chapter / "README.md"), re.MULTILINE)
-            solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "docs/solutions" / f"{chapter}.md"), re.MULTILINE)
+            solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"), re.MULTILINE)
             self.assertEqual(solutions, exercises[1:], chapter)
 
     def test_results_are_what_the_records_say(self):

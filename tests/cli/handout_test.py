@@ -22,7 +22,7 @@ float geometry = dot(s.normal, omega) * cos_light / (distance * distance);
 ```
 <!-- end of code -->
 
-The term is `cos_light / (distance * distance)`. See [the model answer](../solutions/03.md). It is right: run `./lab
+The term is `cos_light / (distance * distance)`. See [the model answer](solutions/03.md). It is right: run `./lab
 test`.
 Another is [`float later = 1.0;`](../07_multiple_importance_sampling/path_trace.glsl).
 
@@ -32,8 +32,8 @@ float later = 1.0;
 ```
 <!-- end of code -->
 """
-TEACHERS = ["exercise.json", "mistakes.json", "other_scenes.json", "solutions", "solutions.md", "tests.json", "variants"]  # in a chapter's folder
-FOR_TEACHERS = ["docs/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
+TEACHERS = ["exercise.json", "mistakes.json", "other_scenes.json", "solutions", "tests.json", "variants"]  # in a chapter's folder
+FOR_TEACHERS = ["chapters/03_next_event_estimation/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
 
 
 def handout(folder, *arguments, tools=TOOLS):
@@ -91,7 +91,7 @@ class HandoutTest(ProgramTest):
         for name in FOR_TEACHERS:
             self.write(project / name, "planted")
         page = project / "chapters/03_next_event_estimation/README.md"
-        page.write_text(page.read_text(encoding="utf-8") + QUOTATION.replace("../solutions", "../../docs/solutions"), encoding="utf-8")
+        page.write_text(page.read_text(encoding="utf-8") + QUOTATION, encoding="utf-8")
         result = self.handout(3, "lab", tools=project / "tools")
         self.assertEqual(result.returncode, 0, result.stderr)
         tree = self.folder / "lab"

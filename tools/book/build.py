@@ -23,7 +23,7 @@ SECTIONS = {  # of the navigation; pages that do not exist are left out
     "For teachers": ["docs/teaching.md", "docs/grading/README.md"],
 }
 START = ["README.md", "docs/first_steps.md"]
-SOLUTIONS = "docs/solutions"  # for teachers only
+SOLUTIONS = "chapters/*/solutions/README.md"  # for teachers only
 
 
 def title_of(path):
@@ -39,7 +39,7 @@ def navigation(is_teacher):
     others = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").glob("*.md"))]
     sections["How it works"] += [path for path in others if path not in known]
     if is_teacher:
-        sections["For teachers"] += [str(path.relative_to(ROOT)) for path in sorted((ROOT / SOLUTIONS).glob("*.md"))]
+        sections["For teachers"] += [str(path.relative_to(ROOT)) for path in sorted(ROOT.glob(SOLUTIONS))]
     return [(title, [path for path in paths if (ROOT / path).is_file()]) for title, paths in sections.items()]
 
 
@@ -52,7 +52,7 @@ def collect(folder, sections, is_teacher):
     """Writes the pages, the files that they link to, and their pictures, at their paths in the project. Returns the pages, and the
     names of the sources in the site."""
     def is_included(path):
-        return (ROOT / path).is_file() and (is_teacher or not str(path).startswith(SOLUTIONS))
+        return (ROOT / path).is_file() and (is_teacher or "solutions" not in Path(path).parts)
 
     waiting, done = [Path(path) for _, paths in sections for path in paths], set()
     while waiting:
