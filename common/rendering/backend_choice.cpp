@@ -1,5 +1,3 @@
-#include "rendering/backend_choice.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +6,7 @@
 #include "error.h"
 #include "files/cache.h"
 #include "files/file.h"
+#include "rendering/render_job.h"
 #include "tracing/gpu_bvh.h"
 
 namespace lab {

@@ -1,6 +1,6 @@
 #include "rendering/build.h"
 
-#include "rendering/backend_choice.h"
+#include "rendering/render_job.h"
 #include "rendering/settings.h"
 
 namespace lab {

@@ -100,7 +100,7 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
     app.add_flag("--list-devices", run.list_devices, "Show the devices and what they lack");
     const auto window = [&](const char* name, WindowChoice choice, const char* help) {
         return app.add_flag_callback(
-            name, [&run = run, choice] { run.window = choice; }, help);
+            name, [&options, choice] { options.run.window = choice; }, help);
     };
     auto* headless = window("--headless", WindowChoice::never, "Render without a window");
     window("--window", WindowChoice::always,

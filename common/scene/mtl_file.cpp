@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "error.h"
-#include "scene/text_lines.h"
 
 namespace lab {
 namespace {

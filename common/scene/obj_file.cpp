@@ -11,7 +11,6 @@
 #include <unordered_map>
 
 #include "error.h"
-#include "scene/scene.h"
 #include "scene/text_lines.h"
 #include "scene/triangulate.h"
 

@@ -9,8 +9,8 @@
 #include "error.h"
 #include "files/file.h"
 #include "files/project_folder.h"
-#include "rendering/backend_choice.h"
 #include "rendering/numbers_text.h"
+#include "rendering/render_job.h"
 #include "rendering/settings.h"
 
 namespace lab {

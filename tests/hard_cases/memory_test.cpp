@@ -2,8 +2,8 @@
 #include <functional>
 
 #include "error.h"
-#include "rendering/backend_choice.h"
 #include "rendering/film.h"
+#include "rendering/render_job.h"
 #include "rendering/renderer.h"
 #include "support/gpu_test.h"
 #include "support/render.h"
