@@ -24,7 +24,7 @@ struct BrdfInput {
     Material material;
 };
 struct BrdfResult {
-    vec3 pi_brdf;
+    vec3 brdf;
     uint32_t is_above;
 };
 
@@ -40,13 +40,14 @@ Material glossy_material(float exponent) {
     return material;
 }
 
-// The definition: π times the BRDF of one channel.
-double pi_brdf(const BrdfInput& input, int channel) {
+// The definition: the BRDF of one channel.
+double brdf(const BrdfInput& input, int channel) {
     const dvec3 n(input.normal), in(input.in_direction), out(input.out_direction);
     const double cos_alpha = std::max(glm::dot(2 * glm::dot(n, in) * n - in, out), 0.0);
     const double exponent = input.material.specular_exponent;
-    return input.material.diffuse_albedo[channel] +
-           input.material.specular_albedo[channel] * 0.5 * (exponent + 2) * std::pow(cos_alpha, exponent);
+    return (input.material.diffuse_albedo[channel] +
+            input.material.specular_albedo[channel] * 0.5 * (exponent + 2) * std::pow(cos_alpha, exponent)) /
+           pi;
 }
 
 // Spherical coordinates to a direction.
@@ -74,11 +75,11 @@ TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
         ASSERT_EQ(results[i].is_above, 1u);
         for (int channel = 0; channel < 3; ++channel) {
             // Relative to the lobe's peak: a power of 1000 magnifies the rounding errors of its base.
-            const double peak = 0.5 * (inputs[i].material.specular_exponent + 2);
-            const double value = results[i].pi_brdf[channel];
-            worst = std::max(worst, std::abs(value - pi_brdf(inputs[i], channel)) / peak);
+            const double peak = 0.5 * (inputs[i].material.specular_exponent + 2) / pi;
+            const double value = results[i].brdf[channel];
+            worst = std::max(worst, std::abs(value - brdf(inputs[i], channel)) / peak);
             worst_reciprocity =
-                std::max(worst_reciprocity, std::abs(value - results[i ^ 1].pi_brdf[channel]) / peak);
+                std::max(worst_reciprocity, std::abs(value - results[i ^ 1].brdf[channel]) / peak);
         }
     }
     std::printf("  largest error %.2g, largest difference of exchanged directions %.2g, of the peak\n", worst,
