@@ -18,6 +18,7 @@ from check.formats import as_github
 from course.mistakes import plant
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
+TECHNIQUE = SHADER.with_name("direct_light.glsl")
 ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
     float sum = 0.0;
     while (sum >= 0.0) sum = abs(sum) + get_random_numbers(seed).x;
@@ -71,7 +72,7 @@ class CheckTest(ProgramTest):
 
     def wrong(self):
         """A file with a mistake."""
-        return self.write("mine.glsl", SHADER.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
+        return self.write("mine.glsl", TECHNIQUE.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
 
     def test_the_process_ends_with_the_verdict(self):
         for arguments, expected, words in (((), 0, "no picture is wrong.* correct: "),
@@ -89,8 +90,8 @@ class CheckTest(ProgramTest):
 
     def test_a_mistake_is_biased_to_its_side(self):
         made = mistake.load()["wrong-measure"]  # too bright: it forgets to divide by the squared distance
-        self.assertEqual(PROJECT / made["file"], SHADER)
-        file = self.write("mine.glsl", SHADER.read_text(encoding="utf-8").replace(made["find"], made["replace"]))
+        self.assertEqual(PROJECT / made["file"], TECHNIQUE)
+        file = self.write("mine.glsl", TECHNIQUE.read_text(encoding="utf-8").replace(made["find"], made["replace"]))
         code, result = self.check_few(file)
         box = result["scenes"][0]
         self.assertEqual((code, result["verdict"], box["verdict"]), (1, "biased", "biased"))
@@ -199,7 +200,7 @@ class CheckTest(ProgramTest):
         self.assert_tool_refused(["check", 9, "--samples", 4], "--samples", "leave it out", code=2)
 
     def test_what_is_still_to_be_written_is_no_mistake(self):
-        text = SHADER.read_text(encoding="utf-8")
+        text = TECHNIQUE.read_text(encoding="utf-8")
         geometry = "float geometry = "
         line = text[:text.index(geometry)].count("\n") + 1
         file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))

@@ -13,6 +13,7 @@ from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
 from project import CHAPTERS
 
 GRADING = PROJECT / "docs/grading"
+SUBMITTED = "direct_light.glsl"  # what chapter 3's exercise asks for
 # What Gradescope's documentation says of results.json: names and types of a test.
 TEST_KEYS = {"name": str, "score": (int, float), "max_score": (int, float), "status": str, "output": str, "visibility": str}
 # The check of a chapter that is built already.
@@ -31,7 +32,7 @@ class GradingTest(ProgramTest):
         shutil.copy(GRADING / "gradescope/run_autograder", script)
         lab = self.write("source/lab/lab", LAB.format(python=sys.executable, tools=PROJECT / "tools"))
         lab.chmod(0o755)
-        self.write("submission/path_trace.glsl", shader)
+        self.write(f"submission/{SUBMITTED}", shader)
         environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
         environment |= {"AUTOGRADER": str(self.folder), "LAB_BINARIES": str(BINARIES)}
         subprocess.run([script], env=environment, check=True, capture_output=True, timeout=300)
@@ -39,7 +40,7 @@ class GradingTest(ProgramTest):
 
     def test_gradescope_gets_points_and_a_question(self):
         chapter = int(re.search(r"^chapter=(\d+)", (GRADING / "gradescope/run_autograder").read_text(), re.MULTILINE)[1])
-        shader = (PROJECT / "chapters" / CHAPTERS[chapter] / "path_trace.glsl").read_text(encoding="utf-8")
+        shader = (PROJECT / "chapters" / CHAPTERS[chapter] / SUBMITTED).read_text(encoding="utf-8")
         for text, points in ((shader, 10), (shader.replace("/ (distance * distance)", "/ distance"), 10 / 3), ("nothing", 0)):
             result = self.autograde(text)
             self.assertAlmostEqual(result["score"], points, delta=0.001)
@@ -62,7 +63,7 @@ class GradingTest(ProgramTest):
     def test_workflow_names_a_chapter_that_there_is(self):
         text = (GRADING / "github_classroom/.github/workflows/grade.yml").read_text(encoding="utf-8")
         number, shader = (re.search(rf"{name}: (\S+)", text)[1] for name in ("CHAPTER", "SHADER"))
-        self.assertEqual(shader, f"chapters/{CHAPTERS[int(number)]}/path_trace.glsl")
+        self.assertEqual(shader, f"chapters/{CHAPTERS[int(number)]}/{SUBMITTED}")
         self.assertTrue((PROJECT / shader).is_file())
 
     def test_scripts_are_valid(self):

@@ -6,7 +6,7 @@ the chapter's own shader: too much is 1.5 times, unless the one pays for the oth
 What is wrong is compared with what common mistakes do to the pictures. The answer is a question to think about and the slide to
 read again; --teacher names the mistake as well. After a third of the renders a first verdict says what is sure by then.
 
---all grades each shader in a folder: files NAME.glsl, and path_trace.glsl in folders of their own. It writes results.csv
+--all grades each shader in a folder: files NAME.glsl, and shaders in folders of their own. It writes results.csv
 and a page with pictures, and goes on where it was interrupted. For autograders see docs/grading.
 
 Exit code: 0 correct, 1 biased, noisy or expensive, 2 cannot be graded; of --all: 0, or 2 where some cannot be.

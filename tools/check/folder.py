@@ -21,15 +21,15 @@ PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"
 
 
 def submissions(folder):
-    """Name -> file of each shader: NAME.glsl, or NAME/path_trace.glsl."""
+    """Name -> file of each shader: NAME.glsl, or the one in a folder NAME."""
     if not folder.is_dir():
         raise UserError(f"{folder}: no such folder")
-    files = [file for file in (*folder.glob("*.glsl"), *folder.glob("*/path_trace.glsl")) if file.is_file()]
+    files = [file for file in (*folder.glob("*.glsl"), *folder.glob("*/*.glsl")) if file.is_file()]
     found = {printable(file.stem if file.parent == folder else file.parent.name): file for file in files}
     if len(found) < len(files):
         raise UserError(f"{folder}: two submissions have the same name: rename one of them")
     if not found:
-        raise UserError(f"{folder}: has neither files NAME.glsl nor folders NAME with a path_trace.glsl")
+        raise UserError(f"{folder}: has neither files NAME.glsl nor folders NAME with a shader")
     return dict(sorted(found.items()))
 
 

@@ -4,6 +4,7 @@ Means of the whole image and of its tiles are tested against the reference. Erro
 chapter's own shader, which knowledge.json in its folder has.
 """
 import os
+import re
 import shutil
 import tempfile
 import threading
@@ -52,10 +53,21 @@ def knowledge_file(chapter, name=KNOWLEDGE):
     return ROOT / "chapters" / CHAPTERS[chapter] / name
 
 
+def functions_in(shader):
+    return set(re.findall(r"^\w+ (\w+)\(", shader.read_text(encoding="utf-8", errors="replace"), re.MULTILINE))
+
+
 def shader_like(chapter, file):
-    """The shader of a chapter's folder that a file is graded as: the one with its name, or else the estimator."""
-    folder = ROOT / "chapters" / chapter
-    return folder / file.name if (folder / file.name).exists() else folder / "path_trace.glsl"
+    """The shader of a chapter's folder that a file is graded as. What has path_trace() is the estimator; others stand for the shader that
+    defines the same functions, or has the same name."""
+    folder, functions = ROOT / "chapters" / chapter, functions_in(file)
+    if "path_trace" not in functions:
+        for shader in sorted(folder.glob("*.glsl")):
+            if functions & functions_in(shader):
+                return shader
+        if (folder / file.name).exists():
+            return folder / file.name
+    return folder / "path_trace.glsl"
 
 
 def make_tree(chapter, file, tree, shader=None):
