@@ -15,7 +15,7 @@ import mistake
 import project
 from check import command, grading
 from check.formats import as_github
-from course.mistakes import plant
+from course.mistakes import planted
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
 TECHNIQUE = SHADER.with_name("direct_light.glsl")
@@ -222,9 +222,8 @@ class CheckTest(ProgramTest):
         self.assertAlmostEqual(box["rays"], 1.5, delta=0.02)
 
     def planted(self, chapter, find, replace):
-        """Name of a file with a chapter's own shader, changed in one place."""
-        text = (PROJECT / "chapters" / project.CHAPTERS[chapter] / "path_trace.glsl").read_text(encoding="utf-8")
-        return self.write("mine.glsl", plant(text, find, replace, "the chapter's shader"))
+        """Name of a file with one of a chapter's own shaders, changed in one place."""
+        return self.write("mine.glsl", planted(chapter, {"name": "mine", "find": find, "replace": replace}).text)
 
     def test_mistakes_at_a_turned_light_probe_above_lamps_are_found(self):
         for find, replace in ((" - 0.5) - parameters.probe_rotation;", " - 0.5) + parameters.probe_rotation;"),
@@ -276,9 +275,9 @@ class CheckTest(ProgramTest):
 
     def test_an_endless_loop_is_ended(self):
         """Also one outside of the shader: that over the bounces of a path whose end never comes."""
-        path = self.planted(10, "get_background_radiance(path.ray.direction);\n        return false;",
+        path = self.planted(7, "get_background_radiance(path.ray.direction);\n        return false;",
                             "get_background_radiance(path.ray.direction);\n        return true;")
-        for chapter, file in ((3, self.write("endless.glsl", ENDLESS)), (10, path)):
+        for chapter, file in ((3, self.write("endless.glsl", ENDLESS)), (7, path)):
             code, _, err = self.run_tool("check", chapter, file, "--time-limit", 1)
             self.assertEqual(code, 2)
             self.assertRegex(err, r"\Aerror: [^\n]*(ended after 1 s: does each loop [^\n]*, and each path\?|device)[^\n]*\n\Z")

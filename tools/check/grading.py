@@ -58,16 +58,13 @@ def functions_in(shader):
 
 
 def shader_like(chapter, file):
-    """The shader of a chapter's folder that a file is graded as. What has path_trace() is the estimator; others stand for the shader that
-    defines the same functions, or has the same name."""
-    folder, functions = ROOT / "chapters" / chapter, functions_in(file)
-    if "path_trace" not in functions:
-        for shader in sorted(folder.glob("*.glsl")):
-            if functions & functions_in(shader):
-                return shader
-        if (folder / file.name).exists():
-            return folder / file.name
-    return folder / "path_trace.glsl"
+    """The shader of a chapter's folder that a file is graded as: one all of whose functions it defines, the estimator before others; or
+    else the one with its name, or the estimator."""
+    estimator, functions = ROOT / "chapters" / chapter / "path_trace.glsl", functions_in(file)
+    for shader in (estimator, *sorted(estimator.parent.glob("*.glsl"))):
+        if functions_in(shader) and functions >= functions_in(shader):
+            return shader
+    return estimator.with_name(file.name) if estimator.with_name(file.name).exists() else estimator
 
 
 def make_tree(chapter, file, tree, shader=None):
