@@ -1,5 +1,5 @@
-// The generator of shaders/world/random.glsl once more, for the CPU, and its inverse. Written from the description
-// in Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3) 2020.
+// The generator of shaders/world/random.glsl once more, for the CPU, and its inverse. Written from the
+// description in Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3) 2020.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -115,8 +115,8 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     change([](Options& options) { options.light.only_path_length.reset(); });
     change([](Options& options) { options.estimator.strategy = Strategy::bounces; });
     EXPECT_NE(session().build().job.record.settings.find("--strategy bounces"), std::string::npos);
-    const double black_sky = change(
-        [](Options& options) { options.estimator.strategy.reset(), options.scene.specular = true; });
+    const double black_sky =
+        change([](Options& options) { options.estimator.strategy.reset(), options.scene.specular = true; });
     const double sky = change([](Options& options) { options.light.background = {1, 2, 3}; });
     EXPECT_EQ(parameters().background, vec3(1, 2, 3));
     EXPECT_GT(sky, 1.2 * black_sky);
