@@ -146,7 +146,6 @@ void InsidePanel::draw_sample() {
     if (ImGui::SmallButton("<") && selection.sample > 0) --selection.sample;
     ImGui::SameLine();
     if (ImGui::SmallButton(">")) ++selection.sample;
-    next_sample_button_ = {ImGui::GetItemRectMin().x + 5, ImGui::GetItemRectMin().y + 5};
     ImGui::SameLine();
     text_colour("this sample's radiance", path.radiance);
 }

@@ -72,7 +72,6 @@ class InsidePanel {
     void draw_controls(const Session& session);
     const Inspection& inspection() const { return inspection_; }
     void show_next_overlay() { overlay_.show_next(); }
-    vec2 next_sample_button() const { return next_sample_button_; }  // for tests
 
   private:
     void select_clicked_pixel(const Session& session, const Rectangle& picture);
@@ -89,7 +88,6 @@ class InsidePanel {
     bool was_dragged_ = false;           // since the mouse button went down
     HemisphereView::Pictures pictures_;
     double pictures_samples_ = -1;
-    vec2 next_sample_button_{0};
 };
 
 }  // namespace lab
