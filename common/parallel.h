@@ -12,8 +12,8 @@
 
 namespace lab {
 
-// Calls work(begin, end) for pieces of `piece` indices that cover [0, count); the last may be shorter. The
-// pieces do not depend on the number of threads. Rethrows the first exception of a call.
+// Calls work(begin, end) for pieces of `piece` indices that cover [0, count); the last may be shorter. The pieces do not depend
+// on the number of threads. Rethrows the first exception of a call.
 template <typename Work>
 void in_parallel(size_t count, size_t piece, const Work& work) {
     const size_t piece_count = (count + piece - 1) / piece;
@@ -22,8 +22,7 @@ void in_parallel(size_t count, size_t piece, const Work& work) {
     std::mutex mutex;
     const auto take_pieces = [&] {
         try {
-            for (size_t i = next++; i < piece_count; i = next++)
-                work(i * piece, std::min(count, (i + 1) * piece));
+            for (size_t i = next++; i < piece_count; i = next++) work(i * piece, std::min(count, (i + 1) * piece));
         } catch (...) {
             const std::scoped_lock lock(mutex);
             if (!failure) failure = std::current_exception();
@@ -42,8 +41,7 @@ void in_parallel(size_t count, size_t piece, const Work& work) {
     if (failure) std::rethrow_exception(failure);
 }
 
-// Adds work(begin, end) over such pieces in order, so the sum is the same to the bit with any number of
-// threads.
+// Adds work(begin, end) over such pieces in order, so the sum is the same to the bit with any number of threads.
 template <typename Sum, typename Work>
 Sum sum_in_parallel(size_t count, const Work& work) {
     constexpr size_t piece = 1 << 16;

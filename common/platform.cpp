@@ -53,8 +53,7 @@ std::vector<WindowSystem> window_systems() {
     // Root may see the variables of a user's session without being able to reach its socket.
     const std::string socket = variable("WAYLAND_DISPLAY");
     std::error_code unreadable;
-    if (!socket.empty() &&
-        std::filesystem::exists(std::filesystem::path(variable("XDG_RUNTIME_DIR")) / socket, unreadable))
+    if (!socket.empty() && std::filesystem::exists(std::filesystem::path(variable("XDG_RUNTIME_DIR")) / socket, unreadable))
         systems.push_back(WindowSystem::wayland);
     if (!variable("DISPLAY").empty()) systems.push_back(WindowSystem::x11);
     return systems;
@@ -90,8 +89,7 @@ size_t processor_count() { return std::thread::hardware_concurrency(); }
 
 #ifdef _WIN32
 
-const char* const vulkan_driver =
-    "the newest driver of your graphics card from nvidia.com, amd.com or intel.com";
+const char* const vulkan_driver = "the newest driver of your graphics card from nvidia.com, amd.com or intel.com";
 
 void prepare_terminal() {
     SetConsoleOutputCP(CP_UTF8);
@@ -146,8 +144,7 @@ std::filesystem::path running_program() {
     return _NSGetExecutablePath(name, &size) == 0 ? std::filesystem::weakly_canonical(name) : "";
 }
 #else
-const char* const vulkan_driver =
-    "libvulkan1 and a driver such as mesa-vulkan-drivers (it also has a CPU device)";
+const char* const vulkan_driver = "libvulkan1 and a driver such as mesa-vulkan-drivers (it also has a CPU device)";
 
 std::filesystem::path running_program() {
     std::error_code ignored;
@@ -176,8 +173,8 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 }  // namespace lab
 
 #ifdef _WIN32
-// GCC 12 converts file names by mbrtowc, which does not know UTF-8 in Microsoft's library (GCC 13 does
-// without). Invalid bytes stand for themselves. The state holds the second half of a surrogate pair.
+// GCC 12 converts file names by mbrtowc, which does not know UTF-8 in Microsoft's library (GCC 13 does without). Invalid bytes
+// stand for themselves. The state holds the second half of a surrogate pair.
 extern "C" size_t __wrap_mbrtowc(wchar_t* result, const char* text, size_t size, mbstate_t* state) {
     wchar_t characters[2];
     if (*state != 0) {
@@ -187,9 +184,8 @@ extern "C" size_t __wrap_mbrtowc(wchar_t* result, const char* text, size_t size,
     }
     const auto first = static_cast<unsigned char>(*text);
     const int bytes = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 1;
-    const int count = static_cast<size_t>(bytes) <= size
-                          ? MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, text, bytes, characters, 2)
-                          : 0;
+    const int count =
+        static_cast<size_t>(bytes) <= size ? MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, text, bytes, characters, 2) : 0;
     *result = count > 0 ? characters[0] : first;
     if (count == 2) *state = characters[1];
     return count == 0 ? 1 : static_cast<size_t>(count == 2 ? bytes - 1 : bytes) * (first != 0);

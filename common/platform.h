@@ -7,8 +7,8 @@
 
 namespace lab {
 
-// Programs call this first. On Windows it switches the terminal to UTF-8 and control sequences, and keeps a
-// terminal that a double click opened until Enter is pressed, so that messages can be read.
+// Programs call this first. On Windows it switches the terminal to UTF-8 and control sequences, and keeps a terminal that a
+// double click opened until Enter is pressed, so that messages can be read.
 void prepare_terminal();
 
 // Whether the stream writes to a terminal.
@@ -21,8 +21,8 @@ void make_binary(std::FILE* stream);
 enum class WindowSystem { wayland, x11, other };
 std::vector<WindowSystem> window_systems();
 
-// Whether the program survives a step that may crash. On Linux a child process tries it, without output;
-// elsewhere the answer is yes.
+// Whether the program survives a step that may crash. On Linux a child process tries it, without output; elsewhere the answer is
+// yes.
 bool would_survive(int (*step)());
 
 // The program's file; empty if unknown.
@@ -39,8 +39,8 @@ size_t processor_count();
 // Waits until what was flushed is on the disk. False on failure, with errno set.
 bool write_to_disk(std::FILE* stream);
 
-// Renames a file atomically, over an existing one if need be. On Windows a virus scanner may hold a new file
-// open: retries for up to a second.
+// Renames a file atomically, over an existing one if need be. On Windows a virus scanner may hold a new file open: retries for up
+// to a second.
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to, std::error_code& error);
 
 // What to install for Vulkan; follows "install " in messages.

@@ -34,12 +34,10 @@ class Progress {
         const double fraction = std::min(samples / target_samples_, 1.0);
         constexpr int bar_width = 24;
         const int filled = static_cast<int>(fraction * bar_width);
-        std::fprintf(stderr, "%s[%s%s] %.4g/%u samples  %s samples/s  %s rays/s  %s left%s",
-                     terminal_ ? "\r\033[K" : "", std::string(filled, '#').c_str(),
-                     std::string(bar_width - filled, '.').c_str(), samples, target_samples_,
+        std::fprintf(stderr, "%s[%s%s] %.4g/%u samples  %s samples/s  %s rays/s  %s left%s", terminal_ ? "\r\033[K" : "",
+                     std::string(filled, '#').c_str(), std::string(bar_width - filled, '.').c_str(), samples, target_samples_,
                      short_number(rate).c_str(), short_number(static_cast<double>(rays) / seconds).c_str(),
-                     rate > 0 ? duration_text((target_samples_ - samples) / rate).c_str() : "?",
-                     terminal_ ? "" : "\n");
+                     rate > 0 ? duration_text((target_samples_ - samples) / rate).c_str() : "?", terminal_ ? "" : "\n");
         std::fflush(stderr);
         printed_ = true;
     }
@@ -65,13 +63,11 @@ class HeadlessRender {
             reference_ = read_reference(options_.reference);
             const uvec2 size(reference_->mean.width, reference_->mean.height);
             if (size != job_.parameters.image_size)
-                throw UserError(options_.reference.string() + ": has " + size_text(size) +
-                                " pixels, the image has " + size_text(job_.parameters.image_size) +
-                                ": they must agree");
+                throw UserError(options_.reference.string() + ": has " + size_text(size) + " pixels, the image has " +
+                                size_text(job_.parameters.image_size) + ": they must agree");
             const std::string difference = mismatch(*reference_, *job_.scene, job_.parameters);
             if (!difference.empty() && !options_.quiet)
-                std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(),
-                             difference.c_str());
+                std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(), difference.c_str());
         }
         take_snapshot();
         last_row_film_ = snapshot_;
@@ -120,8 +116,7 @@ class HeadlessRender {
     double seconds() const { return job_.record.seconds + seconds_since(start_) - measuring_seconds_; }
 
     bool is_time_over() const {
-        return options_.time_limit && renderer_.samples() > 0 &&
-               seconds() - job_.record.seconds >= *options_.time_limit;
+        return options_.time_limit && renderer_.samples() > 0 && seconds() - job_.record.seconds >= *options_.time_limit;
     }
 
     bool is_accurate() const {
@@ -155,19 +150,17 @@ class HeadlessRender {
     }
 
     void add_row(uint32_t samples) {
-        const bool is_for_summary =
-            !options_.quiet && 2 * uint64_t{samples} == job_.samples;  // tells its error
-        if (options_.report.empty() && !options_.target_error && !is_for_summary && samples < job_.samples)
-            return;
+        const bool is_for_summary = !options_.quiet && 2 * uint64_t{samples} == job_.samples;  // tells its error
+        if (options_.report.empty() && !options_.target_error && !is_for_summary && samples < job_.samples) return;
         const auto start = Clock::now();
         take_snapshot();
-        rows_.push_back({.samples = samples,
-                         .seconds = record_.seconds,
-                         .device_seconds = renderer_.device_seconds(),
-                         .rays = record_.rays,
-                         .mean = snapshot_.mean_radiance(),
-                         .error = reference_ ? compare(snapshot_.mean(), *reference_)
-                                             : job_.error_from(last_row_film_, snapshot_)});
+        rows_.push_back(
+            {.samples = samples,
+             .seconds = record_.seconds,
+             .device_seconds = renderer_.device_seconds(),
+             .rays = record_.rays,
+             .mean = snapshot_.mean_radiance(),
+             .error = reference_ ? compare(snapshot_.mean(), *reference_) : job_.error_from(last_row_film_, snapshot_)});
         last_row_film_ = snapshot_;
         measuring_seconds_ += seconds_since(start);
     }
@@ -205,20 +198,17 @@ class HeadlessRender {
         std::printf("mean radiance  %.5g %.5g %.5g", mean[0], mean[1], mean[2]);
         if (is_of_this_film) std::printf(" ± %.2g", std::sqrt(error->mse / pixels));
         std::printf(" (red, green, blue%s)\n", is_of_this_film ? "; standard error, on average" : "");
-        std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(),
-                    short_number(paths()).c_str(),
+        std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(), short_number(paths()).c_str(),
                     snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
-        std::printf(
-            "time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
-            short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
+        std::printf("time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
+                    short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
         std::printf("acceleration   structure of %s bytes, built in %s\n",
                     short_number(static_cast<double>(acceleration_structure_.bytes())).c_str(),
                     duration_text(acceleration_structure_.build_seconds()).c_str());
         if (error)
-            std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n",
-                        100 * error->rel_rmse, reference_ ? "against the reference" : "estimated");
-        if (snapshot_.invalid_samples() > 0)
-            std::printf("invalid        %s\n", invalid_samples_text().c_str());
+            std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n", 100 * error->rel_rmse,
+                        reference_ ? "against the reference" : "estimated");
+        if (snapshot_.invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());
         for (const auto& file : options_.outputs) std::printf("picture        %s\n", file.string().c_str());
         if (!options_.report.empty()) std::printf("report         %s\n", options_.report.string().c_str());
     }

@@ -18,14 +18,12 @@ void print_devices() {
     const auto devices = list_devices();
     for (size_t i = 0; i < devices.size(); ++i) {
         const auto& device = devices[i];
-        std::printf("%zu  %s (%s, Vulkan %s, %s)\n", i, device.name.c_str(), device.kind.c_str(),
-                    device.api_version.c_str(), device.driver.c_str());
+        std::printf("%zu  %s (%s, Vulkan %s, %s)\n", i, device.name.c_str(), device.kind.c_str(), device.api_version.c_str(),
+                    device.driver.c_str());
         for (const Backend backend : all_backends) {
             std::string missing;
-            for (const auto& name : device.missing.at(backend))
-                missing += (missing.empty() ? "" : ", ") + name;
-            std::printf("   %-9s %s\n", to_string(backend).c_str(),
-                        missing.empty() ? "works" : ("lacks " + missing).c_str());
+            for (const auto& name : device.missing.at(backend)) missing += (missing.empty() ? "" : ", ") + name;
+            std::printf("   %-9s %s\n", to_string(backend).c_str(), missing.empty() ? "works" : ("lacks " + missing).c_str());
         }
         std::printf("   largest image %zu megapixels\n", Film::max_pixels(device) / 1000000);
     }
@@ -39,8 +37,7 @@ void choose_outputs(RunOptions& options) {
         check_writable(options.outputs.front());
     } catch (const UserError& error) {
         for (auto& file : options.outputs) file = folder / "path_tracing_lab" / file.filename();
-        std::cerr << "note: " << error.what() << ": pictures go to "
-                  << options.outputs.front().parent_path().string() << "\n";
+        std::cerr << "note: " << error.what() << ": pictures go to " << options.outputs.front().parent_path().string() << "\n";
     }
 }
 
@@ -56,23 +53,19 @@ void check_validation(const Device& device, const RunOptions& options) {
     for (const auto& message : device.driver_messages()) std::cerr << "driver: " << message << "\n";
     for (const auto& message : device.validation_messages()) std::cerr << "validation: " << message << "\n";
     if (!device.validation_messages().empty())
-        throw UserError("the validation layers complained " +
-                        std::to_string(device.validation_messages().size()) + " times");
+        throw UserError("the validation layers complained " + std::to_string(device.validation_messages().size()) + " times");
     if (!options.quiet) std::cout << "validation     no complaints\n";
 }
 
 // Room for picture and controls on a common screen.
-uvec2 window_size(uvec2 image_size) {
-    return glm::clamp(image_size + uvec2(360, 0), uvec2(900, 700), uvec2(1600, 1000));
-}
+uvec2 window_size(uvec2 image_size) { return glm::clamp(image_size + uvec2(360, 0), uvec2(900, 700), uvec2(1600, 1000)); }
 
-// Opens a window or returns null. Without --window it opens only for people, since scripts read the output,
-// and only where it can.
+// Opens a window or returns null. Without --window it opens only for people, since scripts read the output, and only where it
+// can.
 std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& options, uvec2 image_size) {
     const bool is_forced = options.run.window == WindowChoice::always;
     if (options.run.window == WindowChoice::never) return nullptr;
-    if (!is_forced &&
-        (window_systems().empty() || !is_terminal(stdout) || needs_no_window(options) || options.run.quiet))
+    if (!is_forced && (window_systems().empty() || !is_terminal(stdout) || needs_no_window(options) || options.run.quiet))
         return nullptr;
     try {
         return std::make_unique<Window>(chapter.name, window_size(image_size));
@@ -96,17 +89,15 @@ bool run_in_window(Window& window, const Chapter& chapter, const RenderJob& job)
         return true;
     }
     const std::string why = "device '" + device.description().name + "' cannot show pictures in a window";
-    if (options.window == WindowChoice::always)
-        throw DeviceError(why + ": choose another with --device or use --headless");
+    if (options.window == WindowChoice::always) throw DeviceError(why + ": choose another with --device or use --headless");
     std::cerr << "note: " << why << ": rendering without one\n";
     return false;
 }
 
 void print_start(const Chapter& chapter, const Device& device, const Build& build) {
     const RenderJob& job = build.job;
-    std::cout << chapter.name << ", " << job.record.scene << ", " << size_text(job.parameters.image_size)
-              << ", " << job.samples << " samples, " << device.description().name << ", backend "
-              << to_string(build.backend) << std::endl;
+    std::cout << chapter.name << ", " << job.record.scene << ", " << size_text(job.parameters.image_size) << ", " << job.samples
+              << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
     if (chapter.unlimited_path_length && !job.options.light.max_path_length)
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }

@@ -1,5 +1,5 @@
-// Compiled shaders, pipelines and choices of backends, kept for the next start. Failing to read or write an
-// entry is silent; a damaged entry counts as absent.
+// Compiled shaders, pipelines and choices of backends, kept for the next start. Failing to read or write an entry is silent; a
+// damaged entry counts as absent.
 #pragma once
 #include <optional>
 #include <string>

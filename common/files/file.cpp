@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Beside the target, because renaming is atomic only within a file system. The process id keeps apart two
-// programs that write the same file.
+// Beside the target, because renaming is atomic only within a file system. The process id keeps apart two programs that write the
+// same file.
 fs::path temporary_name(const fs::path& file) {
     fs::path name = ".";
     name += file.filename();
@@ -45,8 +45,7 @@ std::string read_file(const fs::path& file, uint64_t max_bytes) {
     const std::string name = file.string();
     constexpr size_t max_name_length = 1000;
     if (printable(name) != name || name.size() > max_name_length)
-        throw UserError(in_quotes(name) +
-                        ": a file name may have no control characters and at most 1000 others");
+        throw UserError(in_quotes(name) + ": a file name may have no control characters and at most 1000 others");
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (!fs::exists(status)) throw UserError(name + ": no such file");
@@ -60,8 +59,7 @@ std::string read_file(const fs::path& file, uint64_t max_bytes) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw UserError(name + ": cannot be opened: " + std::strerror(errno));
     std::string bytes(size, '\0');
-    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
-        throw UserError(name + ": cannot be read completely");
+    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) throw UserError(name + ": cannot be read completely");
     return bytes;
 }
 
@@ -82,8 +80,7 @@ void check_writable(const fs::path& file, const std::vector<std::string>& ending
     const std::string name = file.string();
     if (std::find(endings.begin(), endings.end(), lower_case_extension(file)) == endings.end()) {
         std::string known;
-        for (const auto& ending : endings)
-            known += (known.empty() ? "" : ending == endings.back() ? " or " : ", ") + ending;
+        for (const auto& ending : endings) known += (known.empty() ? "" : ending == endings.back() ? " or " : ", ") + ending;
         throw UserError(name + ": the name must end in " + known);
     }
     std::error_code error;

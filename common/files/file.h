@@ -9,20 +9,18 @@
 
 namespace lab {
 
-// Reads a regular file. Throws UserError if it is missing, not regular, empty, unreadable or larger than
-// max_bytes, or if its name does not fit into a message (over 1000 bytes, control characters).
+// Reads a regular file. Throws UserError if it is missing, not regular, empty, unreadable or larger than max_bytes, or if its
+// name does not fit into a message (over 1000 bytes, control characters).
 std::string read_file(const std::filesystem::path& file, uint64_t max_bytes);
 
-// Largest single allocation in bytes for the contents of a file of this size: a small hostile file must not
-// fill the memory.
+// Largest single allocation in bytes for the contents of a file of this size: a small hostile file must not fill the memory.
 constexpr uint64_t memory_limit(uint64_t file_size) { return 16 * file_size + (uint64_t{1} << 30); }
 
-// Writes a temporary file and renames it. Throws UserError and leaves an older file untouched if any step
-// fails.
+// Writes a temporary file and renames it. Throws UserError and leaves an older file untouched if any step fails.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
-// Creates the folders of a file that will be written later. Throws UserError if it has none of the endings or
-// cannot be written. An existing file keeps its contents.
+// Creates the folders of a file that will be written later. Throws UserError if it has none of the endings or cannot be written.
+// An existing file keeps its contents.
 void check_writable(const std::filesystem::path& file, const std::vector<std::string>& endings);
 
 // The text with '?' for each control character.

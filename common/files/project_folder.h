@@ -4,8 +4,7 @@
 
 namespace lab {
 
-// The folder that holds shaders/ and assets/, found upwards from the running program. Throws UserError if
-// there is none.
+// The folder that holds shaders/ and assets/, found upwards from the running program. Throws UserError if there is none.
 std::filesystem::path project_folder();
 
 }  // namespace lab

@@ -37,8 +37,7 @@ std::string to_text(double value) {
 }
 
 // A channel of counts per pixel; zeros if it is absent.
-std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t pixels,
-                             const std::filesystem::path& file) {
+std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t pixels, const std::filesystem::path& file) {
     std::vector<uint32_t> result(pixels, 0);
     const auto found = exr.channels.find(name);
     if (found == exr.channels.end()) return result;
@@ -67,18 +66,16 @@ void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record) {
     ExrFile exr{.image = image.mean(), .channels = {}, .attributes = {}};
     const uint32_t samples = image.min_samples();
-    exr.attributes = {
-        {"seed", std::to_string(record.seed)}, {"first_sample", std::to_string(record.first_sample)},
-        {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
-        {"rays", std::to_string(record.rays)}, {"seconds", to_text(record.seconds)}};
+    exr.attributes = {{"seed", std::to_string(record.seed)}, {"first_sample", std::to_string(record.first_sample)},
+                      {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
+                      {"rays", std::to_string(record.rays)}, {"seconds", to_text(record.seconds)}};
     for (const auto& [name, text] : texts) exr.attributes[name] = record.*text;
     // Beyond the fewest, since floats hold whole numbers only up to 2^24.
     if (!image.has_equal_sample_counts())
         for (const auto& pixel : image.pixels)
             exr.channels["further_samples"].push_back(static_cast<float>(pixel.sample_count - samples));
     if (image.invalid_samples() > 0)
-        for (const auto& pixel : image.pixels)
-            exr.channels["invalid_samples"].push_back(static_cast<float>(pixel.invalid_count));
+        for (const auto& pixel : image.pixels) exr.channels["invalid_samples"].push_back(static_cast<float>(pixel.invalid_count));
     write_exr(file, exr);
 }
 
@@ -109,13 +106,11 @@ FilmFile read_film(const std::filesystem::path& file) {
     return film;
 }
 
-void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a,
-                         const std::string& name_b) {
-    const auto require = [&](const std::string& what, const std::string& value_a,
-                             const std::string& value_b) {
+void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a, const std::string& name_b) {
+    const auto require = [&](const std::string& what, const std::string& value_a, const std::string& value_b) {
         if (value_a != value_b)
-            throw UserError(name_a + " and " + name_b + " do not belong together: " + what + " '" + value_a +
-                            "' against '" + value_b + "'");
+            throw UserError(name_a + " and " + name_b + " do not belong together: " + what + " '" + value_a + "' against '" +
+                            value_b + "'");
     };
     require("size", size_text({a.image.width, a.image.height}), size_text({b.image.width, b.image.height}));
     require("chapter", a.record.chapter, b.record.chapter);
@@ -169,12 +164,10 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
         const auto& [begin, end, name] = ranges[i];
         const Range& before = ranges[i - 1];
         if (begin != before.end)
-            throw UserError(before.name + " ends before sample " + std::to_string(before.end) + " and " +
-                            name + " starts at " + std::to_string(begin) +
-                            ": the ranges must join without overlap or gap");
+            throw UserError(before.name + " ends before sample " + std::to_string(before.end) + " and " + name + " starts at " +
+                            std::to_string(begin) + ": the ranges must join without overlap or gap");
         if (end - ranges.front().begin > UINT32_MAX)
-            throw UserError(name + " ends at sample " + std::to_string(end) +
-                            ": a merged render has at most 2^32 - 1 samples");
+            throw UserError(name + " ends at sample " + std::to_string(end) + ": a merged render has at most 2^32 - 1 samples");
     }
     return merged;
 }

@@ -23,9 +23,8 @@ struct FilmRecord {
     double seconds = 0;  // of rendering
 };
 
-// The attribute `samples` is the smallest count of all pixels; after an interrupted render the channel
-// `further_samples` holds what pixels have beyond it. The channel `invalid_samples` counts invalid ones, if
-// any.
+// The attribute `samples` is the smallest count of all pixels; after an interrupted render the channel `further_samples` holds
+// what pixels have beyond it. The channel `invalid_samples` counts invalid ones, if any.
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record);
 
 struct FilmFile {
@@ -37,11 +36,10 @@ struct FilmFile {
 FilmFile read_film(const std::filesystem::path& file);
 
 // Throws UserError if size, chapter, scene, shader, settings or seed differ. The names are for the message.
-void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a,
-                         const std::string& name_b);
+void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a, const std::string& name_b);
 
-// Joins renders of adjacent sample ranges, in any order. Throws UserError for gaps, overlaps, unfinished
-// renders, and renders that do not belong together.
+// Joins renders of adjacent sample ranges, in any order. Throws UserError for gaps, overlaps, unfinished renders, and renders
+// that do not belong together.
 FilmFile merge_films(const std::vector<std::filesystem::path>& files);
 
 }  // namespace lab

@@ -10,9 +10,7 @@ namespace {
 
 constexpr size_t pixels_per_piece = 1 << 16;  // that a thread works on at a time
 
-glm::dvec3 mean_of(const FilmPixel& pixel) {
-    return sum_of(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u));
-}
+glm::dvec3 mean_of(const FilmPixel& pixel) { return sum_of(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u)); }
 
 }  // namespace
 
@@ -22,8 +20,7 @@ uint32_t FilmImage::min_samples() const {
 
 bool FilmImage::has_equal_sample_counts() const {
     return std::ranges::all_of(
-        pixels, [&](uint32_t count) { return count == pixels.front().sample_count; },
-        &FilmPixel::sample_count);
+        pixels, [&](uint32_t count) { return count == pixels.front().sample_count; }, &FilmPixel::sample_count);
 }
 
 uint64_t FilmImage::invalid_samples() const {

@@ -9,9 +9,7 @@
 namespace lab {
 
 // The sum of a pixel's samples: two floats together hold it.
-inline glm::dvec3 sum_of(const FilmPixel& pixel) {
-    return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation);
-}
+inline glm::dvec3 sum_of(const FilmPixel& pixel) { return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation); }
 
 // The contents of a film: pixels row by row from the top.
 struct FilmImage {

@@ -8,8 +8,7 @@
 namespace lab {
 namespace {
 
-constexpr auto host_visible =
-    vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
+constexpr auto host_visible = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
 
 struct Allocation {
     vk::raii::DeviceMemory memory;
@@ -20,15 +19,13 @@ std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) -
 
 [[noreturn]] void refuse_allocations(const Device& device) {
     throw DeviceFailure("too many arrays, textures and meshes for the device, which allows " +
-                        std::to_string(device.limits().maxMemoryAllocationCount) +
-                        " of them: use a smaller scene");
+                        std::to_string(device.limits().maxMemoryAllocationCount) + " of them: use a smaller scene");
 }
 
-// Allocates memory with all `required` and, if possible, the preferred properties. Where preferred memory is
-// used up, only devices that share the CPU's memory fall back to other types; a discrete GPU would crawl.
-Allocation allocate(const Device& device, const vk::MemoryRequirements& requirements,
-                    vk::MemoryPropertyFlags required, vk::MemoryPropertyFlags preferred,
-                    vk::MemoryAllocateFlags flags = {}) {
+// Allocates memory with all `required` and, if possible, the preferred properties. Where preferred memory is used up, only
+// devices that share the CPU's memory fall back to other types; a discrete GPU would crawl.
+Allocation allocate(const Device& device, const vk::MemoryRequirements& requirements, vk::MemoryPropertyFlags required,
+                    vk::MemoryPropertyFlags preferred, vk::MemoryAllocateFlags flags = {}) {
     const auto memory = device.physical().getMemoryProperties();
     bool is_used_up = false;
     for (const auto wanted : {required | preferred, required}) {
@@ -49,31 +46,26 @@ Allocation allocate(const Device& device, const vk::MemoryRequirements& requirem
         }
     }
     if (!is_used_up) throw DeviceError("the device has no suitable kind of memory");
-    throw DeviceFailure("out of device memory: " + mebibytes(requirements.size) +
-                        " more are needed and the device has " + mebibytes(device.description().memory) +
-                        " in all: use a smaller image or scene");
+    throw DeviceFailure("out of device memory: " + mebibytes(requirements.size) + " more are needed and the device has " +
+                        mebibytes(device.description().memory) + " in all: use a smaller image or scene");
 }
 
 void require_size(const Device& device, const MemoryNeed& need) {
-    const size_t limit =
-        need.is_seen_in_parts ? device.description().largest_buffer : largest_visible(device, need.usage);
+    const size_t limit = need.is_seen_in_parts ? device.description().largest_buffer : largest_visible(device, need.usage);
     if (need.bytes > limit)
-        throw DeviceFailure("too large for the device: " + need.what + ", a buffer of " +
-                            mebibytes(need.bytes) + " where it allows " + mebibytes(limit) +
-                            ": use a smaller image or scene");
+        throw DeviceFailure("too large for the device: " + need.what + ", a buffer of " + mebibytes(need.bytes) +
+                            " where it allows " + mebibytes(limit) + ": use a smaller image or scene");
     const uint32_t side = device.limits().maxImageDimension2D;
     if (std::max(need.image_size.width, need.image_size.height) > side)
-        throw DeviceFailure(
-            "too large for the device: " + need.what + " of " + std::to_string(need.image_size.width) +
-            " x " + std::to_string(need.image_size.height) + " pixels, where it allows " +
-            std::to_string(side) + " x " + std::to_string(side) + " at most: make it smaller");
+        throw DeviceFailure("too large for the device: " + need.what + " of " + std::to_string(need.image_size.width) + " x " +
+                            std::to_string(need.image_size.height) + " pixels, where it allows " + std::to_string(side) + " x " +
+                            std::to_string(side) + " at most: make it smaller");
 }
 
 }  // namespace
 
 size_t largest_visible(const Device& device, vk::BufferUsageFlags usage) {
-    if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer)
-        return size_t{16} * device.limits().maxTexelBufferElements;
+    if (usage & vk::BufferUsageFlagBits::eUniformTexelBuffer) return size_t{16} * device.limits().maxTexelBufferElements;
     if (usage & vk::BufferUsageFlagBits::eStorageBuffer) return device.limits().maxStorageBufferRange;
     return SIZE_MAX;
 }
@@ -88,9 +80,8 @@ void require_memory(const Device& device, std::span<const MemoryNeed> needs) {
     const size_t memory = device.description().memory;
     if (sum <= memory) return;
     const auto largest = std::ranges::max_element(needs, {}, &MemoryNeed::bytes);
-    throw DeviceFailure("too large for the device: " + largest->what + " of " + mebibytes(largest->bytes) +
-                        ", " + mebibytes(sum) + " in all, and it has " + mebibytes(memory) +
-                        ": use a smaller image or scene");
+    throw DeviceFailure("too large for the device: " + largest->what + " of " + mebibytes(largest->bytes) + ", " +
+                        mebibytes(sum) + " in all, and it has " + mebibytes(memory) + ": use a smaller image or scene");
 }
 
 Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location)
@@ -99,12 +90,11 @@ Buffer::Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Lo
 Buffer::Buffer(const Device& device, const MemoryNeed& need, Location location)
     : device_(&device), size_(std::max<size_t>(need.bytes, 16)) {
     require_memory(device, {&need, 1});
-    const auto usage =
-        need.usage | vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
+    const auto usage = need.usage | vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     buffer_ = {device.handle(), vk::BufferCreateInfo({}, size_, usage)};
     const auto required = location == Location::host ? host_visible : vk::MemoryPropertyFlags();
-    const auto preferred = location == Location::host ? vk::MemoryPropertyFlagBits::eHostCached
-                                                      : vk::MemoryPropertyFlagBits::eDeviceLocal;
+    const auto preferred =
+        location == Location::host ? vk::MemoryPropertyFlagBits::eHostCached : vk::MemoryPropertyFlagBits::eDeviceLocal;
     const auto flags = usage & vk::BufferUsageFlagBits::eShaderDeviceAddress
                            ? vk::MemoryAllocateFlags(vk::MemoryAllocateFlagBits::eDeviceAddress)
                            : vk::MemoryAllocateFlags();
@@ -144,22 +134,17 @@ void Buffer::clear() {
     if (mapped_)
         std::memset(mapped_, 0, size_);
     else
-        device_->submit([&](const vk::raii::CommandBuffer& commands) {
-            commands.fillBuffer(handle(), 0, VK_WHOLE_SIZE, 0);
-        });
+        device_->submit([&](const vk::raii::CommandBuffer& commands) { commands.fillBuffer(handle(), 0, VK_WHOLE_SIZE, 0); });
 }
 
-DeviceImage::DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
-                         vk::ImageUsageFlags usage) {
+DeviceImage::DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format, vk::ImageUsageFlags usage) {
     require_size(device, {.what = "an image", .bytes = 0, .image_size = {width, height}});
-    image_ = {device.handle(), vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1,
-                                                   vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
-                                                   usage | vk::ImageUsageFlagBits::eTransferDst)};
-    memory_ =
-        allocate(device, image_.getMemoryRequirements(), {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
+    image_ = {device.handle(),
+              vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1, vk::SampleCountFlagBits::e1,
+                                  vk::ImageTiling::eOptimal, usage | vk::ImageUsageFlagBits::eTransferDst)};
+    memory_ = allocate(device, image_.getMemoryRequirements(), {}, vk::MemoryPropertyFlagBits::eDeviceLocal).memory;
     image_.bindMemory(*memory_, 0);
-    view_ = {device.handle(),
-             vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole_image)};
+    view_ = {device.handle(), vk::ImageViewCreateInfo({}, *image_, vk::ImageViewType::e2D, format, {}, whole_image)};
 }
 
 SampledImage::SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
@@ -184,8 +169,7 @@ StorageImage::StorageImage(const Device& device, uint32_t width, uint32_t height
     device.submit([&](const vk::raii::CommandBuffer& commands) {
         constexpr auto target = vk::ImageLayout::eTransferDstOptimal;
         change_layout(commands, *image_, vk::ImageLayout::eUndefined, target);
-        commands.clearColorImage(*image_, target, vk::ClearColorValue(std::array<float, 4>{0, 0, 0, 1}),
-                                 whole_image);
+        commands.clearColorImage(*image_, target, vk::ClearColorValue(std::array<float, 4>{0, 0, 0, 1}), whole_image);
         change_layout(commands, *image_, target, vk::ImageLayout::eGeneral);
     });
 }
@@ -204,14 +188,12 @@ std::vector<uint8_t> StorageImage::read() const {
     return pixels;
 }
 
-void change_layout(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
-                   vk::ImageLayout to) {
+void change_layout(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from, vk::ImageLayout to) {
     const auto all = vk::PipelineStageFlagBits::eAllCommands;
     const auto any = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
-    commands.pipelineBarrier(
-        all, all, {}, {}, {},
-        vk::ImageMemoryBarrier(vk::AccessFlagBits::eMemoryWrite, any, from, to, VK_QUEUE_FAMILY_IGNORED,
-                               VK_QUEUE_FAMILY_IGNORED, image, whole_image));
+    commands.pipelineBarrier(all, all, {}, {}, {},
+                             vk::ImageMemoryBarrier(vk::AccessFlagBits::eMemoryWrite, any, from, to, VK_QUEUE_FAMILY_IGNORED,
+                                                    VK_QUEUE_FAMILY_IGNORED, image, whole_image));
 }
 
 }  // namespace lab

@@ -18,8 +18,8 @@ struct MemoryNeed {
 // Largest buffer of this usage that shaders can bind, in bytes.
 size_t largest_visible(const Device& device, vk::BufferUsageFlags usage);
 
-// Checks before anything is allocated. Throws DeviceFailure, with the numbers, if one is larger than the
-// device allows, or all are too many or exceed its memory.
+// Checks before anything is allocated. Throws DeviceFailure, with the numbers, if one is larger than the device allows, or all
+// are too many or exceed its memory.
 void require_memory(const Device& device, std::span<const MemoryNeed> needs);
 
 class Buffer {
@@ -29,15 +29,13 @@ class Buffer {
         host,    // visible to the CPU at any time
     };
     // `size` in bytes, at least 16 are allocated. Throws DeviceFailure if it does not fit.
-    Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage,
-           Location location = Location::device);
+    Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location = Location::device);
 
     Buffer(const Device& device, const MemoryNeed& need, Location location = Location::device);
 
     // Holds a copy of `data`.
     template <typename T>
-    Buffer(const Device& device, std::span<const T> data, vk::BufferUsageFlags usage,
-           Location location = Location::device)
+    Buffer(const Device& device, std::span<const T> data, vk::BufferUsageFlags usage, Location location = Location::device)
         : Buffer(device, data.size_bytes(), usage, location) {
         write(data.data(), data.size_bytes());
     }
@@ -72,8 +70,7 @@ class DeviceImage {
 
   protected:
     // Starts in the layout eUndefined. Throws DeviceFailure if it does not fit.
-    DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
-                vk::ImageUsageFlags usage);
+    DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format, vk::ImageUsageFlags usage);
 
     vk::raii::Image image_ = nullptr;
     vk::raii::DeviceMemory memory_ = nullptr;
@@ -84,8 +81,7 @@ class DeviceImage {
 class SampledImage : public DeviceImage {
   public:
     // `pixels` row by row without gaps in `format`.
-    SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format,
-                 std::span<const std::byte> pixels);
+    SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format, std::span<const std::byte> pixels);
 
     vk::DescriptorImageInfo info() const { return {{}, *view_, vk::ImageLayout::eShaderReadOnlyOptimal}; }
 };
@@ -111,7 +107,6 @@ inline constexpr vk::ImageSubresourceRange whole_image{vk::ImageAspectFlagBits::
 inline constexpr vk::ImageSubresourceLayers whole_layer{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
 
 // Changes an image's layout, with a full barrier.
-void change_layout(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
-                   vk::ImageLayout to);
+void change_layout(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from, vk::ImageLayout to);
 
 }  // namespace lab

@@ -5,40 +5,32 @@
 namespace lab {
 
 Binding storage_binding(uint32_t index, const Buffer& buffer) {
-    return {.index = index,
-            .type = vk::DescriptorType::eStorageBuffer,
-            .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}}};
+    return {.index = index, .type = vk::DescriptorType::eStorageBuffer, .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}}};
 }
 
 Binding uniform_binding(uint32_t index, const Buffer& buffer) {
-    return {.index = index,
-            .type = vk::DescriptorType::eUniformBuffer,
-            .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}}};
+    return {.index = index, .type = vk::DescriptorType::eUniformBuffer, .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}}};
 }
 
-DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bindings,
-                             vk::ShaderStageFlags stages) {
+DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bindings, vk::ShaderStageFlags stages) {
     std::vector<vk::DescriptorSetLayoutBinding> layout_bindings;
     std::vector<vk::DescriptorPoolSize> sizes;
     const auto count = [](const Binding& binding) {
-        return static_cast<uint32_t>(
-            std::max({binding.buffers.size(), binding.images.size(), binding.texel_views.size(),
-                      binding.acceleration_structures.size()}));
+        return static_cast<uint32_t>(std::max(
+            {binding.buffers.size(), binding.images.size(), binding.texel_views.size(), binding.acceleration_structures.size()}));
     };
     for (const auto& binding : bindings) {
         layout_bindings.emplace_back(binding.index, binding.type, count(binding), stages);
         sizes.emplace_back(binding.type, count(binding));
     }
     layout_ = {device.handle(), vk::DescriptorSetLayoutCreateInfo({}, layout_bindings)};
-    pool_ = {device.handle(),
-             vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes)};
-    set_ = std::move(
-        vk::raii::DescriptorSets(device.handle(), vk::DescriptorSetAllocateInfo(*pool_, *layout_)).front());
+    pool_ = {device.handle(), vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes)};
+    set_ = std::move(vk::raii::DescriptorSets(device.handle(), vk::DescriptorSetAllocateInfo(*pool_, *layout_)).front());
     std::vector<vk::WriteDescriptorSet> writes;
     std::vector<vk::WriteDescriptorSetAccelerationStructureKHR> structures(bindings.size());
     for (const auto& binding : bindings) {
-        writes.emplace_back(*set_, binding.index, 0, count(binding), binding.type, binding.images.data(),
-                            binding.buffers.data(), binding.texel_views.data());
+        writes.emplace_back(*set_, binding.index, 0, count(binding), binding.type, binding.images.data(), binding.buffers.data(),
+                            binding.texel_views.data());
         if (binding.acceleration_structures.empty()) continue;
         structures[writes.size() - 1].setAccelerationStructures(binding.acceleration_structures);
         writes.back().pNext = &structures[writes.size() - 1];
@@ -46,28 +38,25 @@ DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bind
     device.handle().updateDescriptorSets(writes, {});
 }
 
-ComputeKernel::ComputeKernel(const Device& device, const ShaderSource& source,
-                             std::span<const Binding> bindings, uint32_t push_constant_size)
-    : descriptors_(device, bindings, vk::ShaderStageFlagBits::eCompute),
-      push_constant_size_(push_constant_size) {
+ComputeKernel::ComputeKernel(const Device& device, const ShaderSource& source, std::span<const Binding> bindings,
+                             uint32_t push_constant_size)
+    : descriptors_(device, bindings, vk::ShaderStageFlagBits::eCompute), push_constant_size_(push_constant_size) {
     const auto words = compile_shader(source);
     const vk::raii::ShaderModule module(device.handle(), vk::ShaderModuleCreateInfo({}, words));
     const auto set_layout = descriptors_.layout();
     const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_size);
-    layout_ = {device.handle(),
-               vk::PipelineLayoutCreateInfo({}, 1, &set_layout, push_constant_size > 0, &range)};
+    layout_ = {device.handle(), vk::PipelineLayoutCreateInfo({}, 1, &set_layout, push_constant_size > 0, &range)};
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
-    pipeline_ = {device.handle(), device.pipeline_cache(),
-                 vk::ComputePipelineCreateInfo({}, stage, *layout_)};
+    pipeline_ = {device.handle(), device.pipeline_cache(), vk::ComputePipelineCreateInfo({}, stage, *layout_)};
 }
 
-void ComputeKernel::record(const vk::raii::CommandBuffer& commands, const void* push_constants,
-                           uint32_t group_count, vk::ArrayProxy<const uint32_t> offsets) const {
+void ComputeKernel::record(const vk::raii::CommandBuffer& commands, const void* push_constants, uint32_t group_count,
+                           vk::ArrayProxy<const uint32_t> offsets) const {
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
     commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, descriptors_.handle(), offsets);
     if (push_constant_size_ > 0)
-        (*commands).pushConstants(*layout_, vk::ShaderStageFlagBits::eCompute, 0, push_constant_size_,
-                                  push_constants, *commands.getDispatcher());
+        (*commands).pushConstants(*layout_, vk::ShaderStageFlagBits::eCompute, 0, push_constant_size_, push_constants,
+                                  *commands.getDispatcher());
     commands.dispatch(group_count, 1, 1);
 }
 

@@ -15,37 +15,32 @@ namespace {
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 
 std::string version_text(uint32_t version) {
-    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
-           std::to_string(VK_API_VERSION_MINOR(version)) + "." +
+    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) + "." +
            std::to_string(VK_API_VERSION_PATCH(version));
 }
 
 std::string kind_text(vk::PhysicalDeviceType type) {
-    static const std::map<vk::PhysicalDeviceType, std::string> kinds{
-        {vk::PhysicalDeviceType::eDiscreteGpu, "discrete GPU"},
-        {vk::PhysicalDeviceType::eIntegratedGpu, "integrated GPU"},
-        {vk::PhysicalDeviceType::eVirtualGpu, "virtual GPU"},
-        {vk::PhysicalDeviceType::eCpu, "CPU"}};
+    static const std::map<vk::PhysicalDeviceType, std::string> kinds{{vk::PhysicalDeviceType::eDiscreteGpu, "discrete GPU"},
+                                                                     {vk::PhysicalDeviceType::eIntegratedGpu, "integrated GPU"},
+                                                                     {vk::PhysicalDeviceType::eVirtualGpu, "virtual GPU"},
+                                                                     {vk::PhysicalDeviceType::eCpu, "CPU"}};
     const auto found = kinds.find(type);
     return found == kinds.end() ? "other" : found->second;
 }
 
 bool contains(const std::vector<vk::ExtensionProperties>& extensions, std::string_view name) {
-    return std::ranges::any_of(extensions,
-                               [&](const auto& extension) { return extension.extensionName.data() == name; });
+    return std::ranges::any_of(extensions, [&](const auto& extension) { return extension.extensionName.data() == name; });
 }
 
 // Required features; the ray tracing ones count only with their extensions.
 using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                     vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
-                                    vk::PhysicalDeviceRayTracingPipelineFeaturesKHR,
-                                    vk::PhysicalDeviceRayQueryFeaturesKHR>;
+                                    vk::PhysicalDeviceRayTracingPipelineFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>;
 
 std::vector<const char*> extensions_for(Backend backend) {
     if (backend == Backend::compute) return {};
     return {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
-            backend == Backend::query ? VK_KHR_RAY_QUERY_EXTENSION_NAME
-                                      : VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME};
+            backend == Backend::query ? VK_KHR_RAY_QUERY_EXTENSION_NAME : VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME};
 }
 
 bool computes(const vk::QueueFamilyProperties& family) {
@@ -53,13 +48,11 @@ bool computes(const vk::QueueFamilyProperties& family) {
 }
 
 // Features that all backends need and the device lacks.
-std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device,
-                                            const Features& features) {
+std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device, const Features& features) {
     std::vector<std::string> missing;
     const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     if (!vulkan12.scalarBlockLayout) missing.emplace_back("scalarBlockLayout");
-    if (!vulkan12.shaderSampledImageArrayNonUniformIndexing)
-        missing.emplace_back("shaderSampledImageArrayNonUniformIndexing");
+    if (!vulkan12.shaderSampledImageArrayNonUniformIndexing) missing.emplace_back("shaderSampledImageArrayNonUniformIndexing");
     if (std::ranges::none_of(device.getQueueFamilyProperties(), computes))
         missing.emplace_back("a compute queue with timestamps");
     return missing;
@@ -76,24 +69,22 @@ size_t usable_memory(const vk::raii::PhysicalDevice& device, bool shares_memory)
 }
 
 DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
-    const auto properties =
-        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
-                              vk::PhysicalDeviceMaintenance3Properties>();
+    const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
+                                                  vk::PhysicalDeviceMaintenance3Properties>();
     const auto& general = properties.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
-    const bool shares_memory = general.deviceType == vk::PhysicalDeviceType::eIntegratedGpu ||
-                               general.deviceType == vk::PhysicalDeviceType::eCpu;
+    const bool shares_memory =
+        general.deviceType == vk::PhysicalDeviceType::eIntegratedGpu || general.deviceType == vk::PhysicalDeviceType::eCpu;
     DeviceDescription description{
         .name = general.deviceName.data(),
         .kind = kind_text(general.deviceType),
-        .driver = driver.driverName.data() + std::string(driver.driverInfo[0] ? " " : "") +
-                  driver.driverInfo.data(),
+        .driver = driver.driverName.data() + std::string(driver.driverInfo[0] ? " " : "") + driver.driverInfo.data(),
         .api_version = version_text(general.apiVersion),
         .shares_memory = shares_memory,
         .memory = usable_memory(device, shares_memory),
         // Offsets of parts have 32 bits.
-        .largest_buffer = std::min<size_t>(
-            properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),
+        .largest_buffer =
+            std::min<size_t>(properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),
         .missing = {},
     };
     if (general.apiVersion < VK_API_VERSION_1_2) {
@@ -101,39 +92,33 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         return description;
     }
     Features features;
-    device.getDispatcher()->vkGetPhysicalDeviceFeatures2(
-        *device, reinterpret_cast<VkPhysicalDeviceFeatures2*>(&features.get()));
+    device.getDispatcher()->vkGetPhysicalDeviceFeatures2(*device, reinterpret_cast<VkPhysicalDeviceFeatures2*>(&features.get()));
     const auto extensions = device.enumerateDeviceExtensionProperties();
     for (const Backend backend : all_backends) {
         auto& missing = description.missing[backend];
         missing = missing_everywhere(device, features);
         for (const char* wanted : extensions_for(backend))
             if (!contains(extensions, wanted)) missing.emplace_back(wanted);
-        if (backend != Backend::compute &&
-            !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
+        if (backend != Backend::compute && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
             missing.emplace_back("bufferDeviceAddress");
     }
     return description;
 }
 
-vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation,
-                                   std::vector<const char*> extensions = {}) {
+vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, std::vector<const char*> extensions = {}) {
     const vk::ApplicationInfo application("path tracing lab", 1, nullptr, 0, VK_API_VERSION_1_2);
     std::vector<const char*> layers;
     if (validation) {
         const auto available = context.enumerateInstanceLayerProperties();
-        if (std::none_of(available.begin(), available.end(), [](const vk::LayerProperties& layer) {
-                return std::strcmp(layer.layerName, validation_layer) == 0;
-            }))
-            throw DeviceError(
-                "the Vulkan validation layer is not installed: install vulkan-validationlayers");
+        if (std::none_of(available.begin(), available.end(),
+                         [](const vk::LayerProperties& layer) { return std::strcmp(layer.layerName, validation_layer) == 0; }))
+            throw DeviceError("the Vulkan validation layer is not installed: install vulkan-validationlayers");
         layers.push_back(validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
     // Drivers that lack parts of Vulkan, such as macOS's, show only on request.
     vk::InstanceCreateFlags flags;
-    if (contains(context.enumerateInstanceExtensionProperties(),
-                 VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
+    if (contains(context.enumerateInstanceExtensionProperties(), VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
         extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
         flags = vk::InstanceCreateFlagBits::eEnumeratePortabilityKHR;
     }
@@ -180,8 +165,7 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
                 if (devices[i].kind == kind && devices[i].supports(Backend::compute)) return i;
         return 0;
     }
-    throw DeviceError("no device '" + choice + "': --list-devices shows the " +
-                      std::to_string(devices.size()) + " there are");
+    throw DeviceError("no device '" + choice + "': --list-devices shows the " + std::to_string(devices.size()) + " there are");
 }
 
 }  // namespace
@@ -191,16 +175,13 @@ std::string to_string(Backend backend) {
 }
 
 Device::Device(const DeviceOptions& options)
-    : context_(load_vulkan()),
-      instance_(create_instance(context_, options.validation, options.instance_extensions)) {
+    : context_(load_vulkan()), instance_(create_instance(context_, options.validation, options.instance_extensions)) {
     if (options.validation) {
         // The C structure: Vulkan-Hpp changed the callback's parameter types between releases.
         VkDebugUtilsMessengerCreateInfoEXT info{};
         info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-        info.messageSeverity =
-            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-        info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT |
-                           VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+        info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+        info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
                            VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
         info.pfnUserCallback = receive_message;
         info.pUserData = &messages_;
@@ -212,8 +193,7 @@ Device::Device(const DeviceOptions& options)
     const size_t chosen = choose_device(descriptions, options.choice);
     description_ = descriptions[chosen];
     if (!description_.supports(Backend::compute))
-        throw DeviceError("device '" + description_.name + "' lacks " +
-                          description_.missing.at(Backend::compute).front() +
+        throw DeviceError("device '" + description_.name + "' lacks " + description_.missing.at(Backend::compute).front() +
                           ": choose another with --device (see --list-devices) or update its driver");
     physical_ = std::move(devices[chosen]);
     limits_ = physical_.getProperties().limits;
@@ -226,8 +206,7 @@ Device::Device(const DeviceOptions& options)
 void Device::choose_queue_family() {
     const auto families = physical_.getQueueFamilyProperties();
     if (*surface_) {
-        const bool has_swapchain =
-            contains(physical_.enumerateDeviceExtensionProperties(), VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+        const bool has_swapchain = contains(physical_.enumerateDeviceExtensionProperties(), VK_KHR_SWAPCHAIN_EXTENSION_NAME);
         for (uint32_t family = 0; has_swapchain && family < families.size(); ++family)
             if (computes(families[family]) && families[family].queueFlags & vk::QueueFlagBits::eGraphics &&
                 physical_.getSurfaceSupportKHR(family, *surface_)) {
@@ -261,10 +240,8 @@ void Device::create_device() {
         features.get<Structure>().*feature = true;
         if (!is_there) features.unlink<Structure>();
     };
-    switch_on(&vk::PhysicalDeviceAccelerationStructureFeaturesKHR::accelerationStructure,
-              has_acceleration_structures());
-    switch_on(&vk::PhysicalDeviceRayTracingPipelineFeaturesKHR::rayTracingPipeline,
-              description_.supports(Backend::pipeline));
+    switch_on(&vk::PhysicalDeviceAccelerationStructureFeaturesKHR::accelerationStructure, has_acceleration_structures());
+    switch_on(&vk::PhysicalDeviceRayTracingPipelineFeaturesKHR::rayTracingPipeline, description_.supports(Backend::pipeline));
     switch_on(&vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery, description_.supports(Backend::query));
 
     std::vector<const char*> names;
@@ -274,8 +251,7 @@ void Device::create_device() {
     device_ = {physical_, info};
     queue_ = device_.getQueue(queue_family_, 0);
     command_pool_ = {device_, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family_}};
-    command_buffer_ = std::move(
-        vk::raii::CommandBuffers(device_, {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
+    command_buffer_ = std::move(vk::raii::CommandBuffers(device_, {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
     fence_ = {device_, vk::FenceCreateInfo()};
     timestamps_ = {device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)};
 }
@@ -289,19 +265,16 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
     record(command_buffer_);
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, 1);
     // Make what it has written visible to the host.
-    command_buffer_.pipelineBarrier(
-        vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
-        vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
+    command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
+                                    vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
     command_buffer_.end();
     queue_.submit(vk::SubmitInfo({}, {}, *command_buffer_), *fence_);
     if (device_.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
         throw DeviceFailure("the device did not finish its work");
     device_.resetFences(*fence_);
-    const auto [result, ticks] =
-        timestamps_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t),
-                                         vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
-    return static_cast<double>((ticks[1] - ticks[0]) & timestamp_mask_) *
-           static_cast<double>(limits_.timestampPeriod) * 1e-9;
+    const auto [result, ticks] = timestamps_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t),
+                                                                  vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    return static_cast<double>((ticks[1] - ticks[0]) & timestamp_mask_) * static_cast<double>(limits_.timestampPeriod) * 1e-9;
 }
 
 VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT type,
@@ -317,8 +290,7 @@ VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebug
 // The name keeps devices apart; the driver itself checks that a pipeline cache is its own.
 static std::string pipeline_cache_name(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties();
-    const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()),
-                                VK_UUID_SIZE);
+    const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()), VK_UUID_SIZE);
     return "pipelines-" + std::to_string(hash_text(uuid));
 }
 
@@ -332,8 +304,7 @@ Device::~Device() {
     try {
         const auto contents = pipeline_cache_.getData();
         if (contents.size() != pipeline_cache_size_)
-            write_cache(pipeline_cache_name(physical_),
-                        {reinterpret_cast<const char*>(contents.data()), contents.size()});
+            write_cache(pipeline_cache_name(physical_), {reinterpret_cast<const char*>(contents.data()), contents.size()});
     } catch (const vk::SystemError&) {
         // A lost device keeps no pipelines.
     }
@@ -343,8 +314,7 @@ void wait_for_writes(const vk::raii::CommandBuffer& commands) {
     const auto all = vk::PipelineStageFlagBits::eAllCommands;
     commands.pipelineBarrier(
         all, all, {},
-        vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite,
-                          vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite),
+        vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite),
         {}, {});
 }
 
@@ -359,10 +329,8 @@ std::vector<DeviceDescription> list_devices() {
 Failure failure_of(const std::exception& error) {
     if (dynamic_cast<const DeviceError*>(&error)) return {2, error.what()};
     if (dynamic_cast<const DeviceFailure*>(&error)) return {3, error.what()};
-    if (dynamic_cast<const vk::SystemError*>(&error))
-        return {3, std::string("the device failed: ") + error.what()};
-    if (dynamic_cast<const std::bad_alloc*>(&error))
-        return {3, "out of memory: use a smaller scene or image"};
+    if (dynamic_cast<const vk::SystemError*>(&error)) return {3, std::string("the device failed: ") + error.what()};
+    if (dynamic_cast<const std::bad_alloc*>(&error)) return {3, "out of memory: use a smaller scene or image"};
     return {1, error.what()};
 }
 

@@ -45,8 +45,7 @@ struct DeviceDescription {
 
 class Device {
   public:
-    // Throws DeviceError without a driver (saying what to install) or such a device, or if it lacks a
-    // feature.
+    // Throws DeviceError without a driver (saying what to install) or such a device, or if it lacks a feature.
     explicit Device(const DeviceOptions& options);
     ~Device();
     Device(const Device&) = delete;
@@ -60,8 +59,7 @@ class Device {
     // Properties in a structure of their own.
     template <typename Properties>
     Properties properties() const {
-        return physical_.getProperties2<vk::PhysicalDeviceProperties2, Properties>()
-            .template get<Properties>();
+        return physical_.getProperties2<vk::PhysicalDeviceProperties2, Properties>().template get<Properties>();
     }
     bool has_acceleration_structures() const {
         return description_.supports(Backend::pipeline) || description_.supports(Backend::query);
@@ -88,8 +86,7 @@ class Device {
         std::vector<std::string> driver;
         std::mutex mutex;  // any thread may add messages
     };
-    static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-                                    VkDebugUtilsMessageTypeFlagsEXT type,
+    static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
     void choose_queue_family();
     void create_device();

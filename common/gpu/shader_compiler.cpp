@@ -36,15 +36,13 @@ std::optional<std::string> included_name(std::string_view line) {
     return std::string(line.substr(0, end));
 }
 
-// Replaces #include "…" by the text of the file, each file once, with #line directives. The result is the
-// compiler's input and the key of the cache. Shaders may come from strangers, so included files must lie in
-// the folder of a named file, in shaders/ or in chapters/. Line ends and byte order mark may be those of
-// Windows.
+// Replaces #include "…" by the text of the file, each file once, with #line directives. The result is the compiler's input and
+// the key of the cache. Shaders may come from strangers, so included files must lie in the folder of a named file, in shaders/ or
+// in chapters/. Line ends and byte order mark may be those of Windows.
 class Includer {
   public:
     explicit Includer(const ShaderSource& source) : named_(source.named_includes) {
-        folders_ = {project_folder() / "shaders", project_folder() / "chapters",
-                    fs::absolute(source.file).parent_path()};
+        folders_ = {project_folder() / "shaders", project_folder() / "chapters", fs::absolute(source.file).parent_path()};
         for (const auto& [name, file] : named_) folders_.push_back(fs::absolute(file).parent_path());
         for (fs::path& folder : folders_) folder = fs::weakly_canonical(folder);
     }
@@ -71,15 +69,13 @@ class Includer {
         const std::string place = includer.generic_string() + ":" + std::to_string(line) + ": ";
         const fs::path file = find(name, includer, place);
         std::string text;
-        if (seen_.insert(fs::weakly_canonical(file)).second)
-            text += "#line 1 \"" + file.generic_string() + "\"\n" + expand(file);
+        if (seen_.insert(fs::weakly_canonical(file)).second) text += "#line 1 \"" + file.generic_string() + "\"\n" + expand(file);
         return text + "#line " + std::to_string(line + 1) + " \"" + includer.generic_string() + "\"\n";
     }
 
     fs::path find(const std::string& name, const fs::path& includer, const std::string& place) const {
         if (const auto named = named_.find(name); named != named_.end()) return named->second;
-        for (const fs::path& folder :
-             {includer.parent_path(), project_folder() / "shaders", project_folder() / "chapters"}) {
+        for (const fs::path& folder : {includer.parent_path(), project_folder() / "shaders", project_folder() / "chapters"}) {
             std::error_code error;
             const fs::path file = folder / name;
             if (!fs::exists(file, error)) continue;
@@ -94,8 +90,7 @@ class Includer {
     bool is_in_the_tree(const fs::path& file) const {
         const fs::path real = fs::weakly_canonical(file);
         return std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& folder) {
-            return std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first ==
-                   folder.end();
+            return std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end();
         });
     }
 
@@ -109,8 +104,7 @@ constexpr struct {
     const char* advice;
 } hints[] = {
     {"'path_trace' : no matching", "the shader has to define vec3 path_trace(Ray ray, inout uvec2 seed)"},
-    {"no matching overloaded function",
-     "is the name misspelt, or is an argument missing or of another type?"},
+    {"no matching overloaded function", "is the name misspelt, or is an argument missing or of another type?"},
     {"undeclared identifier", "is it misspelt, or declared only further down?"},
     {"expecting COMMA or SEMICOLON", "is a semicolon missing before this line?"},
     {"unexpected LEFT_BRACE", "is a } missing further up?"},
@@ -119,8 +113,7 @@ constexpr struct {
     {"l-value required", "what is const cannot be assigned"},
 };
 
-// Finds the token in a message "file:line: 'token' : text" of glslang that is a single byte of a non-ASCII
-// character.
+// Finds the token in a message "file:line: 'token' : text" of glslang that is a single byte of a non-ASCII character.
 size_t find_lone_byte(const std::string& line) {
     const size_t token = line.find(": '");
     const bool is_lone = token != std::string::npos && token + 4 < line.size() &&
@@ -136,8 +129,8 @@ std::string with_advice(const std::string& line) {
     return line;
 }
 
-// The errors in a log of glslang as lines "file:line: text": the first of each line of source, since the
-// others follow from it. The commonest say what to do.
+// The errors in a log of glslang as lines "file:line: text": the first of each line of source, since the others follow from it.
+// The commonest say what to do.
 std::string readable_errors(const std::string& log) {
     std::istringstream lines(log);
     std::string line, text, place;
@@ -154,15 +147,12 @@ std::string readable_errors(const std::string& log) {
 }
 
 EShLanguage stage_of(const fs::path& file) {
-    static const std::map<std::string, EShLanguage> stages{{".comp", EShLangCompute},
-                                                           {".rgen", EShLangRayGen},
-                                                           {".rmiss", EShLangMiss},
-                                                           {".rchit", EShLangClosestHit}};
+    static const std::map<std::string, EShLanguage> stages{
+        {".comp", EShLangCompute}, {".rgen", EShLangRayGen}, {".rmiss", EShLangMiss}, {".rchit", EShLangClosestHit}};
     return stages.at(file.extension().string());
 }
 
-std::vector<uint32_t> compile(const ShaderSource& source, const std::string& text,
-                              const std::string& preamble) {
+std::vector<uint32_t> compile(const ShaderSource& source, const std::string& text, const std::string& preamble) {
     static const bool initialised = glslang::InitializeProcess();
     if (!initialised) throw UserError("glslang could not be initialised");
     const EShLanguage stage = stage_of(source.file);
@@ -177,8 +167,7 @@ std::vector<uint32_t> compile(const ShaderSource& source, const std::string& tex
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
     const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-    if (!shader.parse(GetDefaultResources(), 460, false, messages))
-        throw UserError(readable_errors(shader.getInfoLog()));
+    if (!shader.parse(GetDefaultResources(), 460, false, messages)) throw UserError(readable_errors(shader.getInfoLog()));
     glslang::TProgram program;
     program.addShader(&shader);
     if (!program.link(messages)) throw UserError(name + ": " + readable_errors(program.getInfoLog()));
@@ -204,12 +193,10 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
     for (const auto& define : source.defines) preamble += "#define " + define + "\n";
 
     const auto version = glslang::GetVersion();
-    const std::string key = preamble + text + source.file.extension().string() + "/" +
-                            std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
-                            std::to_string(version.patch);
+    const std::string key = preamble + text + source.file.extension().string() + "/" + std::to_string(version.major) + "." +
+                            std::to_string(version.minor) + "." + std::to_string(version.patch);
     // Two independent 64-bit hashes make a chance collision impossible in practice.
-    const std::string name =
-        "shader-" + std::to_string(hash_text(key)) + "-" + std::to_string(hash_text(key, key.size()));
+    const std::string name = "shader-" + std::to_string(hash_text(key)) + "-" + std::to_string(hash_text(key, key.size()));
     std::vector<uint32_t> words;
     if (const auto cached = read_cache(name)) {
         words.resize(cached->size() / sizeof(uint32_t));

@@ -14,9 +14,8 @@ constexpr uint64_t max_shader_bytes = 1 << 20;  // of each file
 struct ShaderSource {
     std::filesystem::path file;             // stage by extension: .comp, .rgen, .rmiss or .rchit
     std::vector<std::string> defines = {};  // "NAME" or "NAME value"
-    // Files for #include "name". Other names are looked up beside the includer, in shaders/ and in chapters/,
-    // and must not lead out of the folders of these files, shaders/ and chapters/. Each file is included once,
-    // even where an #if skips it.
+    // Files for #include "name". Other names are looked up beside the includer, in shaders/ and in chapters/, and must not lead
+    // out of the folders of these files, shaders/ and chapters/. Each file is included once, even where an #if skips it.
     std::map<std::string, std::filesystem::path> named_includes = {};
     // Edits the text before it is compiled; lines keep their numbers.
     std::function<std::string(const std::string&)> edit = {};

@@ -14,8 +14,7 @@ constexpr int level = 4;  // noise hardly gets smaller with more work
 // A whole stream or, with negative window bits, a raw part without header and checksum.
 std::string deflate_all(std::string_view bytes, int window_bits, int flush) {
     z_stream stream{};
-    if (deflateInit2(&stream, level, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY) != Z_OK)
-        throw std::bad_alloc();
+    if (deflateInit2(&stream, level, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
     std::string result(deflateBound(&stream, static_cast<uLong>(bytes.size())) + 16,
                        '\0');  // 16: more than a flush adds
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
@@ -50,9 +49,8 @@ std::string compress_in_parallel(std::string_view bytes) {
     in_parallel(bytes.size(), piece_size, [&](size_t begin, size_t end) {
         const std::string_view piece = bytes.substr(begin, end - begin);
         const int flush = end == bytes.size() ? Z_FINISH : Z_SYNC_FLUSH;
-        pieces[begin / piece_size] = {
-            deflate_all(piece, -MAX_WBITS, flush),
-            adler32(adler32(0, nullptr, 0), to_bytes(piece), static_cast<uInt>(piece.size()))};
+        pieces[begin / piece_size] = {deflate_all(piece, -MAX_WBITS, flush),
+                                      adler32(adler32(0, nullptr, 0), to_bytes(piece), static_cast<uInt>(piece.size()))};
     });
     std::string stream = "\x78\x5e";  // deflate with a window of 32 KiB, at a fast level
     uLong checksum = adler32(0, nullptr, 0);

@@ -24,8 +24,7 @@ namespace {
     fail(file, "damaged or unsupported OpenEXR file: " + reason.substr(0, reason.find('\n')));
 }
 
-// Walks over the attributes (name, type, size, value) to check "type", at whose unknown values tinyexr
-// aborts.
+// Walks over the attributes (name, type, size, value) to check "type", at whose unknown values tinyexr aborts.
 void check_attributes(const std::filesystem::path& file, std::string_view bytes) {
     bytes.remove_prefix(8);  // magic number and version
     const auto take_string = [&] { return take_until('\0', file, bytes); };
@@ -47,8 +46,7 @@ void check_header(const std::filesystem::path& file, const EXRHeader& header, ui
     const int64_t width = int64_t{window.max_x} - window.min_x + 1;
     const int64_t height = int64_t{window.max_y} - window.min_y + 1;
     check_image_size(file, width, height);
-    if (std::abs(int64_t{window.min_x}) > max_image_extent ||
-        std::abs(int64_t{window.min_y}) > max_image_extent)
+    if (std::abs(int64_t{window.min_x}) > max_image_extent || std::abs(int64_t{window.min_y}) > max_image_extent)
         fail(file, "its data window is too far from the origin");
     constexpr int max_channels = 64;
     if (header.num_channels > max_channels) fail(file, "it has more than 64 channels");
@@ -61,8 +59,7 @@ void check_header(const std::filesystem::path& file, const EXRHeader& header, ui
             fail(file, "channel " + in_quotes(channel.name) + " must have a value for every pixel");
         bytes_per_pixel += channel.pixel_type == TINYEXR_PIXELTYPE_HALF ? 2 : 4;
     }
-    if (static_cast<uint64_t>(width * height) * bytes_per_pixel > max_deflate_ratio * file_size)
-        fail_truncated(file);
+    if (static_cast<uint64_t>(width * height) * bytes_per_pixel > max_deflate_ratio * file_size) fail_truncated(file);
     check_memory(file, static_cast<uint64_t>(width * height) * 3 * sizeof(float), file_size);
 }
 
@@ -85,14 +82,12 @@ ExrFile collect(const std::filesystem::path& file, const EXRHeader& header, cons
     exr.image.pixels.resize(3 * pixel_count);
     in_parallel(pixel_count, 1 << 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
-            for (size_t channel = 0; channel < 3; ++channel)
-                exr.image.pixels[3 * i + channel] = colours[channel][i];
+            for (size_t channel = 0; channel < 3; ++channel) exr.image.pixels[3 * i + channel] = colours[channel][i];
     });
     for (int i = 0; i < header.num_custom_attributes; ++i) {
         const EXRAttribute& attribute = header.custom_attributes[i];
         if (std::string_view(attribute.type) != "string") continue;
-        std::string value(reinterpret_cast<const char*>(attribute.value),
-                          static_cast<size_t>(attribute.size));
+        std::string value(reinterpret_cast<const char*>(attribute.value), static_cast<size_t>(attribute.size));
         if (value == std::string(1, '\0')) value.clear();  // tinyexr's empty string
         exr.attributes[attribute.name] = value;
     }
@@ -111,15 +106,14 @@ ExrFile read_exr(const std::filesystem::path& file) {
     const auto* memory = reinterpret_cast<const unsigned char*>(bytes.data());
     try {
         EXRVersion version;
-        if (ParseEXRVersionFromMemory(&version, memory, size) != TINYEXR_SUCCESS || version.tiled ||
-            version.multipart || version.non_image)
+        if (ParseEXRVersionFromMemory(&version, memory, size) != TINYEXR_SUCCESS || version.tiled || version.multipart ||
+            version.non_image)
             fail(file, "only single-part OpenEXR images of scan lines are read");
         EXRHeader header;
         InitEXRHeader(&header);
         const std::unique_ptr<EXRHeader, decltype(&FreeEXRHeader)> frees_header(&header, FreeEXRHeader);
         const char* message = nullptr;
-        if (ParseEXRHeaderFromMemory(&header, &version, memory, size, &message) != TINYEXR_SUCCESS)
-            fail_with(file, message);
+        if (ParseEXRHeaderFromMemory(&header, &version, memory, size, &message) != TINYEXR_SUCCESS) fail_with(file, message);
         check_header(file, header, size);
         std::fill_n(header.requested_pixel_types, header.num_channels, TINYEXR_PIXELTYPE_FLOAT);
         header.chunk_count = 0;  // tinyexr computes it then, and does not allocate what the file claims

@@ -1,5 +1,5 @@
-// Writes OpenEXR files: 32-bit floats in scan lines, in blocks of 16 rows that all threads compress.
-// (tinyexr's writer uses one thread.)
+// Writes OpenEXR files: 32-bit floats in scan lines, in blocks of 16 rows that all threads compress. (tinyexr's writer uses one
+// thread.)
 #include <algorithm>
 #include <cstring>
 
@@ -28,8 +28,8 @@ std::string header(const ExrFile& exr, const Planes& planes) {
     std::string channels;
     for (const auto& [name, plane] : planes)  // floats, one for each pixel
         channels += name + zero + little_endian(2) + little_endian(0) + little_endian(1) + little_endian(1);
-    const std::string window = little_endian(0) + little_endian(0) + little_endian(exr.image.width - 1) +
-                               little_endian(exr.image.height - 1);
+    const std::string window =
+        little_endian(0) + little_endian(0) + little_endian(exr.image.width - 1) + little_endian(exr.image.height - 1);
     std::string text("\x76\x2f\x31\x01\x02\0\0\0", 8);  // magic number and version 2: scan lines
     text += attribute("channels", "chlist", channels + zero);
     text += attribute("compression", "compression", "\x03");  // ZIP
@@ -42,8 +42,7 @@ std::string header(const ExrFile& exr, const Planes& planes) {
     return text + zero;
 }
 
-// As OpenEXR prescribes: even bytes before odd ones, differences of neighbours, zlib; never longer than
-// before.
+// As OpenEXR prescribes: even bytes before odd ones, differences of neighbours, zlib; never longer than before.
 std::string compress_block(const std::string& rows) {
     std::string split(rows.size(), '\0');
     const size_t half = (rows.size() + 1) / 2;
@@ -71,8 +70,8 @@ void write_exr(const std::filesystem::path& file, const ExrFile& exr) {
                 for (size_t x = 0; x < width; ++x, target += sizeof(float))
                     std::memcpy(target, plane.first + (y * width + x) * plane.stride, sizeof(float));
         const std::string packed = compress_block(rows);
-        blocks[begin / rows_per_block] = little_endian(static_cast<uint32_t>(begin)) +
-                                         little_endian(static_cast<uint32_t>(packed.size())) + packed;
+        blocks[begin / rows_per_block] =
+            little_endian(static_cast<uint32_t>(begin)) + little_endian(static_cast<uint32_t>(packed.size())) + packed;
     });
     std::string bytes = header(exr, planes);
     uint64_t offset = bytes.size() + blocks.size() * sizeof offset;

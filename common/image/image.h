@@ -27,8 +27,8 @@ struct Texture {
     std::vector<uint8_t> pixels;
 };
 
-// An OpenEXR file: R, G, B as 32-bit floats, further channels and string attributes. Names have at most 31
-// characters. There are at most 128 attributes, none with a standard name such as "type".
+// An OpenEXR file: R, G, B as 32-bit floats, further channels and string attributes. Names have at most 31 characters. There are
+// at most 128 attributes, none with a standard name such as "type".
 struct ExrFile {
     Image image;
     std::map<std::string, std::vector<float>> channels;  // each has width * height numbers
@@ -53,12 +53,10 @@ void write_png(const std::filesystem::path& file, const Texture& image);
 void write_jpg(const std::filesystem::path& file, const Texture& image);
 
 // check_writable() for an image.
-inline void check_writable(const std::filesystem::path& file) {
-    check_writable(file, {".exr", ".hdr", ".png", ".jpg"});
-}
+inline void check_writable(const std::filesystem::path& file) { check_writable(file, {".exr", ".hdr", ".png", ".jpg"}); }
 
-// The sRGB transfer function (IEC 61966-2-1) from linear to encoded values, clamped to [0,1]. In double, so
-// that bytes survive the way to linear and back.
+// The sRGB transfer function (IEC 61966-2-1) from linear to encoded values, clamped to [0,1]. In double, so that bytes survive
+// the way to linear and back.
 inline float linear_to_srgb(float linear) {
     const double value = std::clamp(static_cast<double>(linear), 0.0, 1.0);
     return static_cast<float>(value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055);

@@ -10,9 +10,7 @@ void fail(const std::filesystem::path& file, const std::string& reason) {
     throw UserError(printable(file.string()) + ": " + reason);
 }
 
-void fail_truncated(const std::filesystem::path& file) {
-    fail(file, "the file ends too early: copy or export it again");
-}
+void fail_truncated(const std::filesystem::path& file) { fail(file, "the file ends too early: copy or export it again"); }
 
 std::string_view take_until(char end, const std::filesystem::path& file, std::string_view& bytes) {
     const size_t length = bytes.find(end);

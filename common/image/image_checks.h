@@ -10,8 +10,7 @@ namespace lab {
 // Largest image file that is read, in bytes.
 inline constexpr uint64_t max_image_file_bytes = uint64_t{4} << 30;
 
-// Deflate (PNG, EXR) shrinks data at most by this factor, which exposes damaged sizes before memory is
-// allocated.
+// Deflate (PNG, EXR) shrinks data at most by this factor, which exposes damaged sizes before memory is allocated.
 inline constexpr uint64_t max_deflate_ratio = 1032;
 
 // Throw UserError: "<file>: <reason>", or that the file is cut off.

@@ -13,8 +13,7 @@ namespace {
 // The resolution line "-Y height +X width": rows from the top, pixels from the left.
 void read_resolution(const std::filesystem::path& file, std::string_view line, Image& image) {
     const auto number = [&](std::string_view axis, uint32_t& value) {
-        if (!line.starts_with(axis))
-            fail(file, "only .hdr files with rows from the top (-Y, then +X) are read");
+        if (!line.starts_with(axis)) fail(file, "only .hdr files with rows from the top (-Y, then +X) are read");
         line.remove_prefix(axis.size());
         const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
         if (error != std::errc()) fail(file, "its width and height cannot be read");
@@ -25,8 +24,8 @@ void read_resolution(const std::filesystem::path& file, std::string_view line, I
     check_image_size(file, image.width, image.height);
 }
 
-// Reads a row of four bytes per pixel. Rows of 8 pixels or more that start with 2, 2 and their width are
-// run-length encoded channel by channel.
+// Reads a row of four bytes per pixel. Rows of 8 pixels or more that start with 2, 2 and their width are run-length encoded
+// channel by channel.
 void read_row(const std::filesystem::path& file, std::string_view& bytes, std::vector<uint8_t>& row) {
     const auto next = [&] {
         if (bytes.empty()) fail_truncated(file);
@@ -78,8 +77,7 @@ Image read_hdr(const std::filesystem::path& file) {
         for (size_t x = 0; x < image.width; ++x) {
             const int exponent = row[4 * x + 3];  // shared by the three mantissas; 0 is black
             for (size_t channel = 0; channel < 3; ++channel)
-                image.pixels.push_back(
-                    exponent ? std::ldexp(static_cast<float>(row[4 * x + channel]), exponent - 136) : 0.0f);
+                image.pixels.push_back(exponent ? std::ldexp(static_cast<float>(row[4 * x + channel]), exponent - 136) : 0.0f);
         }
     }
     return image;
@@ -94,8 +92,8 @@ Image read_radiance(const std::filesystem::path& file) {
     for (size_t i = 0; i < image.pixels.size(); ++i) {
         if (image.pixels[i] >= 0 && std::isfinite(image.pixels[i])) continue;
         const size_t pixel = i / 3;
-        fail(file, "pixel (" + std::to_string(pixel % image.width) + ", " +
-                       std::to_string(pixel / image.width) + ") is negative, infinite or not a number");
+        fail(file, "pixel (" + std::to_string(pixel % image.width) + ", " + std::to_string(pixel / image.width) +
+                       ") is negative, infinite or not a number");
     }
     return image;
 }

@@ -30,8 +30,7 @@ static void* stb_allocate(void* block, size_t size) {
 
 // For PNG: the threads that stb does not use.
 static unsigned char* compress_for_stb(unsigned char* data, int size, int* compressed_size, int) {
-    const std::string bytes =
-        compress_in_parallel({reinterpret_cast<const char*>(data), static_cast<size_t>(size)});
+    const std::string bytes = compress_in_parallel({reinterpret_cast<const char*>(data), static_cast<size_t>(size)});
     auto* result = static_cast<unsigned char*>(std::malloc(bytes.size()));
     if (result) std::memcpy(result, bytes.data(), bytes.size());
     *compressed_size = static_cast<int>(bytes.size());
@@ -62,8 +61,7 @@ static unsigned char* compress_for_stb(unsigned char* data, int size, int* compr
 namespace lab {
 namespace {
 
-// stb_image fills truncated files up with zeros. Reading by callbacks shows that it asked for more than there
-// is.
+// stb_image fills truncated files up with zeros. Reading by callbacks shows that it asked for more than there is.
 struct ByteSource {
     std::string_view bytes;
     size_t position = 0;
@@ -95,9 +93,9 @@ struct ByteSource {
 
 constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSource::at_end};
 
-// stb_image up to 2.27 overruns an array for Huffman tables of more than 256 codes, and many scans of a few
-// bytes let it pass over a large progressive image again and again (encoders make about ten scans). Walks
-// over the segments of a .jpg file (0xff, marker, length in two bytes) as stb_image does.
+// stb_image up to 2.27 overruns an array for Huffman tables of more than 256 codes, and many scans of a few bytes let it pass
+// over a large progressive image again and again (encoders make about ten scans). Walks over the segments of a .jpg file (0xff,
+// marker, length in two bytes) as stb_image does.
 bool is_harmless_jpg(std::string_view jpg) {
     constexpr size_t max_scans = 64;
     size_t scans = 0;
@@ -134,15 +132,13 @@ void check_written(int success, const std::filesystem::path& file) {
 
 Texture read_texture(const std::filesystem::path& file) {
     const std::string bytes = read_file(file, max_image_file_bytes);
-    if (bytes.starts_with('\xff') && !is_harmless_jpg(bytes))
-        fail(file, "damaged image: copy or export it again");
+    if (bytes.starts_with('\xff') && !is_harmless_jpg(bytes)) fail(file, "damaged image: copy or export it again");
     int width = 0, height = 0, channels = 0;
     ByteSource source{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels))
         fail(file, "not a texture: it must be a .png, .jpg, .bmp or .tga file");
     check_image_size(file, width, height);
-    // A pixel takes at least a deflated bit in .png, and 1/64 bit in .jpg (a bit per 8 x 8 block): refuse
-    // more before allocating.
+    // A pixel takes at least a deflated bit in .png, and 1/64 bit in .jpg (a bit per 8 x 8 block): refuse more before allocating.
     const uint64_t max_pixels_a_byte = bytes.starts_with("\x89PNG") ? 8 * max_deflate_ratio : 8 * 64;
     if (static_cast<uint64_t>(width) * height > max_pixels_a_byte * bytes.size()) fail_truncated(file);
 
@@ -150,8 +146,7 @@ Texture read_texture(const std::filesystem::path& file) {
     stb_memory = {.largest_block = memory_limit(bytes.size())};
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 4), stbi_image_free);
-    if (stb_memory.exceeded)
-        fail(file, "needs far more memory than a file of its size should: make the image smaller");
+    if (stb_memory.exceeded) fail(file, "needs far more memory than a file of its size should: make the image smaller");
     if (source.exhausted) fail_truncated(file);
     if (!pixels) fail(file, "damaged image: copy or export it again");
     Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
@@ -160,8 +155,7 @@ Texture read_texture(const std::filesystem::path& file) {
 }
 
 void write_png(const std::filesystem::path& file, const Texture& image) {
-    stbi_write_force_png_filter =
-        4;  // Paeth's suits rendered pictures; trying all five takes five times as long
+    stbi_write_force_png_filter = 4;  // Paeth's suits rendered pictures; trying all five takes five times as long
     std::string bytes;
     const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
     check_written(stbi_write_png_to_func(append, &bytes, width, height, 4, image.pixels.data(), 0), file);
@@ -172,8 +166,7 @@ void write_jpg(const std::filesystem::path& file, const Texture& image) {
     constexpr int quality = 95;
     std::string bytes;
     const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
-    check_written(stbi_write_jpg_to_func(append, &bytes, width, height, 4, image.pixels.data(), quality),
-                  file);
+    check_written(stbi_write_jpg_to_func(append, &bytes, width, height, 4, image.pixels.data(), quality), file);
     write_file(file, bytes);
 }
 

@@ -62,8 +62,7 @@ HemisphereView::Pictures HemisphereView::pictures() const {
 vec3 HemisphereView::Pictures::reflected_radiance() const {
     glm::dvec3 sum(0);
     for (size_t i = 0; i < incoming_radiance.pixels.size(); ++i)
-        sum[static_cast<int>(i % 3)] +=
-            double{incoming_radiance.pixels[i]} * double{brdf.pixels[i]} * double{cosine.pixels[i]};
+        sum[static_cast<int>(i % 3)] += double{incoming_radiance.pixels[i]} * double{brdf.pixels[i]} * double{cosine.pixels[i]};
     return vec3(8.0 / (double{extent} * extent) * sum);
 }
 

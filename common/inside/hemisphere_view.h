@@ -5,19 +5,16 @@
 
 namespace lab {
 
-// Pictures are discs of equal area: every pixel has the same solid angle 8/extent². The normal is in the
-// middle, the horizon at the rim; the hemisphere is seen from above.
+// Pictures are discs of equal area: every pixel has the same solid angle 8/extent². The normal is in the middle, the horizon at
+// the rim; the hemisphere is seen from above.
 class HemisphereView {
   public:
     static constexpr uint32_t extent = 128;  // width and height of a picture in pixels
 
-    // The device and the acceleration structure must outlive it. Throws UserError if the estimator does not
-    // compile.
-    HemisphereView(const Device& device, const AccelerationStructure& acceleration_structure,
-                   const Estimator& estimator);
+    // The device and the acceleration structure must outlive it. Throws UserError if the estimator does not compile.
+    HemisphereView(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator);
 
-    // Starts over at a vertex that a path has hit, seen from where the path came. The parameters are those of
-    // the render.
+    // Starts over at a vertex that a path has hit, seen from where the path came. The parameters are those of the render.
     void look_at(const PathVertex& vertex, const RenderParameters& parameters);
     // One dispatch towards so many samples in each pixel; true while more are needed.
     bool advance(uint32_t samples) { return renderer_.advance(samples); }

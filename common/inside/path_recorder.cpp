@@ -62,8 +62,8 @@ class PathBuilder {
     }
 
   private:
-    // The vertex that a ray starts from. Rays start off the surface by a few units in the last place only, so
-    // it is the nearest, and the latest of several at one place.
+    // The vertex that a ray starts from. Rays start off the surface by a few units in the last place only, so it is the nearest,
+    // and the latest of several at one place.
     int vertex_at(const vec3& origin) const {
         int nearest = -1;
         float smallest = std::numeric_limits<float>::infinity();
@@ -102,15 +102,13 @@ class PathBuilder {
     void add_light_sample(const RecordedEvent& event) {
         site_ = vertex_at(event.origin);
         if (site_ < 0) return;
-        site().light_samples.push_back(
-            {.point = event.origin + event.end * event.direction, .is_visible = event.is_hit == 0});
+        site().light_samples.push_back({.point = event.origin + event.end * event.direction, .is_visible = event.is_hit == 0});
         is_light_sampled_ = true;
     }
 
     // What follows happens where the branch's first ray starts.
     void start_branch() {
-        const auto ray =
-            std::find_if(events_.begin() + static_cast<std::ptrdiff_t>(next_), events_.end(), is_ray);
+        const auto ray = std::find_if(events_.begin() + static_cast<std::ptrdiff_t>(next_), events_.end(), is_ray);
         if (ray != events_.end()) site_ = vertex_at(ray->origin);
     }
 
@@ -154,17 +152,16 @@ Estimator recording(const Estimator& estimator) {
             .edit = add_recording_calls};
 }
 
-PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure,
-                           const Estimator& estimator, uvec2 image_size)
+PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
+                           uvec2 image_size)
     : device_(&device),
       // Samples go to a row of blocks, wherever in the image it is.
       film_(device, image_size.x, BLOCK_HEIGHT),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
-      events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent),
-              vk::BufferUsageFlagBits::eStorageBuffer) {
-    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_),
-                                        film_.binding(), storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
+      events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent), vk::BufferUsageFlagBits::eStorageBuffer) {
+    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
+                                        storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
                                         storage_binding(BINDING_RECORDED_PATH, events_)};
     tracer_ = acceleration_structure.make_tracer(recording(estimator), bindings);
 }

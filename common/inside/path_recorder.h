@@ -42,13 +42,12 @@ struct RecordedPath {
 
 class PathRecorder {
   public:
-    // The device and the acceleration structure must outlive it. Throws UserError if the estimator does not
-    // compile.
-    PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure,
-                 const Estimator& estimator, uvec2 image_size);
+    // The device and the acceleration structure must outlive it. Throws UserError if the estimator does not compile.
+    PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
+                 uvec2 image_size);
 
-    // Of the sample with this index (as first_sample counts). The image size is that of the constructor. The
-    // numbers are those of a render with these parameters on the same backend.
+    // Of the sample with this index (as first_sample counts). The image size is that of the constructor. The numbers are those of
+    // a render with these parameters on the same backend.
     RecordedPath record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample);
 
   private:

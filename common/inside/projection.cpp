@@ -18,8 +18,7 @@ std::optional<std::array<vec2, 2>> project_segment(const Camera& camera, vec3 fr
     const float nearest = 1e-3f * std::max(depth_from, depth_to);
     if (!(nearest > 0)) return std::nullopt;
     const auto cut = [&](vec3& end, float depth_end, const vec3& other, float depth_other) {
-        if (depth_end < nearest)
-            end = glm::mix(other, end, (depth_other - nearest) / (depth_other - depth_end));
+        if (depth_end < nearest) end = glm::mix(other, end, (depth_other - nearest) / (depth_other - depth_end));
     };
     cut(from, depth_from, to, depth_to);
     cut(to, depth_to, from, depth_from);

@@ -7,8 +7,8 @@
 
 namespace lab {
 
-// Image position, (0,0) at the upper left corner and (1,1) at the lower right one, as in shaders/world/camera.glsl;
-// outside of that the point is beside the picture. None for points that are not in front of the camera.
+// Image position, (0,0) at the upper left corner and (1,1) at the lower right one, as in shaders/world/camera.glsl; outside of
+// that the point is beside the picture. None for points that are not in front of the camera.
 std::optional<vec2> project(const Camera& camera, const vec3& point);
 
 // The ends of the part of a segment that is in front of the camera, if any is.

@@ -25,8 +25,7 @@ class Scanner {
                 if (c == '{') ++braces_;
                 if (c == '}') --braces_;
                 if (!std::isspace(static_cast<unsigned char>(c)))
-                    begins_statement_ =
-                        parentheses_ == 0 && std::string_view("{};)").find(c) != std::string::npos;
+                    begins_statement_ = parentheses_ == 0 && std::string_view("{};)").find(c) != std::string::npos;
                 copy(1);
             }
         }
@@ -119,11 +118,9 @@ class Scanner {
             if (is_declaration) ++radiances_;
             const int number = name == variable ? radiances_ : 0;
             if (name == variable && number == 0) return "";  // somebody else's
-            return " record_radiance(EVENT_RADIANCE" + starts + expression + ", " + std::to_string(number) +
-                   "u);";
+            return " record_radiance(EVENT_RADIANCE" + starts + expression + ", " + std::to_string(number) + "u);";
         }
-        if (variable == "survival_probability" && is_declaration)
-            return " record_survival(survival_probability);";
+        if (variable == "survival_probability" && is_declaration) return " record_survival(survival_probability);";
         return "";
     }
 

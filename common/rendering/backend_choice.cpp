@@ -34,8 +34,7 @@ std::string cache_name(const Device& device, const GpuScene& scene) {
     const uint64_t triangles = instanced_triangle_count(scene.scene());
     const auto decade = static_cast<int>(std::log10(static_cast<double>(std::max<uint64_t>(triangles, 1))));
     const auto& description = device.description();
-    return "backend-" + std::to_string(hash_text(description.name + description.driver)) + "-" +
-           std::to_string(decade);
+    return "backend-" + std::to_string(hash_text(description.name + description.driver)) + "-" + std::to_string(decade);
 }
 
 std::optional<Backend> find_backend(const std::string& name) {
@@ -53,8 +52,7 @@ bool fits_compute(const Device& device, const Scene& scene) try {
 
 Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {
     const auto is_usable = [&](Backend backend) {
-        return device.description().supports(backend) &&
-               (backend != Backend::compute || fits_compute(device, *job.scene));
+        return device.description().supports(backend) && (backend != Backend::compute || fits_compute(device, *job.scene));
     };
     const std::string entry = cache_name(device, scene);
     if (const auto cached = read_cache(entry))

@@ -18,8 +18,7 @@ BuildStage first_difference(const Options& before, const Options& options) {
     if (before.scene != options.scene) return BuildStage::scene;
     const auto samples_lights = [](const Options& o) { return o.estimator.strategy != Strategy::bounces; };
     if (samples_lights(before) != samples_lights(options)) return BuildStage::gpu_scene;
-    if (before.estimator != options.estimator || before.image != options.image ||
-        asks_for_sky(before) != asks_for_sky(options))
+    if (before.estimator != options.estimator || before.image != options.image || asks_for_sky(before) != asks_for_sky(options))
         return BuildStage::renderer;
     return BuildStage::nothing;
 }
@@ -31,8 +30,7 @@ Options keep_built(const Options& built, Options options) {
     return options;
 }
 
-Build make_build(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first,
-                 const Build* before) {
+Build make_build(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first, const Build* before) {
     Build build;
     build.job = std::move(job);
     const RenderJob& wanted = build.job;
@@ -40,8 +38,7 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
         build.gpu_scene =
-            std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options),
-                                       chapter.light_probe_sampling);
+            std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options), chapter.light_probe_sampling);
         build.backend = choose_backend(wanted, device, *build.gpu_scene);
         build.acceleration_structure = build_acceleration_structure(build.backend, device, *build.gpu_scene);
     } else {
@@ -50,8 +47,7 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
         build.acceleration_structure = before->acceleration_structure;
     }
     record_device(build.job, device.description().name, to_string(build.backend));
-    build.renderer = std::make_unique<Renderer>(device, *build.acceleration_structure, wanted.estimator,
-                                                wanted.parameters);
+    build.renderer = std::make_unique<Renderer>(device, *build.acceleration_structure, wanted.estimator, wanted.parameters);
     if (wanted.resumed) build.renderer->resume(wanted.resumed->image);
     return build;
 }

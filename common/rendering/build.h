@@ -22,10 +22,10 @@ BuildStage first_difference(const Options& before, const Options& options);
 // `options` with what takes a build as it is in `built`.
 Options keep_built(const Options& built, Options options);
 
-// Builds from `first` on and takes the rest from `before`, which is null for a build from the scene on. A
-// render that is resumed goes on where it was. Throws UserError for a shader that does not compile,
-// DeviceError for a backend that the device lacks, and DeviceFailure for what does not fit into its memory.
-Build make_build(const Device& device, const Chapter& chapter, RenderJob job,
-                 BuildStage first = BuildStage::scene, const Build* before = nullptr);
+// Builds from `first` on and takes the rest from `before`, which is null for a build from the scene on. A render that is resumed
+// goes on where it was. Throws UserError for a shader that does not compile, DeviceError for a backend that the device lacks, and
+// DeviceFailure for what does not fit into its memory.
+Build make_build(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first = BuildStage::scene,
+                 const Build* before = nullptr);
 
 }  // namespace lab

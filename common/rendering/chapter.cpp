@@ -11,19 +11,17 @@
 namespace lab {
 namespace {
 
-// All options that chapters may have: name, help, parameter, default, smallest and largest number. The
-// defaults are measured, see docs/results.md.
+// All options that chapters may have: name, help, parameter, default, smallest and largest number. The defaults are measured, see
+// docs/results.md.
 const std::vector<ChapterOption>& chapter_options() {
     using Parameters = RenderParameters;
     static const std::vector<ChapterOption> all{
         {"--splitting-factor", "Branches in which a path goes on", &Parameters::splitting_factor, 4, 1, 1024},
-        {"--survival-cap",
-         "Largest survival probability of Russian roulette; with 1, paths among white walls never end",
+        {"--survival-cap", "Largest survival probability of Russian roulette; with 1, paths among white walls never end",
          &Parameters::survival_cap, 0.95, 0.001, 1},
         {"--survival-weight", "Throughput below which Russian roulette ends paths, and which survivors have",
          &Parameters::survival_weight, 0.5, 0.001, 1},
-        {"--roulette-start", "Bounce at which Russian roulette begins", &Parameters::roulette_start, 3, 1,
-         1000000}};
+        {"--roulette-start", "Bounce at which Russian roulette begins", &Parameters::roulette_start, 3, 1, 1000000}};
     return all;
 }
 
@@ -32,8 +30,7 @@ std::vector<ChapterOption> read_options(const JsonObject& chapter) {
     if (!chapter.has("options")) return options;
     for (const nlohmann::json& name : chapter.array("options")) {
         const auto& all = chapter_options();
-        const auto found =
-            std::find_if(all.begin(), all.end(), [&](const auto& o) { return name == o.name; });
+        const auto found = std::find_if(all.begin(), all.end(), [&](const auto& o) { return name == o.name; });
         if (found == all.end()) {
             std::string known;
             for (const ChapterOption& option : all) known += (known.empty() ? "" : ", ") + option.name;
@@ -48,11 +45,9 @@ std::vector<Strategy> read_strategies(const JsonObject& chapter) {
     std::vector<Strategy> strategies;
     if (!chapter.has("strategies")) return strategies;
     for (const nlohmann::json& name : chapter.array("strategies")) {
-        const auto found =
-            std::find_if(all_strategies.begin(), all_strategies.end(),
-                         [&](Strategy strategy) { return name == to_string(strategy); });
-        if (found == all_strategies.end())
-            chapter.fail("strategies", "has " + name.dump() + ": use both, light, bounces");
+        const auto found = std::find_if(all_strategies.begin(), all_strategies.end(),
+                                        [&](Strategy strategy) { return name == to_string(strategy); });
+        if (found == all_strategies.end()) chapter.fail("strategies", "has " + name.dump() + ": use both, light, bounces");
         strategies.push_back(*found);
     }
     return strategies;
@@ -64,8 +59,7 @@ std::vector<std::string> chapter_folders() {
     std::vector<std::string> names;
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator(project_folder() / "chapters", none))
-        if (std::filesystem::exists(entry.path() / "chapter.json"))
-            names.push_back(entry.path().filename().string());
+        if (std::filesystem::exists(entry.path() / "chapter.json")) names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -81,10 +75,9 @@ std::vector<std::string> course_chapters() {
 Chapter load_chapter(const std::string& name) {
     const auto file = project_folder() / "chapters" / name / "chapter.json";
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
-    const JsonObject root(
-        content, file.string(), "the chapter",
-        {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length",
-         "dielectrics", "low_discrepancy", "options", "check"});
+    const JsonObject root(content, file.string(), "the chapter",
+                          {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics",
+                           "low_discrepancy", "options", "check"});
     // What ./lab check renders: tools/check/grading.py reads it.
     if (root.has("check")) root.object("check", {"samples", "references", "other_references", "gains_over"});
     const Chapter defaults;

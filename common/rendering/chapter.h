@@ -1,5 +1,4 @@
-// A chapter is data and a shader: a folder of chapters/ with chapter.json, which says what it is, and
-// path_trace.glsl.
+// A chapter is data and a shader: a folder of chapters/ with chapter.json, which says what it is, and path_trace.glsl.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -20,8 +19,8 @@ struct ChapterOption {
     double low, high;  // what is accepted, both included
 };
 
-// What chapter.json says, under the same names. Only the title must be there. It may also have "check", for
-// ./lab check: the "samples" of a run, and the "references" whose scenes show what the shader does.
+// What chapter.json says, under the same names. Only the title must be there. It may also have "check", for ./lab check: the
+// "samples" of a run, and the "references" whose scenes show what the shader does.
 struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help
@@ -30,7 +29,7 @@ struct Chapter {
     bool light_probe_sampling = false;          // light samples go to a probe, too
     bool unlimited_path_length = false;         // whatever the scene says; --max-path-length still limits it
     bool dielectrics = false;                   // whether its estimator handles them
-    bool low_discrepancy = false;  // has points of its own, random_words.glsl, that depend on each other
+    bool low_discrepancy = false;               // has points of its own, random_words.glsl, that depend on each other
     std::vector<ChapterOption> options = {};
 };
 
@@ -40,8 +39,8 @@ std::vector<std::string> chapter_folders();
 // The same without copies, in which people try things: of chapters with the same title only the first.
 std::vector<std::string> course_chapters();
 
-// The chapter in a folder of chapters/. Throws UserError if its chapter.json is missing or wrong, with the
-// key and what is possible.
+// The chapter in a folder of chapters/. Throws UserError if its chapter.json is missing or wrong, with the key and what is
+// possible.
 Chapter load_chapter(const std::string& name);
 
 }  // namespace lab

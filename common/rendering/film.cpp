@@ -11,8 +11,7 @@ constexpr size_t alignment = 256;
 }  // namespace
 
 uint32_t count_blocks(uvec2 image_size) {
-    return ((image_size.x + BLOCK_WIDTH - 1) / BLOCK_WIDTH) *
-           ((image_size.y + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
+    return ((image_size.x + BLOCK_WIDTH - 1) / BLOCK_WIDTH) * ((image_size.y + BLOCK_HEIGHT - 1) / BLOCK_HEIGHT);
 }
 
 MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
@@ -31,8 +30,8 @@ Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_win
     : width_(width),
       height_(height),
       buffer_(device, memory_need(width, height)),
-      window_size_(std::min({buffer_.size(), max_window / alignment * alignment,
-                             device.limits().maxStorageBufferRange / alignment * alignment})) {
+      window_size_(std::min(
+          {buffer_.size(), max_window / alignment * alignment, device.limits().maxStorageBufferRange / alignment * alignment})) {
     clear();
 }
 
@@ -49,8 +48,7 @@ FilmWindow Film::window_from(uint32_t block) const {
     const size_t offset = std::min(first_row * width_ * sizeof(FilmPixel), buffer_.size() - window_size_);
     const size_t end_row = (offset + window_size_) / sizeof(FilmPixel) / width_;
     return {static_cast<uint32_t>(offset / sizeof(FilmPixel)),
-            end_row < height_ ? static_cast<uint32_t>(end_row) / BLOCK_HEIGHT * blocks_per_row
-                              : count_blocks({width_, height_})};
+            end_row < height_ ? static_cast<uint32_t>(end_row) / BLOCK_HEIGHT * blocks_per_row : count_blocks({width_, height_})};
 }
 
 void Film::clear() { buffer_.clear(); }
@@ -67,8 +65,6 @@ FilmImage Film::read() const {
     return image;
 }
 
-void Film::write(const FilmImage& image) {
-    buffer_.write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
-}
+void Film::write(const FilmImage& image) { buffer_.write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel)); }
 
 }  // namespace lab

@@ -25,11 +25,9 @@ CLI::Validator within(double low, double high, const std::string& meaning) {
 CLI::Validator whole_number(uint32_t low, uint32_t high) {
     const std::string meaning = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
     return {[=](std::string& text) -> std::string {
-                const bool digits =
-                    !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+                const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
                 if (digits) text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
-                if (digits && text.size() <= 10 && std::stoull(text) >= low && std::stoull(text) <= high)
-                    return {};
+                if (digits && text.size() <= 10 && std::stoull(text) >= low && std::stoull(text) <= high) return {};
                 return "'" + text + "' is not " + meaning;
             },
             meaning};
@@ -42,15 +40,12 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
     const auto whole = [&](const char* name, auto& value, uint32_t low, uint32_t high, const char* help) {
         app.add_option(name, value, help)->transform(whole_number(low, high));
     };
-    const auto number = [&](const char* name, auto& value, double low, double high, const char* meaning,
-                            const char* help) {
+    const auto number = [&](const char* name, auto& value, double low, double high, const char* meaning, const char* help) {
         app.add_option(name, value, help)->check(within(low, high, meaning));
     };
-    const auto vector = [&](const char* name, std::optional<vec3>& value, double low, const char* meaning,
-                            const char* type, const char* help) {
-        const auto set = [&value](const std::array<float, 3>& given) {
-            value = {given[0], given[1], given[2]};
-        };
+    const auto vector = [&](const char* name, std::optional<vec3>& value, double low, const char* meaning, const char* type,
+                            const char* help) {
+        const auto set = [&value](const std::array<float, 3>& given) { value = {given[0], given[1], given[2]}; };
         app.add_option_function<std::array<float, 3>>(name, set, help)
             ->delimiter(',')
             ->check(within(low, 1e30, meaning))
@@ -66,16 +61,12 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
     whole("--height", image.height, 1, max_image_extent, "Pixels in a column");
     whole("--samples", appearance.sample_count, 1, max_count, "Samples per pixel");
     whole("--seed", samples.seed, 0, max_count, "Chooses the random numbers");
-    whole("--first-sample", samples.first_sample, 0, max_count,
-          "Index of the first sample: splits a render into ranges");
-    whole("--max-path-length", light.max_path_length, 0, path_length_limit,
-          "Bounces after which a path ends; 0: emission only");
-    whole("--only-path-length", light.only_path_length, 0, path_length_limit,
-          "Show only light after exactly this many bounces");
+    whole("--first-sample", samples.first_sample, 0, max_count, "Index of the first sample: splits a render into ranges");
+    whole("--max-path-length", light.max_path_length, 0, path_length_limit, "Bounces after which a path ends; 0: emission only");
+    whole("--only-path-length", light.only_path_length, 0, path_length_limit, "Show only light after exactly this many bounces");
     number("--target-error", run.target_error, 1e-12, 1e12, "a positive number",
            "Stop when the relative error is below this: 0.01 is 1 %");
-    number("--time-limit", run.time_limit, 1e-3, 1e9, "a positive number of seconds",
-           "Stop after this many seconds");
+    number("--time-limit", run.time_limit, 1e-3, 1e9, "a positive number of seconds", "Stop after this many seconds");
     place("--camera-position", camera.position, "Where the camera stands");
     place("--camera-target", camera.target, "What it looks at");
     place("--camera-up", camera.up, "What it holds upwards");
@@ -85,15 +76,12 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
            "Radiance of the sky; with a light probe its factor");
     app.add_flag("--specular", scene.specular, "Use the Phong lobe Ks, Ns of the materials");
     app.add_option("--view", view, "Show something else than radiance")->check(CLI::IsMember(view_names));
-    app.add_option("--output", run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
-        ->allow_extra_args(false);
-    number("--exposure", appearance.exposure, -100, 100, "a number from -100 to 100",
-           "Brightness of PNG and JPG in stops");
+    app.add_option("--output", run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")->allow_extra_args(false);
+    number("--exposure", appearance.exposure, -100, 100, "a number from -100 to 100", "Brightness of PNG and JPG in stops");
     app.add_option("--reference", run.reference, "EXR to compare with");
     app.add_option("--report", run.report, "Error against samples and seconds (.json or .csv)");
     app.add_option("--resume", run.resume, "EXR of an earlier run to continue");
-    number("--save-every", run.save_every, 1e-3, 1e9, "a positive number of seconds",
-           "Write the outputs every so many seconds");
+    number("--save-every", run.save_every, 1e-3, 1e9, "a positive number of seconds", "Write the outputs every so many seconds");
     app.add_option("--backend", run.backend, "How rays are traced")
         ->check(CLI::IsMember({"auto", "pipeline", "query", "compute"}));
     app.add_option("--device", run.device, "Number or part of the name of the device");
@@ -132,9 +120,8 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
         default_value << option.default_value;
         app.add_option(option.name, options.samples.chapter_values[i], option.help)
             ->default_str(default_value.str())
-            ->transform(
-                is_whole ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
-                         : within(option.low, option.high, range.str()));
+            ->transform(is_whole ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
+                                 : within(option.low, option.high, range.str()));
     }
 }
 
@@ -149,21 +136,20 @@ std::filesystem::path find_scene(const std::string& name) {
 }  // namespace
 
 bool needs_no_window(const Options& options) {
-    return !options.run.report.empty() || !options.run.reference.empty() || options.run.target_error ||
-           options.run.time_limit || options.run.save_every;
+    return !options.run.report.empty() || !options.run.reference.empty() || options.run.target_error || options.run.time_limit ||
+           options.run.save_every;
 }
 
 const std::vector<View>& views() {
-    static const std::vector<View> all{
-        {"normals", "VIEW_NORMALS", DisplayTransform::as_is},
-        {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
-        {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
-        {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
-        {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
-        {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
-        {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
-        {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum},
-        {"idle-lanes", "", DisplayTransform::as_is, "observation/idle_lanes/path_trace.glsl"}};
+    static const std::vector<View> all{{"normals", "VIEW_NORMALS", DisplayTransform::as_is},
+                                       {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
+                                       {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
+                                       {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
+                                       {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
+                                       {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
+                                       {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
+                                       {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum},
+                                       {"idle-lanes", "", DisplayTransform::as_is, "observation/idle_lanes/path_trace.glsl"}};
     return all;
 }
 
@@ -172,8 +158,7 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
     std::string scene = chapter.default_scene, view;
     CLI::App app(chapter.title, chapter.name);
     app.set_version_flag("--version", chapter.name + " " LAB_VERSION);
-    app.add_option("scene", scene, "Scene file (.json or .obj) or the name of one in assets/scenes")
-        ->capture_default_str();
+    app.add_option("scene", scene, "Scene file (.json or .obj) or the name of one in assets/scenes")->capture_default_str();
     add_options(app, options, view);
     add_chapter_options(app, chapter, options);
     try {

@@ -10,8 +10,8 @@
 
 namespace lab {
 
-// A picture of something else than radiance: shaders/observation/view.glsl with `define`, or the file `observer` of
-// shaders/, which watches the chapter's estimator.
+// A picture of something else than radiance: shaders/observation/view.glsl with `define`, or the file `observer` of shaders/,
+// which watches the chapter's estimator.
 struct View {
     std::string name;
     std::string define;
@@ -104,8 +104,8 @@ struct Options {
 // Whether options ask for measurements or limits, which only runs without a window have.
 bool needs_no_window(const Options& options);
 
-// Parses the command line. Prints and returns nothing for --help and --version. Throws UserError for anything
-// it does not understand.
+// Parses the command line. Prints and returns nothing for --help and --version. Throws UserError for anything it does not
+// understand.
 std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments);
 
 }  // namespace lab

@@ -9,8 +9,7 @@
 
 namespace lab {
 
-void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record,
-                   const Options& options) {
+void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record, const Options& options) {
     const std::string ending = lower_case_extension(file);
     if (ending == ".exr")
         write_film(file, film, record);
@@ -36,8 +35,7 @@ void keep_after(const std::exception& error, const FilmImage& film, const std::f
                         " samples a pixel; --resume continues");
 }
 
-void write_each(const std::vector<std::filesystem::path>& files,
-                const std::function<void(const std::filesystem::path&)>& write) {
+void write_each(const std::vector<std::filesystem::path>& files, const std::function<void(const std::filesystem::path&)>& write) {
     std::optional<UserError> failure;
     for (const auto& file : files) try {
             write(file);
@@ -53,10 +51,7 @@ using json = nlohmann::ordered_json;
 
 // A row with the same fields in JSON and CSV; unknown errors are null.
 json to_json(const ReportRow& row) {
-    json result{{"samples", row.samples},
-                {"seconds", row.seconds},
-                {"device_seconds", row.device_seconds},
-                {"rays", row.rays}};
+    json result{{"samples", row.samples}, {"seconds", row.seconds}, {"device_seconds", row.device_seconds}, {"rays", row.rays}};
     const auto set = [&](const char* name, double ErrorMetrics::*metric) {
         result[name] = row.error ? json((*row.error).*metric) : json();
     };
@@ -91,8 +86,7 @@ std::string to_csv(const json& rows) {
 }  // namespace
 
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationStructure& acceleration_structure, ErrorSource source,
-                  const std::vector<ReportRow>& rows) {
+                  const AccelerationStructure& acceleration_structure, ErrorSource source, const std::vector<ReportRow>& rows) {
     json report{{"chapter", record.chapter},
                 {"scene", record.scene},
                 {"scene_hash", record.scene_hash},
@@ -111,8 +105,7 @@ void write_report(const std::filesystem::path& file, const FilmImage& image, con
     for (const auto& row : rows) report["rows"].push_back(to_json(row));
     const bool is_csv = lower_case_extension(file) == ".csv";
     // Scene names may be any bytes; JSON is UTF-8.
-    const std::string text =
-        is_csv ? to_csv(report["rows"]) : report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    const std::string text = is_csv ? to_csv(report["rows"]) : report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
     write_file(file, text);
 }
 

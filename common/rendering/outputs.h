@@ -13,17 +13,14 @@
 namespace lab {
 
 // Writes the film in the format of the file's extension. --view and --exposure affect PNG and JPG.
-void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record,
-                   const Options& options);
+void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record, const Options& options);
 
-// After a failure of device or memory: calls write() for the film that was last read, then throws
-// DeviceFailure with cause and remains. Rethrows other errors.
-[[noreturn]] void keep_after(const std::exception& error, const FilmImage& film,
-                             const std::function<void()>& write);
+// After a failure of device or memory: calls write() for the film that was last read, then throws DeviceFailure with cause and
+// remains. Rethrows other errors.
+[[noreturn]] void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write);
 
 // Writes all files even if some fail; then throws the first UserError.
-void write_each(const std::vector<std::filesystem::path>& files,
-                const std::function<void(const std::filesystem::path&)>& write);
+void write_each(const std::vector<std::filesystem::path>& files, const std::function<void(const std::filesystem::path&)>& write);
 
 struct ReportRow {
     uint32_t samples = 0;       // per pixel
@@ -39,7 +36,6 @@ enum class ErrorSource { reference, halves };
 
 // Writes .json or .csv.
 void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationStructure& acceleration_structure, ErrorSource source,
-                  const std::vector<ReportRow>& rows);
+                  const AccelerationStructure& acceleration_structure, ErrorSource source, const std::vector<ReportRow>& rows);
 
 }  // namespace lab

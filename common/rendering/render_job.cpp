@@ -16,8 +16,8 @@ FilmFile load_earlier_run(const RenderJob& job) {
     FilmFile earlier = read_film(options.run.resume);
     if (options.samples.first_sample != 0 && options.samples.first_sample != earlier.record.first_sample)
         throw UserError("--first-sample " + std::to_string(options.samples.first_sample) + " does not fit " +
-                        options.run.resume.string() + ", which starts at sample " +
-                        std::to_string(earlier.record.first_sample) + ": leave it out");
+                        options.run.resume.string() + ", which starts at sample " + std::to_string(earlier.record.first_sample) +
+                        ": leave it out");
     const FilmFile wanted{{job.parameters.image_size.x, job.parameters.image_size.y, {}}, job.record};
     require_same_render(earlier, wanted, options.run.resume.string(), "this command");
     return earlier;
@@ -25,8 +25,7 @@ FilmFile load_earlier_run(const RenderJob& job) {
 
 void check_sample_count(const RenderJob& job) {
     if (uint64_t{job.record.first_sample} + job.samples > uint64_t{1} << 32)
-        throw UserError(
-            "--first-sample + --samples is above 2^32: there are no more random numbers than that");
+        throw UserError("--first-sample + --samples is above 2^32: there are no more random numbers than that");
 }
 
 void check_halves(const RenderJob& job) {
@@ -47,9 +46,8 @@ void check_scene(const Chapter& chapter, const Scene& scene) {
 std::optional<ErrorMetrics> RenderJob::error_from(const FilmImage& half, const FilmImage& whole) const {
     const uint32_t before = half.min_samples();
     if (!has_independent_halves() || before == 0 || whole.min_samples() != 2 * before) return std::nullopt;
-    if (low_discrepancy && !std::has_single_bit(before)) return std::nullopt;  // they share a scramble
-    if (whole.mean_radiance() == std::array<double, 3>{})
-        return std::nullopt;  // black halves agree by chance
+    if (low_discrepancy && !std::has_single_bit(before)) return std::nullopt;   // they share a scramble
+    if (whole.mean_radiance() == std::array<double, 3>{}) return std::nullopt;  // black halves agree by chance
     return estimate_error(half.mean(), samples_after(half, whole).mean());
 }
 

@@ -8,12 +8,11 @@
 namespace lab {
 namespace {
 
-// Workgroups that keep a device busy that runs 4000 at a time. In images with fewer blocks, several
-// workgroups share a block. This is a define, because the mere possibility slows large images down
-// (docs/backends.md).
+// Workgroups that keep a device busy that runs 4000 at a time. In images with fewer blocks, several workgroups share a block.
+// This is a define, because the mere possibility slows large images down (docs/backends.md).
 constexpr uint32_t enough_groups = 8192;
-// Samples per workgroup and pixel that wait to be added to the film. More would let threads wait less for
-// others at the end; all must fit into 128 MiB, the largest binding of some devices.
+// Samples per workgroup and pixel that wait to be added to the film. More would let threads wait less for others at the end; all
+// must fit into 128 MiB, the largest binding of some devices.
 constexpr uint32_t samples_per_group = 20;
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
@@ -59,12 +58,10 @@ std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
     return needs;
 }
 
-Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
-                   const Estimator& estimator, const RenderParameters& parameters,
-                   std::span<const Binding> further_bindings, size_t max_film_window)
+Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
+                   const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
-      parameters_(device, std::span<const RenderParameters>(&parameters, 1),
-                  vk::BufferUsageFlagBits::eUniformBuffer),
+      parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window) {
@@ -75,8 +72,8 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
-        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "engine/add_samples.comp"},
-                       bindings, sizeof(DispatchParameters));
+        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "engine/add_samples.comp"}, bindings,
+                       sizeof(DispatchParameters));
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
     tracer_ = acceleration_structure.make_tracer(configured, bindings);
@@ -85,8 +82,7 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
 uint32_t Renderer::block_count() const { return count_blocks({film_.width(), film_.height()}); }
 
 double Renderer::samples() const {
-    return finished_samples_ +
-           static_cast<double>(next_block_) * (pass_samples_ - finished_samples_) / block_count();
+    return finished_samples_ + static_cast<double>(next_block_) * (pass_samples_ - finished_samples_) / block_count();
 }
 
 void Renderer::restart(const RenderParameters& parameters) {
@@ -103,19 +99,16 @@ void Renderer::resume(const FilmImage& image) {
     next_block_ = 0;
 }
 
-void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks,
-                      const FilmWindow& window) const {
+void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const {
     if (!adder_) {
-        tracer_->record(commands, {next_block_, 1, 0, pass_samples_, window.first_pixel}, blocks,
-                        window.offset());
+        tracer_->record(commands, {next_block_, 1, 0, pass_samples_, window.first_pixel}, blocks, window.offset());
         return;
     }
     const uint32_t groups_per_block = enough_groups / blocks;
     for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
         const uint32_t added = std::min(groups_per_block * samples_per_group, pass_samples_ - samples);
         samples += added;
-        const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples,
-                                          window.first_pixel};
+        const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples, window.first_pixel};
         tracer_->record(commands, dispatch, blocks, window.offset());
         wait_for_writes(commands);
         adder_->record(commands, &dispatch, blocks, window.offset());
@@ -125,8 +118,7 @@ void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks,
 
 bool Renderer::advance(uint32_t target_samples) {
     if (finished_samples_ >= target_samples) return false;
-    // A pass brings all blocks to pass_samples_: several samples at a time if all blocks fit into one
-    // dispatch.
+    // A pass brings all blocks to pass_samples_: several samples at a time if all blocks fit into one dispatch.
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
         const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, 1.0));
@@ -136,14 +128,13 @@ bool Renderer::advance(uint32_t target_samples) {
     const double fitting = std::max(blocks_per_dispatch_ / step, 1.0);
     const uint32_t group_limit = device_->limits().maxComputeWorkGroupCount[0];
     const FilmWindow window = film_.window_from(next_block_);
-    const uint32_t count = static_cast<uint32_t>(std::min(
-        {fitting, static_cast<double>(group_limit), static_cast<double>(window.end_block - next_block_)}));
+    const uint32_t count = static_cast<uint32_t>(
+        std::min({fitting, static_cast<double>(group_limit), static_cast<double>(window.end_block - next_block_)}));
 
     const auto counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = Clock::now();
-    device_seconds_ +=
-        device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
+    device_seconds_ += device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
     const double seconds = seconds_since(start);
     for (const uint32_t counter : counters) rays_ += counter;
 

@@ -13,8 +13,7 @@ uvec2 seed_key(uint32_t seed);
 // The first bounce of Russian roulette where there is none.
 inline constexpr uint32_t no_roulette = UINT32_MAX;
 
-// Parameters to render a scene as its file asks, with seed 1, without splitting and roulette; optionally from
-// another camera.
+// Parameters to render a scene as its file asks, with seed 1, without splitting and roulette; optionally from another camera.
 RenderParameters default_parameters(const Scene& scene, uvec2 image_size);
 RenderParameters default_parameters(const Scene& scene, const CameraPose& camera, uvec2 image_size);
 
@@ -23,15 +22,15 @@ class Renderer {
     // Memory of a renderer for this image size.
     static std::vector<MemoryNeed> memory_needs(uvec2 image_size);
 
-    // Device and acceleration structure must outlive the renderer. `further_bindings` are the estimator's
-    // own, `max_film_window` is Film's.
-    Renderer(const Device& device, const AccelerationStructure& acceleration_structure,
-             const Estimator& estimator, const RenderParameters& parameters,
-             std::span<const Binding> further_bindings = {}, size_t max_film_window = SIZE_MAX);
+    // Device and acceleration structure must outlive the renderer. `further_bindings` are the estimator's own, `max_film_window`
+    // is Film's.
+    Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
+             const RenderParameters& parameters, std::span<const Binding> further_bindings = {},
+             size_t max_film_window = SIZE_MAX);
 
-    // Makes one dispatch of about `dispatch_seconds` towards `target_samples` per pixel; true while more are
-    // needed. Short dispatches keep driver watchdogs quiet and the program responsive: a sample of a large
-    // image can take a minute on a slow device.
+    // Makes one dispatch of about `dispatch_seconds` towards `target_samples` per pixel; true while more are needed. Short
+    // dispatches keep driver watchdogs quiet and the program responsive: a sample of a large image can take a minute on a slow
+    // device.
     bool advance(uint32_t target_samples);
 
     Film& film() { return film_; }

@@ -15,15 +15,13 @@ std::vector<Reference> references_of(const fs::path& scene_file) {
     std::vector<fs::path> files;
     std::error_code none;  // a project without references has no verdict
     for (const auto& entry : fs::directory_iterator(project_folder() / "assets" / "references", none))
-        if (entry.path().extension() == ".exr" &&
-            entry.path().filename().string().starts_with(scene_file.stem().string()))
+        if (entry.path().extension() == ".exr" && entry.path().filename().string().starts_with(scene_file.stem().string()))
             files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     std::vector<Reference> references;
     for (const auto& file : files) {
         Reference reference = read_reference(file);
-        if (reference.attributes["scene"] == scene_file.filename())
-            references.push_back(std::move(reference));
+        if (reference.attributes["scene"] == scene_file.filename()) references.push_back(std::move(reference));
     }
     return references;
 }
@@ -60,10 +58,8 @@ std::variant<Reference, std::string> find_reference(const Scene& scene, const Re
         }
         if (!reference.variance) return "the reference does not say how exact it is";
         const uvec2 size(reference.mean.width, reference.mean.height);
-        if (parameters.image_size % size != uvec2(0) ||
-            parameters.image_size.x / size.x != parameters.image_size.y / size.y)
-            return "the reference has " + size_text(size) +
-                   " pixels, the image is no whole number of times larger";
+        if (parameters.image_size % size != uvec2(0) || parameters.image_size.x / size.x != parameters.image_size.y / size.y)
+            return "the reference has " + size_text(size) + " pixels, the image is no whole number of times larger";
         const std::string difference = difference_from_file(scene, parameters);
         if (!difference.empty()) return difference;
         return std::move(reference);
@@ -80,12 +76,11 @@ std::string mismatch(const Reference& reference, const Scene& scene, const Rende
     };
     const std::string hash = hexadecimal(scene.hash), length = std::to_string(parameters.max_path_length);
     if (value("scene_hash", hash) != hash)
-        return "shows " + value("scene", "another scene") +
-               ", the image shows another scene or another version of it";
+        return "shows " + value("scene", "another scene") + ", the image shows another scene or another version of it";
     const std::string reference_length = value("max_path_length", length);
     if (reference_length != length)
-        return "has paths of at most " + reference_length + " bounces, the image has paths of at most " +
-               length + ": use --max-path-length " + reference_length;
+        return "has paths of at most " + reference_length + " bounces, the image has paths of at most " + length +
+               ": use --max-path-length " + reference_length;
     return "";
 }
 

@@ -34,8 +34,7 @@ double value_of(const Chapter& chapter, size_t i, const Options& options) {
 double largest_albedo(const Scene& scene) {
     float largest = 0;
     for (const Material& material : scene.materials) {
-        const vec3 albedo =
-            material.refractive_index > 0 ? vec3(1) : material.diffuse_albedo + material.specular_albedo;
+        const vec3 albedo = material.refractive_index > 0 ? vec3(1) : material.diffuse_albedo + material.specular_albedo;
         largest = std::max({largest, albedo.r, albedo.g, albedo.b});
     }
     return largest;
@@ -51,9 +50,7 @@ CameraPose camera_of(const Scene& scene, const Options& options) {
             .vertical_fov = wanted.vertical_fov.value_or(scene.camera.vertical_fov)};
 }
 
-vec3 background_of(const Scene& scene, const Options& options) {
-    return options.light.background.value_or(scene.background);
-}
+vec3 background_of(const Scene& scene, const Options& options) { return options.light.background.value_or(scene.background); }
 
 Strategy strategy_of(const Chapter& chapter, const Options& options) {
     if (chapter.strategies.empty()) return Strategy::bounces;
@@ -70,8 +67,7 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
     parameters.seed_key = seed_key(options.samples.seed);
     parameters.first_sample = options.samples.first_sample;
     parameters.max_path_length = max_path_length(chapter, scene, options);
-    if (options.light.only_path_length)
-        parameters.only_path_length = static_cast<int>(*options.light.only_path_length);
+    if (options.light.only_path_length) parameters.only_path_length = static_cast<int>(*options.light.only_path_length);
     for (size_t i = 0; i < chapter.options.size(); ++i)
         std::visit(
             [&](auto member) {
@@ -84,8 +80,8 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
 
 std::string camera_flags(const CameraPose& pose, char separator) {
     return "--camera-position" + (separator + exact_text(pose.position)) + " --camera-target" + separator +
-           exact_text(pose.target) + " --camera-up" + separator + exact_text(pose.up) + " --vertical-fov" +
-           separator + exact_text(pose.vertical_fov);
+           exact_text(pose.target) + " --camera-up" + separator + exact_text(pose.up) + " --vertical-fov" + separator +
+           exact_text(pose.vertical_fov);
 }
 
 std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
@@ -97,18 +93,14 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     for (size_t i = 0; i < chapter.options.size(); ++i)
         text << ' ' << chapter.options[i].name << ' ' << value_of(chapter, i, options);
     const Strategy strategy = strategy_of(chapter, options);
-    if (!chapter.strategies.empty() && strategy != chapter.strategies.front())
-        text << " --strategy " << to_string(strategy);
+    if (!chapter.strategies.empty() && strategy != chapter.strategies.front()) text << " --strategy " << to_string(strategy);
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
-    text << ' ' << camera_flags(camera_of(scene, options), ' ') << " --background "
-         << exact_text(background_of(scene, options));
+    text << ' ' << camera_flags(camera_of(scene, options), ' ') << " --background " << exact_text(background_of(scene, options));
     return text.str();
 }
 
-Estimator estimator_of(const Chapter& chapter) {
-    return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"};
-}
+Estimator estimator_of(const Chapter& chapter) { return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"}; }
 
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
@@ -119,8 +111,7 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
         estimator.file = shared / view->observer;
         return estimator;
     }
-    if (strategy_of(chapter, options) == Strategy::light)
-        estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
+    if (strategy_of(chapter, options) == Strategy::light) estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
     if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
     return estimator;
 }
@@ -129,14 +120,11 @@ std::string safety_limit_text(const Scene& scene) {
     const double albedo = largest_albedo(scene);
     char text[160];
     if (albedo < 1)
-        std::snprintf(text, sizeof text,
-                      "unlimited; beyond %u bounces there is at most %.0e of the brightest emission",
+        std::snprintf(text, sizeof text, "unlimited; beyond %u bounces there is at most %.0e of the brightest emission",
                       safety_limit, std::max(std::pow(albedo, safety_limit + 1) / (1 - albedo), 1e-300));
     else
-        std::snprintf(
-            text, sizeof text,
-            "unlimited but for %u bounces; surfaces that absorb nothing leave no bound for the rest",
-            safety_limit);
+        std::snprintf(text, sizeof text, "unlimited but for %u bounces; surfaces that absorb nothing leave no bound for the rest",
+                      safety_limit);
     return text;
 }
 

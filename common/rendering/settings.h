@@ -19,10 +19,8 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
 // The pose as options of the command line, with this character before each value. The numbers are exact.
 std::string camera_flags(const CameraPose& pose, char separator);
 
-// The options that decide what is estimated and how, in a fixed order: renders with equal settings can be
-// joined.
-std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
-                          const Options& options);
+// The options that decide what is estimated and how, in a fixed order: renders with equal settings can be joined.
+std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene, const Options& options);
 
 // The chapter's shader and what it is compiled with.
 Estimator estimator_of(const Chapter& chapter);
@@ -33,8 +31,8 @@ Strategy strategy_of(const Chapter& chapter, const Options& options);
 // The chapter's estimator, or what --view and --split-every-hit put in its place.
 Estimator make_estimator(const Chapter& chapter, const Options& options);
 
-// What a chapter without a limit of the path length leaves out beyond its safety limit, in one line. The
-// radiance that arrives after m bounces is at most a^m times the brightest emission, a the largest albedo.
+// What a chapter without a limit of the path length leaves out beyond its safety limit, in one line. The radiance that arrives
+// after m bounces is at most a^m times the brightest emission, a the largest albedo.
 std::string safety_limit_text(const Scene& scene);
 
 }  // namespace lab

@@ -13,16 +13,13 @@ using Corners = std::array<std::array<float, 3>, 3>;
 
 constexpr size_t max_searched_triangles = 10'000'000;
 
-bool is_emissive(const Scene& scene, uint32_t triangle) {
-    return scene.material_of(triangle).emission != vec3(0);
-}
+bool is_emissive(const Scene& scene, uint32_t triangle) { return scene.material_of(triangle).emission != vec3(0); }
 
-// Rotates the second triangle's corners to start with the first triangle's first, so that a point has the
-// same barycentric coordinates in both, exchanged.
+// Rotates the second triangle's corners to start with the first triangle's first, so that a point has the same barycentric
+// coordinates in both, exchanged.
 void align(Scene& scene, uint32_t first, uint32_t second) {
     uvec3& corners = scene.triangles[second];
-    while (scene.corner(second, 0) != scene.corner(first, 0))
-        corners = uvec3(corners.y, corners.z, corners.x);
+    while (scene.corner(second, 0) != scene.corner(first, 0)) corners = uvec3(corners.y, corners.z, corners.x);
 }
 
 // A triangle in the place of an emissive one, in the order of preference.
@@ -71,8 +68,7 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
     std::vector<Candidate> places;
     for (uint32_t i = first; i < end; ++i) {
         const Place place = get_place(scene, as_it_is, i);
-        if (std::binary_search(lights.begin(), lights.end(), place.corners))
-            places.push_back({place, !is_emissive(scene, i), i});
+        if (std::binary_search(lights.begin(), lights.end(), place.corners)) places.push_back({place, !is_emissive(scene, i), i});
     }
     std::sort(places.begin(), places.end());
 
@@ -90,9 +86,8 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
     const size_t others = places.size() - kept - 2;  // left out, too
     if (kept + 1 < places.size()) {
         const auto [triangle, other] = first_left_out;
-        scene.warnings.push_back(mesh.file + ":" + std::to_string(lines[triangle - first]) +
-                                 ": lies in the same place as line " + std::to_string(lines[other - first]) +
-                                 ", faces the same way, and one of them emits: left out" +
+        scene.warnings.push_back(mesh.file + ":" + std::to_string(lines[triangle - first]) + ": lies in the same place as line " +
+                                 std::to_string(lines[other - first]) + ", faces the same way, and one of them emits: left out" +
                                  (others > 0 ? ", as " + std::to_string(others) + " others" : ""));
     }
     places.resize(kept + 1);
@@ -147,8 +142,7 @@ std::vector<std::string> coincident_light_warnings(const Scene& scene, const std
     });
 
     std::vector<std::string> warnings;
-    const auto compare = [&](const PlacedLight& light, const Place& place, uint32_t instance,
-                             uint32_t triangle) {
+    const auto compare = [&](const PlacedLight& light, const Place& place, uint32_t instance, uint32_t triangle) {
         const Material& emitter = scene.material_of(light.triangle);
         const Material& other = scene.material_of(triangle);
         const bool is_glass = (emitter.refractive_index > 0) != (other.refractive_index > 0);
@@ -162,14 +156,12 @@ std::vector<std::string> coincident_light_warnings(const Scene& scene, const std
                            ": rays find either by chance, so that chapters may disagree; move one of them");
     };
     for_each_triangle([&](uint32_t instance, uint32_t triangle) {
-        const vec3 corner =
-            scene.instances[instance].object_to_world * glm::vec4(scene.corner(triangle, 0), 1);
-        if (glm::any(glm::lessThan(corner, bounds.low)) || glm::any(glm::greaterThan(corner, bounds.high)))
-            return;
+        const vec3 corner = scene.instances[instance].object_to_world * glm::vec4(scene.corner(triangle, 0), 1);
+        if (glm::any(glm::lessThan(corner, bounds.low)) || glm::any(glm::greaterThan(corner, bounds.high))) return;
         const Place place = get_place(scene, scene.instances[instance], triangle);
-        const auto [begin, end] = std::equal_range(
-            lights.begin(), lights.end(), PlacedLight{place, 0, 0},
-            [](const PlacedLight& a, const PlacedLight& b) { return a.place.corners < b.place.corners; });
+        const auto [begin, end] =
+            std::equal_range(lights.begin(), lights.end(), PlacedLight{place, 0, 0},
+                             [](const PlacedLight& a, const PlacedLight& b) { return a.place.corners < b.place.corners; });
         if (begin == end) return;
         compare(*begin, place, instance, triangle);
         compare(*(end - 1), place, instance, triangle);

@@ -16,14 +16,13 @@ struct Place {
 };
 Place get_place(const Scene& scene, const Instance& instance, uint32_t triangle);
 
-// Resolves coincident lights in the mesh that is being added, the scene's last triangles, which stand in
-// these lines of its file. Of opaque triangles in one place that face the same way, the first emissive one
-// stays, and a warning names what is left out. Two that face opposite ways become a double-sided sheet.
+// Resolves coincident lights in the mesh that is being added, the scene's last triangles, which stand in these lines of its file.
+// Of opaque triangles in one place that face the same way, the first emissive one stays, and a warning names what is left out.
+// Two that face opposite ways become a double-sided sheet.
 void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& lines);
 
-// A line if chance remains: an emissive triangle in the same place as a dielectric one, or as one of another
-// instance that differs in emission or orientation. `lines` has one per triangle. Looks at the first ten
-// million triangles only.
+// A line if chance remains: an emissive triangle in the same place as a dielectric one, or as one of another instance that
+// differs in emission or orientation. `lines` has one per triangle. Looks at the first ten million triangles only.
 std::vector<std::string> coincident_light_warnings(const Scene& scene, const std::vector<uint32_t>& lines);
 
 }  // namespace lab

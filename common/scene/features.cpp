@@ -15,14 +15,10 @@ SceneFeatures features_of(const Scene& scene) {
     features.textures = !scene.textures.empty();
     features.light_probe = scene.light_probe.has_value();
     features.sky = !features.light_probe && scene.background != vec3(0);
-    features.area_lights =
-        any_material([](const Material& material) { return material.emission != vec3(0); });
-    features.specular =
-        any_material([](const Material& material) { return material.specular_albedo != vec3(0); });
-    features.dielectrics =
-        any_material([](const Material& material) { return material.refractive_index > 0; });
-    features.absorption =
-        any_material([](const Material& material) { return material.absorption != vec3(0); });
+    features.area_lights = any_material([](const Material& material) { return material.emission != vec3(0); });
+    features.specular = any_material([](const Material& material) { return material.specular_albedo != vec3(0); });
+    features.dielectrics = any_material([](const Material& material) { return material.refractive_index > 0; });
+    features.absorption = any_material([](const Material& material) { return material.absorption != vec3(0); });
     features.double_sided = !scene.double_sided.empty();
     features.transforms = std::any_of(scene.instances.begin(), scene.instances.end(), is_moved);
     return features;
@@ -30,15 +26,9 @@ SceneFeatures features_of(const Scene& scene) {
 
 std::vector<std::string> SceneFeatures::defines() const {
     const std::pair<bool, const char*> names[] = {
-        {vertex_normals, "FEATURE_VERTEX_NORMALS"},
-        {textures, "FEATURE_TEXTURES"},
-        {sky, "FEATURE_SKY"},
-        {light_probe, "FEATURE_LIGHT_PROBE"},
-        {specular, "FEATURE_SPECULAR"},
-        {dielectrics, "FEATURE_DIELECTRICS"},
-        {absorption, "FEATURE_ABSORPTION"},
-        {double_sided, "FEATURE_DOUBLE_SIDED"},
-        {transforms, "FEATURE_TRANSFORMS"},
+        {vertex_normals, "FEATURE_VERTEX_NORMALS"}, {textures, "FEATURE_TEXTURES"},         {sky, "FEATURE_SKY"},
+        {light_probe, "FEATURE_LIGHT_PROBE"},       {specular, "FEATURE_SPECULAR"},         {dielectrics, "FEATURE_DIELECTRICS"},
+        {absorption, "FEATURE_ABSORPTION"},         {double_sided, "FEATURE_DOUBLE_SIDED"}, {transforms, "FEATURE_TRANSFORMS"},
     };
     std::vector<std::string> present;
     for (const auto& [is_present, name] : names)

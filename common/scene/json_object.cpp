@@ -42,16 +42,14 @@ json parse_json(const std::string& file, const std::string& text) {
     }
 }
 
-JsonObject::JsonObject(const json& value, std::string file, std::string where,
-                       std::initializer_list<const char*> known)
+JsonObject::JsonObject(const json& value, std::string file, std::string where, std::initializer_list<const char*> known)
     : value_(value), file_(std::move(file)), where_(std::move(where)) {
     if (!value.is_object()) throw UserError(file_ + ": " + where_ + " must be an object: {...}");
     for (const auto& [key, unused] : value.items()) {
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         std::string list;
         for (const char* name : known) list += (list.empty() ? "" : ", ") + std::string(name);
-        throw UserError(file_ + ": unknown key " + in_quotes(key) + " in " + where_ + "; known keys are " +
-                        list);
+        throw UserError(file_ + ": unknown key " + in_quotes(key) + " in " + where_ + "; known keys are " + list);
     }
 }
 

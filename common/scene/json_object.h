@@ -12,13 +12,12 @@ namespace lab {
 // Parses JSON. Throws UserError with the line number for syntax errors, and for deep nesting.
 nlohmann::json parse_json(const std::string& file, const std::string& text);
 
-// An object whose keys are read one by one. Functions throw UserError for values of the wrong type or out of
-// range, and return nothing for absent keys. All numbers are finite.
+// An object whose keys are read one by one. Functions throw UserError for values of the wrong type or out of range, and return
+// nothing for absent keys. All numbers are finite.
 class JsonObject {
   public:
     // Errors call the object `where`. Throws UserError if it is no object or has a key that is not `known`.
-    JsonObject(const nlohmann::json& value, std::string file, std::string where,
-               std::initializer_list<const char*> known);
+    JsonObject(const nlohmann::json& value, std::string file, std::string where, std::initializer_list<const char*> known);
 
     bool has(const char* key) const { return value_.contains(key); }
     JsonObject object(const char* key, std::initializer_list<const char*> known) const;

@@ -33,8 +33,7 @@ void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& ligh
         places.emplace_back(get_place(scene, scene.instances[light.instance], light.triangle), places.size());
     std::sort(places.begin(), places.end());
     std::vector<bool> is_first(lights.size(), true);
-    for (size_t i = 1; i < places.size(); ++i)
-        is_first[places[i].second] = places[i].first != places[i - 1].first;
+    for (size_t i = 1; i < places.size(); ++i) is_first[places[i].second] = places[i].first != places[i - 1].first;
     size_t kept = 0;
     for (size_t i = 0; i < lights.size(); ++i)
         if (is_first[i]) lights[kept++] = lights[i];
@@ -44,9 +43,7 @@ void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& ligh
 }  // namespace
 
 LightTable build_light_table(const Scene& scene, double probability) {
-    const auto luminance_of = [&](uint32_t triangle) {
-        return get_luminance(scene.material_of(triangle).emission);
-    };
+    const auto luminance_of = [&](uint32_t triangle) { return get_luminance(scene.material_of(triangle).emission); };
     std::vector<std::vector<uint32_t>> emissive_triangles;  // of each mesh, which may have many instances
     for (const Mesh& mesh : scene.meshes) {
         auto& triangles = emissive_triangles.emplace_back();
@@ -56,9 +53,8 @@ LightTable build_light_table(const Scene& scene, double probability) {
     uint64_t count = 0;
     for (const uint32_t mesh : scene.instance_meshes) count += emissive_triangles[mesh].size();
     if (count > max_light_triangles)
-        throw UserError(
-            scene.file.string() + ": its instances have " + std::to_string(count) +
-            " emissive triangles together, more than 2^24: remove instances or use simpler lights");
+        throw UserError(scene.file.string() + ": its instances have " + std::to_string(count) +
+                        " emissive triangles together, more than 2^24: remove instances or use simpler lights");
 
     LightTable table{.triangles = {}, .materials = scene.materials};
     std::vector<LightTriangle>& lights = table.triangles;
@@ -80,8 +76,7 @@ LightTable build_light_table(const Scene& scene, double probability) {
     for (size_t i = 0; i < lights.size(); ++i) {
         lights[i].threshold = alias_table.entries[i].threshold;
         lights[i].alias = alias_table.entries[i].alias;
-        lights[i].inverse_density =
-            static_cast<float>(areas[i] / (probability * alias_table.probabilities[i]));
+        lights[i].inverse_density = static_cast<float>(areas[i] / (probability * alias_table.probabilities[i]));
     }
     return table;
 }
@@ -118,8 +113,7 @@ AliasTable build_alias_table(std::span<const double> weights) {
         const uint32_t item = small.back();
         small.pop_back();
         // Rounding may leave no large item for the last small ones: the heaviest takes the rest.
-        const uint32_t filler =
-            large.empty() ? static_cast<uint32_t>(heaviest - weights.begin()) : large.back();
+        const uint32_t filler = large.empty() ? static_cast<uint32_t>(heaviest - weights.begin()) : large.back();
         const double quanta = weights[item] > 0 ? std::max(std::floor(share[item] * word_count), 1.0) : 0.0;
         table.entries[item] = {static_cast<uint32_t>(std::min(quanta, word_count - 1)), filler};
         if (large.empty()) continue;
@@ -169,9 +163,8 @@ std::vector<float> filtered_luminances(const Image& probe) {
     in_parallel(height, rows_at_once, [&](size_t begin, size_t end) {
         for (size_t y = begin; y < end; ++y)
             for (size_t x = 0; x < width; ++x)
-                texels[y * width + x] =
-                    static_cast<float>(filtered(rows[(y > 0 ? y - 1 : y) * width + x], rows[y * width + x],
-                                                rows[(y + 1 < height ? y + 1 : y) * width + x]));
+                texels[y * width + x] = static_cast<float>(filtered(rows[(y > 0 ? y - 1 : y) * width + x], rows[y * width + x],
+                                                                    rows[(y + 1 < height ? y + 1 : y) * width + x]));
     });
     return texels;
 }
@@ -188,8 +181,7 @@ Range overlapped(size_t cell, size_t cells, size_t texels) {
 
 std::vector<ProbeCell> build_probe_table(const Image& probe, double probability) {
     const std::vector<float> texels = filtered_luminances(probe);
-    const size_t columns = std::min(probe.width, MAX_PROBE_CELL_COLUMNS),
-                 rows = std::min(probe.height, MAX_PROBE_CELL_ROWS);
+    const size_t columns = std::min(probe.width, MAX_PROBE_CELL_COLUMNS), rows = std::min(probe.height, MAX_PROBE_CELL_ROWS);
     std::vector<double> weights(columns * rows), solid_angles(rows);
     const auto weigh_row = [&](size_t row) {
         // cos a - cos b, which would cancel close to the poles.

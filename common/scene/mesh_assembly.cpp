@@ -39,9 +39,8 @@ bool has_normals(const ObjFile& obj) {
 }
 
 bool has_textures(const ObjFile& obj) {
-    return std::ranges::any_of(obj.triangle_materials, [&](uint32_t material) {
-        return !obj.materials[material].albedo_texture.empty();
-    });
+    return std::ranges::any_of(obj.triangle_materials,
+                               [&](uint32_t material) { return !obj.materials[material].albedo_texture.empty(); });
 }
 
 class Assembly {
@@ -78,8 +77,7 @@ class Assembly {
         }
         if (mesh.triangle_count == 0) throw UserError(obj.file + ": none of its triangles has an area");
         if (dropped > 0)
-            scene_.warnings.push_back(obj.file + ": " + std::to_string(dropped) +
-                                      " triangles without area are left out");
+            scene_.warnings.push_back(obj.file + ": " + std::to_string(dropped) + " triangles without area are left out");
         resolve_coincident_lights(scene_, mesh, lines);
         scene_.meshes.push_back(mesh);
         return lines;
@@ -90,8 +88,8 @@ class Assembly {
     bool add_triangle(const ObjFile& obj, const ObjCorner* source) {
         ObjCorner corners[3] = {source[0], source[1], source[2]};
         const dvec3 origin(obj.positions[corners[0].position]);
-        dvec3 normal = glm::cross(dvec3(obj.positions[corners[1].position]) - origin,
-                                  dvec3(obj.positions[corners[2].position]) - origin);
+        dvec3 normal =
+            glm::cross(dvec3(obj.positions[corners[1].position]) - origin, dvec3(obj.positions[corners[2].position]) - origin);
         if (!has_direction(normal)) return false;
         normal = glm::normalize(normal);
 
@@ -115,8 +113,7 @@ class Assembly {
         return true;
     }
 
-    // Finds or adds a vertex. A corner that takes the geometric normal, which belongs to one triangle, is not
-    // shared.
+    // Finds or adds a vertex. A corner that takes the geometric normal, which belongs to one triangle, is not shared.
     uint32_t add_vertex(const ObjFile& obj, ObjCorner corner, const dvec3& geometric_normal) {
         if (!with_texture_coordinates_) corner.texture_coordinates = ObjCorner::none;
         const auto next = static_cast<uint32_t>(scene_.positions.size());
@@ -127,9 +124,8 @@ class Assembly {
         if (next == ObjCorner::none) throw UserError(obj.file + ": the scene has more than 2^32 vertices");
         scene_.positions.push_back(obj.positions[corner.position]);
         if (with_normals_)
-            scene_.normals.emplace_back(corner.normal == ObjCorner::none
-                                            ? geometric_normal
-                                            : glm::normalize(dvec3(obj.normals[corner.normal])));
+            scene_.normals.emplace_back(corner.normal == ObjCorner::none ? geometric_normal
+                                                                         : glm::normalize(dvec3(obj.normals[corner.normal])));
         if (with_texture_coordinates_) {
             const bool absent = corner.texture_coordinates == ObjCorner::none;
             const vec2 uv = absent ? vec2(0, 1) : obj.texture_coordinates[corner.texture_coordinates];
@@ -143,17 +139,15 @@ class Assembly {
         Material material = source.material;
         if (!specular_) {
             if (material.specular_albedo != vec3(0) && !ignored_specular_) {
-                scene_.warnings.push_back(obj.file +
-                                          ": Ks is ignored, as the scene does not ask for specular");
+                scene_.warnings.push_back(obj.file + ": Ks is ignored, as the scene does not ask for specular");
                 ignored_specular_ = true;
             }
             material.specular_albedo = vec3(0);
             material.specular_exponent = 0;
         }
         if (material.specular_exponent > largest_exponent) {
-            scene_.warnings.push_back(
-                obj.file + ": material " + in_quotes(source.name) +
-                ": Ns above 1e8 makes a lobe that 32 bits cannot tell from a mirror's: it becomes 1e8");
+            scene_.warnings.push_back(obj.file + ": material " + in_quotes(source.name) +
+                                      ": Ns above 1e8 makes a lobe that 32 bits cannot tell from a mirror's: it becomes 1e8");
             material.specular_exponent = largest_exponent;
         }
         limit_reflectance(obj, source.name, material);
@@ -167,9 +161,8 @@ class Assembly {
         const dvec3 albedo = dvec3(material.diffuse_albedo) + dvec3(material.specular_albedo);
         const double largest = std::max({albedo.x, albedo.y, albedo.z});
         if (largest <= 1) return;
-        scene_.warnings.push_back(
-            obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " +
-            (specular_ ? "Kd and Ks are" : "Kd is") + " divided by " + std::to_string(largest));
+        scene_.warnings.push_back(obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " +
+                                  (specular_ ? "Kd and Ks are" : "Kd is") + " divided by " + std::to_string(largest));
         // Rounded down, so that the sum does not exceed 1 by a rounding error.
         constexpr double rounding = 1 - 0x1p-23;
         material.diffuse_albedo = vec3(dvec3(material.diffuse_albedo) / largest * rounding);
@@ -177,8 +170,7 @@ class Assembly {
     }
 
     int add_texture(const std::filesystem::path& file) {
-        const auto [texture, is_new] =
-            textures_.try_emplace(file.lexically_normal(), static_cast<int>(scene_.textures.size()));
+        const auto [texture, is_new] = textures_.try_emplace(file.lexically_normal(), static_cast<int>(scene_.textures.size()));
         if (is_new) {
             scene_.textures.push_back(read_texture(file));
             sources_.read(file, max_image_file_bytes);  // for the hash
@@ -198,8 +190,7 @@ class Assembly {
 
 }  // namespace
 
-std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources,
-                                      Scene& scene) {
+std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene) {
     Assembly assembly(files, specular, sources, scene);
     std::vector<uint32_t> lines;
     for (const ObjFile& file : files) std::ranges::copy(assembly.add(file), std::back_inserter(lines));

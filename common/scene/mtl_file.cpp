@@ -28,8 +28,8 @@ const std::map<std::string_view, Numbers> number_keywords = {
 };
 const std::set<std::string_view> other_keywords = {"newmtl", "map_Kd", "Ka", "illum"};
 
-// What tinyobjloader does not tell: the whole name (its releases differ after a space), and whether a
-// material states its Kd and Tf at all.
+// What tinyobjloader does not tell: the whole name (its releases differ after a space), and whether a material states its Kd and
+// Tf at all.
 struct Stated {
     std::string name;
     bool diffuse = false;
@@ -37,8 +37,7 @@ struct Stated {
 };
 
 // Checks all numbers: tinyobjloader reads 0 where they are missing or nonsense. An element a material.
-std::vector<Stated> check_lines(const std::string& file, std::string_view text,
-                                std::vector<std::string>& warnings) {
+std::vector<Stated> check_lines(const std::string& file, std::string_view text, std::vector<std::string>& warnings) {
     std::vector<Stated> materials;
     std::set<std::string> ignored;
     for (size_t line_number = 1; !text.empty(); ++line_number) {
@@ -50,16 +49,14 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
         if (keyword == "newmtl") {
             if (name_in(line).empty()) fail("newmtl needs a name");
             // tinyobjloader would take it for another word.
-            if (line.substr(line.find("newmtl")).starts_with("newmtl#"))
-                fail("newmtl needs a space after it");
+            if (line.substr(line.find("newmtl")).starts_with("newmtl#")) fail("newmtl needs a space after it");
             materials.emplace_back().name = name_in(line);
         } else if (materials.empty()) {
             fail("not a material file: it must start with newmtl");
         }
         if (keyword == "Kd") materials.back().diffuse = true;
         if (keyword == "Tf" || keyword == "Kt") materials.back().transmittance = true;
-        if (keyword == "map_Kd" && words.size() > 1 && words[1].starts_with('-'))
-            ignored.insert("options of map_Kd");
+        if (keyword == "map_Kd" && words.size() > 1 && words[1].starts_with('-')) ignored.insert("options of map_Kd");
 
         if (const auto known = number_keywords.find(keyword); known != number_keywords.end()) {
             const auto [count, largest] = known->second;
@@ -69,8 +66,7 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
                 const std::optional<float> number = to_number(words[i]);
                 if (!number || *number < 0 || *number > largest)
                     fail(keyword + " " + in_quotes(words[i]) +
-                         (largest == any ? ": must be a finite number, at least 0"
-                                         : ": must be a number in [0,1]"));
+                         (largest == any ? ": must be a finite number, at least 0" : ": must be a number in [0,1]"));
             }
         } else if (!other_keywords.contains(keyword)) {
             ignored.insert(in_quotes(keyword));
@@ -91,8 +87,7 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text,
 }
 
 // A smooth dielectric of the index and the transmittance that the file states.
-void make_dielectric(const std::string& file, const tinyobj::material_t& source, const Stated& stated,
-                     Material& material) {
+void make_dielectric(const std::string& file, const tinyobj::material_t& source, const Stated& stated, Material& material) {
     const auto fail = [&](const std::string& reason) {
         throw UserError(file + ": material " + in_quotes(stated.name) + ": " + reason);
     };
@@ -112,9 +107,8 @@ vec3 to_vec3(const float (&values)[3]) { return {values[0], values[1], values[2]
 
 }  // namespace
 
-std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file,
-                                  const std::filesystem::path& texture_folder, SourceFiles& files,
-                                  std::vector<std::string>& warnings) {
+std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::filesystem::path& texture_folder,
+                                  SourceFiles& files, std::vector<std::string>& warnings) {
     const std::string name = file.string();
     const std::string text = files.read(file, max_mtl_bytes);
     if (text.find('\0') != std::string::npos) throw UserError(name + ": not a material file: it is binary");

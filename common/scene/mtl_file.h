@@ -16,12 +16,11 @@ struct MtlMaterial {
     std::filesystem::path albedo_texture;  // map_Kd, or empty
 };
 
-// Reads Kd, map_Kd, Ke, Ks and Ns as in Material; Kd defaults to white with map_Kd. d < 1 or Tr > 0 (= 1 - d)
-// makes a smooth dielectric of refractive index Ni in [0.01,100] that absorbs -ln Tf per unit of length
-// (nothing without Tf). A warning names keywords without effect. Textures are relative to texture_folder.
-// Throws UserError for numbers that are missing, not finite or out of range, Tf 0 included.
-std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file,
-                                  const std::filesystem::path& texture_folder, SourceFiles& files,
-                                  std::vector<std::string>& warnings);
+// Reads Kd, map_Kd, Ke, Ks and Ns as in Material; Kd defaults to white with map_Kd. d < 1 or Tr > 0 (= 1 - d) makes a smooth
+// dielectric of refractive index Ni in [0.01,100] that absorbs -ln Tf per unit of length (nothing without Tf). A warning names
+// keywords without effect. Textures are relative to texture_folder. Throws UserError for numbers that are missing, not finite or
+// out of range, Tf 0 included.
+std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::filesystem::path& texture_folder,
+                                  SourceFiles& files, std::vector<std::string>& warnings);
 
 }  // namespace lab

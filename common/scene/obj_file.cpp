@@ -54,17 +54,12 @@ class TextBuffer : public std::streambuf {
 class ObjReader : public tinyobj::MaterialReader {
   public:
     ObjReader(const std::filesystem::path& path, SourceFiles& files, std::vector<std::string>& warnings)
-        : path_(path),
-          files_(files),
-          warnings_(warnings),
-          text_(files.read(path, max_obj_bytes)),
-          buffer_(text_) {
+        : path_(path), files_(files), warnings_(warnings), text_(files.read(path, max_obj_bytes)), buffer_(text_) {
         obj_.file = path.string();
     }
 
     ObjFile read() {
-        if (text_.find('\0') != std::string::npos)
-            throw UserError(obj_.file + ": not an .obj file: it is binary");
+        if (text_.find('\0') != std::string::npos) throw UserError(obj_.file + ": not an .obj file: it is binary");
         check_faces_without_corners();
         tinyobj::callback_t callbacks;
         callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
@@ -83,24 +78,21 @@ class ObjReader : public tinyobj::MaterialReader {
         callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
             static_cast<ObjReader*>(self)->add_face({indices, static_cast<size_t>(count)});
         };
-        callbacks.usemtl_cb = [](void* self, const char*, int) {
-            static_cast<ObjReader*>(self)->use_material();
-        };
+        callbacks.usemtl_cb = [](void* self, const char*, int) { static_cast<ObjReader*>(self)->use_material(); };
         std::istream stream(&buffer_);
         tinyobj::LoadObjWithCallback(stream, callbacks, this, this);
 
         if (obj_.corners.empty()) throw UserError(obj_.file + ": there are no faces in it");
         if (faces_without_material_ > 0)
-            missing_ += ": " + std::to_string(faces_without_material_) +
-                        " faces without a material are drawn in grey";
+            missing_ += ": " + std::to_string(faces_without_material_) + " faces without a material are drawn in grey";
         if (!missing_.empty()) warnings_.push_back((missing_.starts_with(':') ? obj_.file : "") + missing_);
         return std::move(obj_);
     }
 
-    // Called for a word after mtllib. Exporters do not escape spaces: all words together are tried first, and
-    // then each until one is a file.
-    bool operator()(const std::string&, std::vector<tinyobj::material_t>*, std::map<std::string, int>*,
-                    std::string*, std::string*) override {
+    // Called for a word after mtllib. Exporters do not escape spaces: all words together are tried first, and then each until one
+    // is a file.
+    bool operator()(const std::string&, std::vector<tinyobj::material_t>*, std::map<std::string, int>*, std::string*,
+                    std::string*) override {
         std::string all(name_in(buffer_.last_line()));
         std::erase(all, '\\');  // escapes a space
         const std::filesystem::path folder = path_.parent_path();
@@ -118,15 +110,12 @@ class ObjReader : public tinyobj::MaterialReader {
     }
 
   private:
-    [[noreturn]] void fail(const std::string& reason) const {
-        fail_at_line(obj_.file, buffer_.last_line_number(), reason);
-    }
+    [[noreturn]] void fail(const std::string& reason) const { fail_at_line(obj_.file, buffer_.last_line_number(), reason); }
 
     // tinyobjloader reads 0 where there is no finite number.
     void check_numbers(size_t count) const {
         const std::vector<std::string_view> words = words_of(buffer_.last_line());
-        if (words.size() < count + 1)
-            fail(std::string(words[0]) + " needs " + std::to_string(count) + " numbers");
+        if (words.size() < count + 1) fail(std::string(words[0]) + " needs " + std::to_string(count) + " numbers");
         for (size_t i = 1; i < words.size(); ++i)
             if (!to_number(words[i])) fail(in_quotes(words[i]) + " is not a finite number");
     }
@@ -145,8 +134,7 @@ class ObjReader : public tinyobj::MaterialReader {
         for (const char c : line) {
             digits = c >= '0' && c <= '9' ? digits + 1 : 0;
             if (digits > 9) fail("an index has more than 9 digits");
-            if (digits == 0 && c != '-' && c != '/' && c != ' ' && c != '\t')
-                fail("a face must be made of vertex indices");
+            if (digits == 0 && c != '-' && c != '/' && c != ' ' && c != '\t') fail("a face must be made of vertex indices");
         }
     }
 
@@ -154,8 +142,8 @@ class ObjReader : public tinyobj::MaterialReader {
     uint32_t resolve(int index, size_t count, const char* what) const {
         const int64_t resolved = index > 0 ? int64_t{index} - 1 : static_cast<int64_t>(count) + index;
         if (index == 0 || resolved < 0 || resolved >= static_cast<int64_t>(count))
-            fail("the face refers to " + std::string(what) + " " + std::to_string(index) +
-                 ", but there are " + std::to_string(count) + " so far (counted from 1)");
+            fail("the face refers to " + std::string(what) + " " + std::to_string(index) + ", but there are " +
+                 std::to_string(count) + " so far (counted from 1)");
         return static_cast<uint32_t>(resolved);
     }
 
@@ -168,10 +156,8 @@ class ObjReader : public tinyobj::MaterialReader {
             ObjCorner& corner = face_.emplace_back();
             corner.position = resolve(index.vertex_index, obj_.positions.size(), "vertex");
             if (index.texcoord_index != 0)
-                corner.texture_coordinates =
-                    resolve(index.texcoord_index, obj_.texture_coordinates.size(), "texture coordinate");
-            if (index.normal_index != 0)
-                corner.normal = resolve(index.normal_index, obj_.normals.size(), "normal");
+                corner.texture_coordinates = resolve(index.texcoord_index, obj_.texture_coordinates.size(), "texture coordinate");
+            if (index.normal_index != 0) corner.normal = resolve(index.normal_index, obj_.normals.size(), "normal");
         }
         if (!material_) {
             material_ = static_cast<uint32_t>(obj_.materials.size());
@@ -199,8 +185,7 @@ class ObjReader : public tinyobj::MaterialReader {
     }
 
     void add_triangle(uint32_t a, uint32_t b, uint32_t c) {
-        if (obj_.triangle_materials.size() == max_triangle_count)
-            fail("there are more than 2^28 - 1 triangles");
+        if (obj_.triangle_materials.size() == max_triangle_count) fail("there are more than 2^28 - 1 triangles");
         const size_t capacity = obj_.corners.capacity();  // doubles when it is used up
         if (obj_.corners.size() == capacity && 2 * capacity * sizeof(ObjCorner) > memory_limit(text_.size()))
             fail("its triangles need far more memory than a file of its size should");
@@ -224,11 +209,9 @@ class ObjReader : public tinyobj::MaterialReader {
         material_ = found == material_indices_.end() ? grey_ : found->second;
     }
 
-    // Models from elsewhere often lack their materials: they are drawn in grey, and the first that is missing
-    // is named.
+    // Models from elsewhere often lack their materials: they are drawn in grey, and the first that is missing is named.
     void note_missing(const std::string& what) {
-        if (missing_.empty())
-            missing_ = obj_.file + ":" + std::to_string(buffer_.last_line_number()) + ": " + what;
+        if (missing_.empty()) missing_ = obj_.file + ":" + std::to_string(buffer_.last_line_number()) + ": " + what;
     }
 
     static MtlMaterial grey_material() {

@@ -19,8 +19,7 @@ Instance make_instance(const MeshPlacement& placement) {
     instance.object_to_world = mat4x3(placement.object_to_world);
     instance.normal_to_world = mat3(glm::inverse(glm::transpose(glm::dmat3(placement.object_to_world))));
     for (int column = 0; column < 3; ++column)
-        if (glm::any(glm::isinf(instance.normal_to_world[column])) ||
-            glm::any(glm::isnan(instance.normal_to_world[column])))
+        if (glm::any(glm::isinf(instance.normal_to_world[column])) || glm::any(glm::isnan(instance.normal_to_world[column])))
             throw UserError("the scale of " + placement.file.string() + " is too small or too large");
     return instance;
 }
@@ -36,10 +35,8 @@ void load_meshes(const SceneDescription& description, bool specular, SourceFiles
         scene.instance_meshes.push_back(mesh->second);
     }
     const std::vector<uint32_t> lines = assemble_meshes(files, specular, sources, scene);
-    for (const MeshPlacement& placement : description.meshes)
-        scene.instances.push_back(make_instance(placement));
-    for (std::string& warning : coincident_light_warnings(scene, lines))
-        scene.warnings.push_back(std::move(warning));
+    for (const MeshPlacement& placement : description.meshes) scene.instances.push_back(make_instance(placement));
+    for (std::string& warning : coincident_light_warnings(scene, lines)) scene.warnings.push_back(std::move(warning));
 }
 
 }  // namespace
@@ -49,8 +46,7 @@ std::vector<MaterialClassRange> material_class_ranges(const Mesh& mesh) {
     std::vector<MaterialClassRange> ranges;
     if (diffuse_count > 0) ranges.push_back({MATERIAL_CLASS_DIFFUSE, mesh.first_triangle, diffuse_count});
     if (mesh.dielectric_count > 0)
-        ranges.push_back(
-            {MATERIAL_CLASS_DIELECTRIC, mesh.first_triangle + diffuse_count, mesh.dielectric_count});
+        ranges.push_back({MATERIAL_CLASS_DIELECTRIC, mesh.first_triangle + diffuse_count, mesh.dielectric_count});
     return ranges;
 }
 
@@ -80,8 +76,7 @@ Bounds world_bounds(const Scene& scene) {
 Scene load_scene(const std::filesystem::path& file, bool specular) {
     const std::string name = file.string();
     const std::string extension = lower_case_extension(file);
-    if (extension != ".json" && extension != ".obj")
-        throw UserError(name + ": a scene must be a .json or .obj file");
+    if (extension != ".json" && extension != ".obj") throw UserError(name + ": a scene must be a .json or .obj file");
     const bool is_bare_mesh = extension == ".obj";
 
     SourceFiles sources;
@@ -115,8 +110,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
 
     const Bounds bounds = world_bounds(scene);
     const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
-    if (!std::isfinite(diagonal))
-        throw UserError(name + ": its coordinates are too large for 32-bit numbers");
+    if (!std::isfinite(diagonal)) throw UserError(name + ": its coordinates are too large for 32-bit numbers");
     if (!description.has_camera && !scene.instances.empty()) scene.camera = framing_pose(bounds);
     for (const auto& find_warnings : {dielectric_warnings, precision_warnings})
         for (std::string& warning : find_warnings(scene)) scene.warnings.push_back(std::move(warning));
@@ -141,8 +135,7 @@ CameraPose framing_pose(const Bounds& bounds) {
 Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
     const dvec3 direction = dvec3(pose.target) - dvec3(pose.position);
     const double distance = glm::length(direction);
-    if (!(distance > 0) || !std::isfinite(distance))
-        throw UserError("camera: position and target must be finite and differ");
+    if (!(distance > 0) || !std::isfinite(distance)) throw UserError("camera: position and target must be finite and differ");
     if (!(pose.vertical_fov > 0 && pose.vertical_fov < 180))
         throw UserError("camera: the vertical field of view must be above 0 and below 180 degrees");
     const dvec3 forward = direction / distance;
@@ -150,8 +143,7 @@ Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
     // Looking along `up` leaves the camera's roll open: then -Z (or +Y) is up in the image.
     dvec3 up(pose.up);
     const double up_length = glm::length(up);
-    if (!(up_length > 0) || !std::isfinite(up_length))
-        throw UserError("camera: up must be finite and not zero");
+    if (!(up_length > 0) || !std::isfinite(up_length)) throw UserError("camera: up must be finite and not zero");
     if (glm::length(glm::cross(forward, up)) <= 1e-6 * up_length)
         up = std::abs(forward.y) > 0.5 ? dvec3(0, 0, -1) : dvec3(0, 1, 0);
     const dvec3 right = glm::normalize(glm::cross(forward, up));

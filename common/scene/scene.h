@@ -12,8 +12,8 @@
 
 namespace lab {
 
-// The triangles of a mesh file, a range of the scene's triangles in object space. Dielectric ones come last,
-// so each material class is a range, too.
+// The triangles of a mesh file, a range of the scene's triangles in object space. Dielectric ones come last, so each material
+// class is a range, too.
 struct Mesh {
     std::string file;
     uint32_t first_triangle = 0;
@@ -30,8 +30,7 @@ struct MaterialClassRange {
     uint32_t first_triangle;
     uint32_t triangle_count;
 };
-std::vector<MaterialClassRange> material_class_ranges(
-    const Mesh& mesh);  // diffuse before dielectric; none is empty
+std::vector<MaterialClassRange> material_class_ranges(const Mesh& mesh);  // diffuse before dielectric; none is empty
 
 // Longest path length that a scene or a flag may ask for, so that samples end in bounded time.
 inline constexpr uint32_t path_length_limit = 1000000;
@@ -64,9 +63,8 @@ struct Scene {
     std::vector<uvec3> triangles;           // indices of positions, counter-clockwise seen from the front
     std::vector<uint32_t> triangle_materials;
     std::vector<Material> materials;
-    std::vector<uvec2>
-        double_sided;  // pairs of opaque triangles in one place that face opposite ways; the second has the
-                       // corners of the first in reverse, starting from the same one
+    std::vector<uvec2> double_sided;  // pairs of opaque triangles in one place that face opposite ways; the second has the
+                                      // corners of the first in reverse, starting from the same one
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<uint32_t> instance_meshes;  // per instance
@@ -99,15 +97,15 @@ struct Bounds {
 // World-space bounds of all instances, tight unless a mesh is rotated. Without instances low > high.
 Bounds world_bounds(const Scene& scene);
 
-// Reads a .json scene or a bare .obj. `specular` switches the Phong lobe on, like the scene's key. The
-// default camera is framing_pose(); a bare .obj without lights gets a white sky. Throws UserError.
+// Reads a .json scene or a bare .obj. `specular` switches the Phong lobe on, like the scene's key. The default camera is
+// framing_pose(); a bare .obj without lights gets a white sky. Throws UserError.
 Scene load_scene(const std::filesystem::path& file, bool specular = false);
 
 // A view of everything inside the bounds, from +Z and slightly above, for images that are not upright.
 CameraPose framing_pose(const Bounds& bounds);
 
-// The camera of a pose for an image size in pixels. An `up` along the line of sight is replaced. Throws
-// UserError for a pose without a direction or `up`, or with a field of view outside (0,180) degrees.
+// The camera of a pose for an image size in pixels. An `up` along the line of sight is replaced. Throws UserError for a pose
+// without a direction or `up`, or with a field of view outside (0,180) degrees.
 Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height);
 
 }  // namespace lab

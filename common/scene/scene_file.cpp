@@ -23,8 +23,7 @@ MeshPlacement read_placement(const JsonObject& entry, const std::filesystem::pat
     MeshPlacement placement;
     placement.file = folder / entry.required("file", entry.text("file"));
     glm::dmat4 matrix(1);
-    if (const auto translation = entry.vector("translation"))
-        matrix = glm::translate(matrix, glm::dvec3(*translation));
+    if (const auto translation = entry.vector("translation")) matrix = glm::translate(matrix, glm::dvec3(*translation));
     if (entry.has("rotation")) matrix = matrix * read_rotation(entry.object("rotation", {"axis", "degrees"}));
     if (const auto scale = entry.number_or_vector("scale")) {
         if (scale->x == 0 || scale->y == 0 || scale->z == 0) entry.fail("scale", "must not be zero");
@@ -41,8 +40,7 @@ CameraPose read_camera(const JsonObject& camera) {
     if (pose.position == pose.target) camera.fail("target", "must differ from \"position\"");
     pose.up = camera.vector("up").value_or(pose.up);
     const double vertical_fov = camera.number("vertical_fov").value_or(pose.vertical_fov);
-    if (!(vertical_fov > 0 && vertical_fov < 180))
-        camera.fail("vertical_fov", "must be above 0 and below 180 degrees");
+    if (!(vertical_fov > 0 && vertical_fov < 180)) camera.fail("vertical_fov", "must be above 0 and below 180 degrees");
     pose.vertical_fov = static_cast<float>(vertical_fov);
     return pose;
 }
@@ -53,8 +51,7 @@ vec3 read_radiance_value(const JsonObject& background, const char* key, const ve
     return value;
 }
 
-void read_background(const JsonObject& background, const std::filesystem::path& folder,
-                     SceneDescription& result) {
+void read_background(const JsonObject& background, const std::filesystem::path& folder, SceneDescription& result) {
     if (background.has("radiance") == background.has("light_probe"))
         background.fail("radiance", "or \"light_probe\" must be given, and not both");
     if (background.has("radiance")) {
@@ -75,22 +72,18 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     const std::string name = file.string();
     const std::filesystem::path folder = file.parent_path();
     const nlohmann::json content = parse_json(name, files.read(file, max_json_bytes));
-    const JsonObject root(content, name, "the scene",
-                          {"description", "meshes", "camera", "background", "specular", "width", "height",
-                           "samples", "max_path_length"});
+    const JsonObject root(
+        content, name, "the scene",
+        {"description", "meshes", "camera", "background", "specular", "width", "height", "samples", "max_path_length"});
     SceneDescription result;
     result.scene.description = root.text("description").value_or("");
     for (const nlohmann::json& entry : root.array("meshes"))
-        result.meshes.push_back(read_placement(
-            {entry, name, "an entry of \"meshes\"", {"file", "scale", "rotation", "translation"}}, folder));
+        result.meshes.push_back(
+            read_placement({entry, name, "an entry of \"meshes\"", {"file", "scale", "rotation", "translation"}}, folder));
     result.has_camera = root.has("camera");
-    if (result.has_camera)
-        result.scene.camera =
-            read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
+    if (result.has_camera) result.scene.camera = read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
     if (root.has("background"))
-        read_background(
-            root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder,
-            result);
+        read_background(root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder, result);
     result.specular = root.boolean("specular").value_or(false);
 
     constexpr uint32_t max_count = 1'000'000'000;
@@ -98,8 +91,7 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     defaults.width = root.integer("width", 1, max_image_extent).value_or(defaults.width);
     defaults.height = root.integer("height", 1, max_image_extent).value_or(defaults.height);
     defaults.samples = root.integer("samples", 1, max_count).value_or(defaults.samples);
-    defaults.max_path_length =
-        root.integer("max_path_length", 0, path_length_limit).value_or(defaults.max_path_length);
+    defaults.max_path_length = root.integer("max_path_length", 0, path_length_limit).value_or(defaults.max_path_length);
     return result;
 }
 

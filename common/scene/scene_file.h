@@ -20,8 +20,7 @@ struct SceneDescription {
     bool specular = false;
 };
 
-// Throws UserError naming the line of a syntax error, or the key that is unknown, missing, of the wrong type
-// or out of range.
+// Throws UserError naming the line of a syntax error, or the key that is unknown, missing, of the wrong type or out of range.
 SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles& files);
 
 }  // namespace lab

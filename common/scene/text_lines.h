@@ -1,5 +1,5 @@
-// The files that a scene is read from, and text line by line, for the checks that tinyobjloader leaves out: it reads
-// what is not a number as 0.
+// The files that a scene is read from, and text line by line, for the checks that tinyobjloader leaves out: it reads what is not
+// a number as 0.
 #pragma once
 #include <optional>
 #include <string>

@@ -10,9 +10,7 @@ using glm::dvec2;
 using glm::dvec3;
 
 // Twice the signed area of a triangle: positive if counter-clockwise.
-double area(const dvec2& a, const dvec2& b, const dvec2& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
+double area(const dvec2& a, const dvec2& b, const dvec2& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
 // The polygon along the axis closest to its normal, such that it is counter-clockwise.
 std::vector<dvec2> project(std::span<const vec3> polygon) {
@@ -38,16 +36,15 @@ std::vector<std::array<uint32_t, 3>> triangulate(std::span<const vec3> polygon) 
     std::iota(rest.begin(), rest.end(), 0u);
     const std::vector<dvec2> points = polygon.size() > 3 ? project(polygon) : std::vector<dvec2>();
     while (rest.size() > 3) {
-        // An ear is a convex corner whose triangle contains no other corner. Every polygon has one; where
-        // rounding or crossing edges hide it, any corner is cut off.
+        // An ear is a convex corner whose triangle contains no other corner. Every polygon has one; where rounding or crossing
+        // edges hide it, any corner is cut off.
         size_t ear = 1;
         for (size_t i = 1; i <= rest.size(); ++i) {
             const uint32_t a = rest[i - 1], b = rest[i % rest.size()], c = rest[(i + 1) % rest.size()];
             if (area(points[a], points[b], points[c]) <= 0) continue;
             const bool is_ear = std::ranges::none_of(rest, [&](uint32_t p) {
                 return points[p] != points[a] && points[p] != points[b] && points[p] != points[c] &&
-                       area(points[a], points[b], points[p]) >= 0 &&
-                       area(points[b], points[c], points[p]) >= 0 &&
+                       area(points[a], points[b], points[p]) >= 0 && area(points[b], points[c], points[p]) >= 0 &&
                        area(points[c], points[a], points[p]) >= 0;
             });
             if (is_ear) {

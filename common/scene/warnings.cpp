@@ -35,8 +35,7 @@ std::vector<Part> parts_of(const Scene& scene) {
         for (const uint32_t triangle : mesh.triangles()) {
             Bounds& bounds = bounds_of_material[scene.triangle_materials[triangle]];
             for (int corner = 0; corner < 3; ++corner)
-                bounds.grow(scene.instances[i].object_to_world *
-                            glm::vec4(scene.corner(triangle, corner), 1));
+                bounds.grow(scene.instances[i].object_to_world * glm::vec4(scene.corner(triangle, corner), 1));
         }
         for (const auto& [material, bounds] : bounds_of_material) parts.push_back({i, material, bounds});
     }
@@ -83,14 +82,12 @@ bool pierces(const WorldTriangle& a, const WorldTriangle& b, double depth) {
     const dvec3 normal = glm::normalize(glm::cross(b.corners[1] - b.corners[0], b.corners[2] - b.corners[0]));
     for (int i = 0; i < 3; ++i) {
         const dvec3 from = a.corners[i], to = a.corners[(i + 1) % 3];
-        const double before = glm::dot(normal, from - b.corners[0]),
-                     behind = glm::dot(normal, to - b.corners[0]);
+        const double before = glm::dot(normal, from - b.corners[0]), behind = glm::dot(normal, to - b.corners[0]);
         if (!(std::min(before, behind) < -depth && std::max(before, behind) > depth)) continue;
         const dvec3 point = from + before / (before - behind) * (to - from);
         bool is_inside = true;
         for (int k = 0; k < 3; ++k)
-            is_inside &=
-                glm::dot(normal, glm::cross(b.corners[(k + 1) % 3] - b.corners[k], point - b.corners[k])) > 0;
+            is_inside &= glm::dot(normal, glm::cross(b.corners[(k + 1) % 3] - b.corners[k], point - b.corners[k])) > 0;
         if (is_inside) return true;
     }
     return false;
@@ -112,10 +109,8 @@ bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, s
 // Counts edges at which a mesh's dielectric surface ends, or a front meets a back.
 size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
     if (mesh.dielectric_count > max_glass_triangles) return 0;
-    std::vector<std::pair<std::pair<Point, Point>, int>>
-        edges;  // and +1 or -1 for the triangle's direction along it
-    for (const uint32_t triangle :
-         mesh.triangles() | std::views::drop(mesh.triangle_count - mesh.dielectric_count))
+    std::vector<std::pair<std::pair<Point, Point>, int>> edges;  // and +1 or -1 for the triangle's direction along it
+    for (const uint32_t triangle : mesh.triangles() | std::views::drop(mesh.triangle_count - mesh.dielectric_count))
         for (int i = 0; i < 3; ++i) {
             // Vertices in the same place are one, whatever their normals.
             const vec3 a = scene.corner(triangle, i) + 0.0f, b = scene.corner(triangle, (i + 1) % 3) + 0.0f;
@@ -126,8 +121,7 @@ size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
     size_t count = 0;
     for (size_t i = 0; i < edges.size();) {
         int sum = 0;
-        for (const auto edge = edges[i].first; i < edges.size() && edges[i].first == edge; ++i)
-            sum += edges[i].second;
+        for (const auto edge = edges[i].first; i < edges.size() && edges[i].first == edge; ++i) sum += edges[i].second;
         count += sum != 0;
     }
     return count;
@@ -160,9 +154,9 @@ void check_texture_coordinates(const Scene& scene, std::vector<std::string>& war
             }
         }
         if (steps_in_texels > 1)
-            warnings.push_back(mesh.file + ": texture coordinates reach " + to_text(farthest, 3) +
-                               ", where floats are " + to_text(step) + " apart: steps of " +
-                               to_text(steps_in_texels, 3) + " texels show; move them closer to 0");
+            warnings.push_back(mesh.file + ": texture coordinates reach " + to_text(farthest, 3) + ", where floats are " +
+                               to_text(step) + " apart: steps of " + to_text(steps_in_texels, 3) +
+                               " texels show; move them closer to 0");
     }
 }
 
@@ -171,9 +165,7 @@ void check_texture_coordinates(const Scene& scene, std::vector<std::string>& war
 std::vector<std::string> dielectric_warnings(const Scene& scene) {
     if (!features_of(scene).dielectrics) return {};
     const std::vector<Part> parts = parts_of(scene);
-    const auto is_dielectric = [&](const Part& part) {
-        return scene.materials[part.material].refractive_index > 0;
-    };
+    const auto is_dielectric = [&](const Part& part) { return scene.materials[part.material].refractive_index > 0; };
 
     Nesting nested_dielectric, enclosed_object, reaching_object;  // the first of each kind
     size_t pair_count = 0;
@@ -187,8 +179,7 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
             if (is_opaque ? !is_absorbing : !lies_inside) continue;
             Nesting& found = !is_opaque ? nested_dielectric : lies_inside ? enclosed_object : reaching_object;
             if (found.inner != nullptr) continue;
-            if (lies_inside ||
-                (overlap(inner.bounds, outer.bounds) && surfaces_cross(scene, outer, inner, pair_count)))
+            if (lies_inside || (overlap(inner.bounds, outer.bounds) && surfaces_cross(scene, outer, inner, pair_count)))
                 found = {&inner, &outer};
         }
     }
@@ -223,17 +214,15 @@ std::vector<std::string> precision_warnings(const Scene& scene) {
     const std::string name = scene.file.string();
     if (!scene.instances.empty()) {
         const Bounds bounds = world_bounds(scene);
-        const glm::dvec3 low(bounds.low), high(bounds.high),
-            farthest = glm::max(glm::abs(low), glm::abs(high));
+        const glm::dvec3 low(bounds.low), high(bounds.high), farthest = glm::max(glm::abs(low), glm::abs(high));
         // As get_surface_point() of shaders/world/shading_data.glsl moves rays off a surface that is not slender.
         const double offset = 8 * rounding * (farthest.x + farthest.y + farthest.z);
         const double part = offset / glm::distance(low, high);
         if (part > 1e-3)
-            warnings.push_back(name + ": it is so far from the origin that 32-bit coordinates blur " +
-                               to_text(100 * part) + " % of its size; move it closer");
+            warnings.push_back(name + ": it is so far from the origin that 32-bit coordinates blur " + to_text(100 * part) +
+                               " % of its size; move it closer");
     }
-    const double row =
-        2 * std::tan(glm::radians(0.5 * double{scene.camera.vertical_fov})) / scene.defaults.height;
+    const double row = 2 * std::tan(glm::radians(0.5 * double{scene.camera.vertical_fov})) / scene.defaults.height;
     if (row < 10 * rounding)
         warnings.push_back(name + ": the field of view is so narrow that 32-bit directions are rounded to " +
                            to_text(rounding / row) + " of a pixel; move the camera closer");

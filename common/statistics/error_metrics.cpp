@@ -17,8 +17,7 @@ ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, cons
     const double mean = sum_in_parallel<double>(size,
                                                 [&](size_t begin, size_t end) {
                                                     double sum = 0;
-                                                    for (size_t i = begin; i < end; ++i)
-                                                        sum += scale.pixels[i];
+                                                    for (size_t i = begin; i < end; ++i) sum += scale.pixels[i];
                                                     return sum;
                                                 }) /
                         count;
@@ -55,8 +54,7 @@ Image block_means(const Image& image) {
                 double sum = 0;
                 for (size_t y = top; y < bottom; ++y)
                     for (size_t x = left; x < right; ++x) sum += image.pixels[index(x, y)];
-                const auto mean =
-                    static_cast<float>(sum / static_cast<double>((bottom - top) * (right - left)));
+                const auto mean = static_cast<float>(sum / static_cast<double>((bottom - top) * (right - left)));
                 for (size_t y = top; y < bottom; ++y)
                     for (size_t x = left; x < right; ++x) result.pixels[index(x, y)] = mean;
             }
@@ -84,8 +82,7 @@ Reference read_reference(const std::filesystem::path& file) {
     if (!std::all_of(reference.mean.pixels.begin(), reference.mean.pixels.end(),
                      [](float value) { return std::isfinite(value); }))
         throw UserError(file.string() + ": has infinite pixels: it cannot serve as a reference");
-    Image variance{reference.mean.width, reference.mean.height,
-                   std::vector<float>(reference.mean.pixels.size())};
+    Image variance{reference.mean.width, reference.mean.height, std::vector<float>(reference.mean.pixels.size())};
     const std::array<std::string, 3> names{"variance.R", "variance.G", "variance.B"};
     for (size_t channel = 0; channel < 3; ++channel) {
         const auto found = exr.channels.find(names[channel]);
@@ -108,8 +105,7 @@ ErrorMetrics compare(const Image& image, const Reference& reference) {
 
 ErrorMetrics estimate_error(const Image& first, const Image& second) {
     Image mean = first;
-    for (size_t i = 0; i < mean.pixels.size(); ++i)
-        mean.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
+    for (size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
     return metrics(
         block_means(mean),
         [&](size_t i) {
@@ -119,8 +115,7 @@ ErrorMetrics estimate_error(const Image& first, const Image& second) {
         [](size_t) { return 0.0; });
 }
 
-NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, glm::uvec2 corner,
-                             glm::uvec2 size) {
+NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, glm::uvec2 corner, glm::uvec2 size) {
     NoiseEstimate estimate;
     double variance = 0;
     const glm::uvec2 end = glm::min(corner + size, glm::uvec2(later.width, later.height));
@@ -131,8 +126,7 @@ NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, g
             const FilmPixel& whole = later.pixels[i];
             if (whole.sample_count == 0) continue;
             const double count = whole.sample_count;
-            const double first = earlier.pixels.empty() ? 0 : earlier.pixels[i].sample_count,
-                         second = count - first;
+            const double first = earlier.pixels.empty() ? 0 : earlier.pixels[i].sample_count, second = count - first;
             estimate.samples += count / pixels;
             estimate.invalid_samples += whole.invalid_count;
             const glm::dvec3 sum = sum_of(whole);

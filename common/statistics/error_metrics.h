@@ -22,7 +22,7 @@ struct ErrorMetrics {
 
 struct Reference {
     Image mean;
-    std::optional<Image> variance;  // of the mean, from the channels variance.R, variance.G, variance.B
+    std::optional<Image> variance;                       // of the mean, from the channels variance.R, variance.G, variance.B
     std::map<std::string, std::string> attributes = {};  // of the file: scene, scene_hash, max_path_length, …
 
     // Mean of a channel over a rectangle of pixels, and the variance of that mean (0 if unknown).
@@ -39,25 +39,23 @@ Reference read_reference(const std::filesystem::path& file);
 // Image and reference have the same size.
 ErrorMetrics compare(const Image& image, const Reference& reference);
 
-// Estimates the error of (first + second) / 2 for two independent renders with equally many samples: the
-// expected square of their difference is four times the variance of that mean. Errors are relative to means
-// over 8 x 8 pixels, since a noisy pixel's own value would excuse its error.
+// Estimates the error of (first + second) / 2 for two independent renders with equally many samples: the expected square of their
+// difference is four times the variance of that mean. Errors are relative to means over 8 x 8 pixels, since a noisy pixel's own
+// value would excuse its error.
 ErrorMetrics estimate_error(const Image& first, const Image& second);
 
 // The noise of a rectangle of pixels.
 struct NoiseEstimate {
     glm::dvec3 mean{0};
-    // Root mean square of the pixels' standard errors, over pixels and channels; relative to the rectangle's
-    // mean below.
+    // Root mean square of the pixels' standard errors, over pixels and channels; relative to the rectangle's mean below.
     double standard_error = 0;
     double relative_error = 0;
     double samples = 0;  // a pixel, on average
     uint64_t invalid_samples = 0;
 };
 
-// Estimates noise from two states of a film: the samples added in between are independent of the earlier
-// ones, so the two means differ by noise only. The standard error is 0 where either part has no samples.
-NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, glm::uvec2 corner,
-                             glm::uvec2 size);
+// Estimates noise from two states of a film: the samples added in between are independent of the earlier ones, so the two means
+// differ by noise only. The standard error is 0 where either part has no samples.
+NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, glm::uvec2 corner, glm::uvec2 size);
 
 }  // namespace lab

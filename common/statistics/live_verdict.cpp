@@ -26,11 +26,9 @@ double square(double x) { return x * x; }
 // Rounded to the first digit of the interval.
 std::string interval_text(const Difference& difference) {
     const double half_width = 1.96 * difference.standard_error;
-    const int digits =
-        std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(100 * half_width, 1e-9)))), 0, 3);
+    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(100 * half_width, 1e-9)))), 0, 3);
     char text[64];
-    std::snprintf(text, sizeof text, "%+.*f %% ± %.*f %%", digits, 100 * difference.value, digits,
-                  100 * half_width);
+    std::snprintf(text, sizeof text, "%+.*f %% ± %.*f %%", digits, 100 * difference.value, digits, 100 * half_width);
     return text;
 }
 
@@ -38,8 +36,8 @@ LiveVerdict::LiveVerdict(Reference reference, glm::uvec2 image_size, double fals
     : reference_(std::move(reference)), false_alarms_(false_alarms) {
     const glm::uvec2 size(reference_.mean.width, reference_.mean.height);
     if (image_size % size != glm::uvec2(0) || image_size.x / size.x != image_size.y / size.y)
-        throw UserError("the reference has " + size_text(size) + " pixels, the image " +
-                        size_text(image_size) + ": it must be a whole number of times larger");
+        throw UserError("the reference has " + size_text(size) + " pixels, the image " + size_text(image_size) +
+                        ": it must be a whole number of times larger");
     scale_ = image_size.x / size.x;
     tiles_ = (size + tile - 1u) / tile;
     reference_samples_ = std::strtod(reference_.attributes["samples"].c_str(), nullptr);  // 0 if unknown
@@ -54,11 +52,9 @@ void LiveVerdict::add(const FilmImage& film) {
     const double part = 1 / (square(scale_) * next_samples_);
     for (uint32_t y = 0; y < film.height; ++y)
         for (uint32_t x = 0; x < film.width; ++x)
-            differences_[size_t{y / scale_} * mean.width + x / scale_] +=
-                part * sum_of(film.pixels[size_t{y} * film.width + x]);
+            differences_[size_t{y / scale_} * mean.width + x / scale_] += part * sum_of(film.pixels[size_t{y} * film.width + x]);
     for (size_t i = 0; i < differences_.size(); ++i)
-        for (int channel = 0; channel < 3; ++channel)
-            differences_[i][channel] -= double{mean.pixels[3 * i + channel]};
+        for (int channel = 0; channel < 3; ++channel) differences_[i][channel] -= double{mean.pixels[3 * i + channel]};
     samples_ = next_samples_;
     next_samples_ *= 2;
     test();
@@ -66,16 +62,14 @@ void LiveVerdict::add(const FilmImage& film) {
 
 Reference::Part LiveVerdict::expected(const Region& region, int channel) const {
     const glm::uvec2 corner = region.first * tile;
-    const glm::uvec2 end =
-        glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
+    const glm::uvec2 end = glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
     return reference_.part(channel, corner, end - corner);
 }
 
 // Of a channel's mean over a region, in radiance.
 Difference LiveVerdict::difference(const Region& region, int channel) const {
     const glm::uvec2 corner = region.first * tile;
-    const glm::uvec2 end =
-        glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
+    const glm::uvec2 end = glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
     std::vector<double> pixels;
     for (uint32_t y = corner.y; y < end.y; ++y)
         for (uint32_t x = corner.x; x < end.x; ++x)
@@ -84,8 +78,8 @@ Difference LiveVerdict::difference(const Region& region, int channel) const {
     if (pixels.size() == 1) return {.standard_error = INFINITY, .degrees_of_freedom = 1};
     Difference difference = difference_from(pixels, 0);
     double variance = square(difference.standard_error);
-    // Too few chance hits of a light make mean and spread too small together. The variance of rare events is
-    // proportional to their mean: scale it to the reference's.
+    // Too few chance hits of a light make mean and spread too small together. The variance of rare events is proportional to
+    // their mean: scale it to the reference's.
     const Reference::Part reference = expected(region, channel);
     const double mean = reference.mean + difference.value;
     if (mean > 0) variance *= std::max(reference.mean / mean, 1.0);
@@ -165,21 +159,19 @@ std::array<uint8_t, 3> signed_colour(double x) {
 
 std::string to_text(const Verdict& verdict) {
     if (!verdict.is_biased) {
-        const double largest =
-            *std::max_element(verdict.smallest_detectable.begin(), verdict.smallest_detectable.end());
+        const double largest = *std::max_element(verdict.smallest_detectable.begin(), verdict.smallest_detectable.end());
         char text[96];
-        std::snprintf(text, sizeof text, "agrees with the reference: a bias above %.2g %% would show by now",
-                      100 * largest);
+        std::snprintf(text, sizeof text, "agrees with the reference: a bias above %.2g %% would show by now", 100 * largest);
         return text;
     }
     const auto& differences = verdict.differences;
-    std::string text = "biased: red " + interval_text(differences[0]) + ", green " +
-                       interval_text(differences[1]) + ", blue " + interval_text(differences[2]);
+    std::string text = "biased: red " + interval_text(differences[0]) + ", green " + interval_text(differences[1]) + ", blue " +
+                       interval_text(differences[2]);
     const uint32_t off = verdict.bright_tiles + verdict.dark_tiles;
     if (off > 0)
         text += "; too bright in " + std::to_string(verdict.bright_tiles) + " (red), too dark in " +
-                std::to_string(verdict.dark_tiles) + " (blue) of " + std::to_string(verdict.tiles) +
-                " tiles of " + std::to_string(verdict.tile_size) + " pixels";
+                std::to_string(verdict.dark_tiles) + " (blue) of " + std::to_string(verdict.tiles) + " tiles of " +
+                std::to_string(verdict.tile_size) + " pixels";
     return text;
 }
 

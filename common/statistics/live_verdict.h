@@ -27,15 +27,15 @@ std::array<uint8_t, 3> signed_colour(double x);
 struct Verdict {
     uint32_t samples = 0;  // a pixel, when it was found
     bool is_biased = false;
-    // Of each channel's mean over the image, relative to the reference's mean; and the smallest bias that the
-    // test would have found with probability 0.99.
+    // Of each channel's mean over the image, relative to the reference's mean; and the smallest bias that the test would have
+    // found with probability 0.99.
     std::array<Difference, 3> differences;
     std::array<double, 3> smallest_detectable{};
-    uint32_t tile_size = 0;  // of the tested tiles, in pixels of the image; 0: none yet
+    uint32_t tile_size = 0;                                // of the tested tiles, in pixels of the image; 0: none yet
     uint32_t tiles = 0, bright_tiles = 0, dark_tiles = 0;  // tested, significantly too bright, too dark
-    ZMap map;  // 8 x 8 pixels of the reference each; the channel that is farthest off
-    std::vector<Difference> map_differences;  // of the same, relative to the reference's mean
-    uint32_t map_tile_size = 0;               // in pixels of the image
+    ZMap map;                                              // 8 x 8 pixels of the reference each; the channel that is farthest off
+    std::vector<Difference> map_differences;               // of the same, relative to the reference's mean
+    uint32_t map_tile_size = 0;                            // in pixels of the image
 };
 
 // A relative difference as "-14 % ± 1 %", with its 95 % confidence interval.
@@ -44,10 +44,10 @@ std::string interval_text(const Difference& difference);
 // "agrees with the reference: …" or "biased: …", in one line.
 std::string to_text(const Verdict& verdict);
 
-// Pixels are independent of each other even where the samples of a pixel are not, so the spread of their
-// differences from the reference gives the standard error of the mean difference. Repeated tests raise the
-// chance of a false alarm. So the image is tested only at 16, 32, 64, … samples, and test j spends 1/((j +
-// 1)(j + 2)) of the total probability, half of it on the channels' means and half on tiles.
+// Pixels are independent of each other even where the samples of a pixel are not, so the spread of their differences from the
+// reference gives the standard error of the mean difference. Repeated tests raise the chance of a false alarm. So the image is
+// tested only at 16, 32, 64, … samples, and test j spends 1/((j + 1)(j + 2)) of the total probability, half of it on the
+// channels' means and half on tiles.
 class LiveVerdict {
   public:
     // Probability that an unbiased render is ever called biased.

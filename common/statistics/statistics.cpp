@@ -7,15 +7,11 @@
 namespace lab {
 namespace {
 
-// Wallace's transformation of Student's t with ν degrees of freedom to a standard normal number of the same
-// p-value (Annals of Mathematical Statistics 30(4), 1959), and its inverse: z within 0.01 for ν > 20, and
-// closer to 0 than it should be for all ν.
-double wallace_factor(double degrees_of_freedom) {
-    return (8 * degrees_of_freedom + 1) / (8 * degrees_of_freedom + 3);
-}
+// Wallace's transformation of Student's t with ν degrees of freedom to a standard normal number of the same p-value (Annals of
+// Mathematical Statistics 30(4), 1959), and its inverse: z within 0.01 for ν > 20, and closer to 0 than it should be for all ν.
+double wallace_factor(double degrees_of_freedom) { return (8 * degrees_of_freedom + 1) / (8 * degrees_of_freedom + 3); }
 double normal_of_student(double t, double degrees_of_freedom) {
-    return wallace_factor(degrees_of_freedom) *
-           std::sqrt(degrees_of_freedom * std::log1p(t * t / degrees_of_freedom));
+    return wallace_factor(degrees_of_freedom) * std::sqrt(degrees_of_freedom * std::log1p(t * t / degrees_of_freedom));
 }
 double student_of_normal(double z, double degrees_of_freedom) {
     const double scaled = z / wallace_factor(degrees_of_freedom);
@@ -28,8 +24,7 @@ double normal_p_value(double z) { return std::erfc(std::abs(z) / std::numbers::s
 
 double normal_quantile(double probability) {
     if (probability > 0.5) return -normal_quantile(1 - probability);
-    // Newton's method. The lower tail is convex, so from the second step on it approaches the solution from
-    // above.
+    // Newton's method. The lower tail is convex, so from the second step on it approaches the solution from above.
     double z = -std::sqrt(-2 * std::log(probability));
     for (int step = 0; step < 60; ++step) {
         const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
@@ -40,16 +35,13 @@ double normal_quantile(double probability) {
     return z;
 }
 
-double sidak(double significance, size_t count) {
-    return -std::expm1(std::log1p(-significance) / static_cast<double>(count));
-}
+double sidak(double significance, size_t count) { return -std::expm1(std::log1p(-significance) / static_cast<double>(count)); }
 
 MeanEstimate estimate_mean(std::span<const double> numbers) {
     const double count = static_cast<double>(numbers.size());
     MeanEstimate estimate;
     for (const double number : numbers) estimate.mean += number / count;
-    for (const double number : numbers)
-        estimate.variance += (number - estimate.mean) * (number - estimate.mean) / (count - 1);
+    for (const double number : numbers) estimate.variance += (number - estimate.mean) * (number - estimate.mean) / (count - 1);
     estimate.standard_error = std::sqrt(estimate.variance / count);
     return estimate;
 }
@@ -68,15 +60,12 @@ double Difference::smallest_detectable(double level, double power) const {
     return standard_error * (t + normal_quantile(power) * std::sqrt(1 + 0.5 * t * t / degrees_of_freedom));
 }
 
-Difference Difference::relative_to(double scale) const {
-    return {value / scale, standard_error / scale, degrees_of_freedom};
-}
+Difference Difference::relative_to(double scale) const { return {value / scale, standard_error / scale, degrees_of_freedom}; }
 
 Difference difference_from(std::span<const double> numbers, double expected) {
     const MeanEstimate estimate = estimate_mean(numbers);
     const double rounding = rounding_error * std::abs(expected);
-    return {estimate.mean - expected, std::max(estimate.standard_error, rounding),
-            static_cast<double>(numbers.size() - 1)};
+    return {estimate.mean - expected, std::max(estimate.standard_error, rounding), static_cast<double>(numbers.size() - 1)};
 }
 
 }  // namespace lab

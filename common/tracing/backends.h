@@ -15,14 +15,11 @@ ShaderSource shader_source(const std::string& name, const GpuScene& scene, const
 template <typename Tree, typename TreeTracer>
 class SceneTree : public AccelerationStructure {
   public:
-    SceneTree(const Device& device, const GpuScene& scene, Tree tree)
-        : device_(device), scene_(scene), tree_(std::move(tree)) {}
+    SceneTree(const Device& device, const GpuScene& scene, Tree tree) : device_(device), scene_(scene), tree_(std::move(tree)) {}
 
-    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
-                                        std::span<const Binding> bindings) const final {
+    std::unique_ptr<Tracer> make_tracer(const Estimator& estimator, std::span<const Binding> bindings) const final {
         std::vector<Binding> all(bindings.begin(), bindings.end());
-        for (const auto& further : {scene_.bindings(), tree_.bindings()})
-            all.insert(all.end(), further.begin(), further.end());
+        for (const auto& further : {scene_.bindings(), tree_.bindings()}) all.insert(all.end(), further.begin(), further.end());
         return std::make_unique<TreeTracer>(device_, shaders(estimator), all);
     }
     size_t bytes() const final { return tree_.bytes(); }

@@ -16,8 +16,8 @@ namespace {
 
 constexpr size_t max_bin_count = 32;
 constexpr size_t max_leaf_triangles = 4;
-// Where this many splits might lie above each other, ranges are halved instead, which bounds the stack of the
-// traversal. Only triangles whose sizes fall geometrically need so many.
+// Where this many splits might lie above each other, ranges are halved instead, which bounds the stack of the traversal. Only
+// triangles whose sizes fall geometrically need so many.
 constexpr size_t max_depth = 64;
 
 // Four lanes of a register; the fourth means nothing unless stated.
@@ -42,8 +42,7 @@ struct Box {
 
 // The bounds of a triangle, with its index in the fourth lane of the upper corner.
 struct Primitive {
-    static constexpr uint32_t id_bits =
-        1u << 30;  // make an index a normal float, which is quick to compute with
+    static constexpr uint32_t id_bits = 1u << 30;  // make an index a normal float, which is quick to compute with
     static_assert(max_triangle_count < id_bits);
     Float4 low, high;
 
@@ -85,18 +84,15 @@ struct Plane {
 // The primitives of a range, counted by their centres in bins of equal width along each axis.
 class Bins {
   public:
-    explicit Bins(const Range& range)
-        : count_(static_cast<int>(std::min(max_bin_count, 4 + range.primitives.size() / 2))) {
+    explicit Bins(const Range& range) : count_(static_cast<int>(std::min(max_bin_count, 4 + range.primitives.size() / 2))) {
         Box centres;
-        for (const Primitive& primitive : range.primitives)
-            centres.add({primitive.centre(), primitive.centre()});
+        for (const Primitive& primitive : range.primitives) centres.add({primitive.centre(), primitive.centre()});
         low_ = centres.low;
         last_ = Float4{} + (static_cast<float>(count_) - 0.5f);
         // An axis along which the bins have hardly any width keeps all primitives in bin 0.
         const Float4 scale = static_cast<float>(count_) / (centres.high - low_);
         bins_per_length_ = scale <= std::numeric_limits<float>::max() ? scale : Float4{};
-        // Neighbours often share a bin, which would have to wait for the one before: so the two halves by
-        // turns.
+        // Neighbours often share a bin, which would have to wait for the one before: so the two halves by turns.
         const auto primitives = range.primitives;
         const size_t middle = primitives.size() / 2;
         for (size_t i = 0; i < middle; ++i) {
@@ -171,22 +167,18 @@ Halves halve(const Range& range) {
     const Float4 size = range.box.high - range.box.low;
     const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
     const auto middle = range.primitives.begin() + range.primitives.size() / 2;
-    std::ranges::nth_element(range.primitives, middle, {},
-                             [&](const Primitive& p) { return p.centre()[axis]; });
+    std::ranges::nth_element(range.primitives, middle, {}, [&](const Primitive& p) { return p.centre()[axis]; });
     std::ranges::copy(range.primitives, range.room);
     std::array<Side, 2> sides;
-    for (auto p = range.primitives.begin(); p != range.primitives.end(); ++p)
-        sides[p >= middle].add({p->box(), 1});
+    for (auto p = range.primitives.begin(); p != range.primitives.end(); ++p) sides[p >= middle].add({p->box(), 1});
     return halves_of(range, sides[0], sides[1]);
 }
 
-// The cheapest of all ways to divide a few primitives in two, if any is cheaper than a leaf. The first stays
-// on the left.
+// The cheapest of all ways to divide a few primitives in two, if any is cheaper than a leaf. The first stays on the left.
 std::optional<Halves> split_few(const Range& range) {
     const auto primitives = range.primitives;
     if (primitives.size() < 2) return {};
-    double best_cost =
-        range.area * static_cast<double>(primitives.size() - 1);  // of a leaf, less that of a node
+    double best_cost = range.area * static_cast<double>(primitives.size() - 1);  // of a leaf, less that of a node
     uint32_t best = 0;  // has a bit for each primitive that goes to the right
     std::array<Side, 2> best_sides;
     for (uint32_t right = 2; right < 1u << primitives.size(); right += 2) {
@@ -280,8 +272,7 @@ struct Subtree {
 
 class Builder {
   public:
-    explicit Builder(size_t triangle_count)
-        : order(triangle_count), task_size_(std::max<size_t>(32'768, triangle_count / 64)) {}
+    explicit Builder(size_t triangle_count) : order(triangle_count), task_size_(std::max<size_t>(32'768, triangle_count / 64)) {}
 
     // Appends the node with these children, and all below it: depth first, whatever the number of threads.
     Subtree add_node(const Children& children, LargeArray<BvhNode>& nodes) {
@@ -289,8 +280,7 @@ class Builder {
         nodes.push_back(make_node(children));
         std::array<Subtree, 4> below;
         const auto has_tasks = [&](const Range& range) { return range.primitives.size() > task_size_; };
-        if (std::ranges::any_of(children.ranges.begin(), children.ranges.begin() + children.count,
-                                has_tasks)) {
+        if (std::ranges::any_of(children.ranges.begin(), children.ranges.begin() + children.count, has_tasks)) {
             std::array<LargeArray<BvhNode>, 4> parts;
             in_parallel(children.count, 1, [&](size_t slot, size_t) {
                 parts[slot].reserve(children.ranges[slot].primitives.size() / 2);
@@ -309,8 +299,7 @@ class Builder {
                 }
             }
         } else {
-            for (size_t slot = 0; slot < children.count; ++slot)
-                below[slot] = add(children.ranges[slot], nodes);
+            for (size_t slot = 0; slot < children.count; ++slot) below[slot] = add(children.ranges[slot], nodes);
         }
         uint32_t most = 0;
         for (size_t slot = 0; slot < children.count; ++slot) {
@@ -326,8 +315,7 @@ class Builder {
     Subtree add(const Range& range, LargeArray<BvhNode>& nodes) {
         const Children children = open(range);
         if (children.count > 1) return add_node(children, nodes);
-        for (size_t i = 0; i < range.primitives.size(); ++i)
-            order[range.first + i] = range.primitives[i].triangle();
+        for (size_t i = 0; i < range.primitives.size(); ++i) order[range.first + i] = range.primitives[i].triangle();
         return {static_cast<uint32_t>(range.primitives.size() << bvh_leaf_shift | range.first), 0};
     }
 
@@ -399,8 +387,7 @@ LargeArray<BvhTriangle> world_triangles(const Scene& scene) {
             for (size_t i = begin; i < end; ++i) {
                 const auto triangle = static_cast<uint32_t>(mesh.first_triangle + i);
                 const uvec3 vertices = scene.triangles[triangle];
-                const mat3 rows =
-                    glm::transpose(mat3(world(vertices.x), world(vertices.y), world(vertices.z)));
+                const mat3 rows = glm::transpose(mat3(world(vertices.x), world(vertices.y), world(vertices.z)));
                 triangles[first + i] = {rows[0], instance, rows[1], triangle, rows[2], 0};
             }
         });

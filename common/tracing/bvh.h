@@ -10,8 +10,8 @@
 
 namespace lab {
 
-// Four children in 128 bytes = 8 texels: bounds as low/high rows of x, y and z, then references. A reference
-// is the index of an inner node, (triangle count << 28) | first triangle of a leaf, or 0 for no child.
+// Four children in 128 bytes = 8 texels: bounds as low/high rows of x, y and z, then references. A reference is the index of an
+// inner node, (triangle count << 28) | first triangle of a leaf, or 0 for no child.
 struct BvhNode {
     std::array<std::array<std::array<float, 4>, 2>, 3> bounds;  // [axis][low, high][child]; none: low > high
     std::array<uint32_t, 4> children;
@@ -25,16 +25,16 @@ struct BvhNode {
 };
 static_assert(sizeof(BvhNode) == 128);
 
-// Covers the rounding errors of box and triangle tests, a few times 2^-24 of the coordinates. The traversal
-// adds as much for the ray's origin.
+// Covers the rounding errors of box and triangle tests, a few times 2^-24 of the coordinates. The traversal adds as much for the
+// ray's origin.
 inline constexpr float bvh_padding = 0x1p-20f;
 
 inline constexpr uint32_t bvh_leaf_shift = 28;
 static_assert(max_triangle_count < size_t{1} << bvh_leaf_shift);
 inline bool is_bvh_leaf(uint32_t reference) { return reference >> bvh_leaf_shift != 0; }
 
-// World-space vertices of a triangle axis by axis, with ids in the fourth components: 48 bytes = 3 texels.
-// The traversal permutes the axes by the order in which it reads them.
+// World-space vertices of a triangle axis by axis, with ids in the fourth components: 48 bytes = 3 texels. The traversal permutes
+// the axes by the order in which it reads them.
 struct BvhTriangle {
     vec3 x;
     uint32_t instance;
@@ -61,21 +61,20 @@ using LargeArray = std::vector<T, Uninitialized<T>>;
 struct Bvh {
     LargeArray<BvhNode> nodes;          // node 0 is the root; children follow their parents
     LargeArray<BvhTriangle> triangles;  // in the order of the leaves
-    uint32_t max_stack_entries = 1;  // of a traversal that pushes all but the nearest child, with a sentinel
+    uint32_t max_stack_entries = 1;     // of a traversal that pushes all but the nearest child, with a sentinel
     double build_seconds = 0;
 };
 
 // Triangles of all instances. Throws UserError for more than references to leaves can count: 2^28 - 1.
 uint64_t countable_triangles(const Scene& scene);
 
-// World-space triangles of all instances; positions are transformed in double. Throws UserError for too many,
-// and for coordinates beyond 1e18, whose products would overflow in the triangle test.
+// World-space triangles of all instances; positions are transformed in double. Throws UserError for too many, and for coordinates
+// beyond 1e18, whose products would overflow in the triangle test.
 LargeArray<BvhTriangle> world_triangles(const Scene& scene);
 
-// Builds the tree of 0 to 2^28 - 1 triangles by the binned surface area heuristic (Wald, "On fast
-// construction of SAH-based bounding volume hierarchies", 2007): up to 32 bins on 3 axes, all divisions of up
-// to 4 triangles, binary splits collapsed to four children. The result does not depend on the number of
-// threads.
+// Builds the tree of 0 to 2^28 - 1 triangles by the binned surface area heuristic (Wald, "On fast construction of SAH-based
+// bounding volume hierarchies", 2007): up to 32 bins on 3 axes, all divisions of up to 4 triangles, binary splits collapsed to
+// four children. The result does not depend on the number of threads.
 Bvh build_bvh(std::span<const BvhTriangle> triangles);
 
 }  // namespace lab

@@ -8,12 +8,11 @@ namespace {
 
 class ComputeTracer : public Tracer {
   public:
-    ComputeTracer(const Device& device, const std::vector<ShaderSource>& shaders,
-                  std::span<const Binding> bindings)
+    ComputeTracer(const Device& device, const std::vector<ShaderSource>& shaders, std::span<const Binding> bindings)
         : kernel_(device, shaders.front(), bindings, sizeof(DispatchParameters)) {}
 
-    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                uint32_t block_count, uint32_t film_offset) const override {
+    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
+                uint32_t film_offset) const override {
         kernel_.record(commands, &dispatch, block_count * dispatch.threads_per_pixel, film_offset);
     }
 

@@ -25,8 +25,7 @@ template <typename T>
 GpuBvh::Texels::Texels(const Device& device, const LargeArray<T>& data, Usage usage)
     : buffer(device, std::span<const T>(data), usage) {
     if (usage == Usage::eUniformTexelBuffer)
-        view = {device.handle(), vk::BufferViewCreateInfo({}, buffer.handle(), vk::Format::eR32G32B32A32Uint,
-                                                          0, VK_WHOLE_SIZE)};
+        view = {device.handle(), vk::BufferViewCreateInfo({}, buffer.handle(), vk::Format::eR32G32B32A32Uint, 0, VK_WHOLE_SIZE)};
 }
 
 void GpuBvh::require_room(const Device& device, const Scene& scene) {
@@ -45,8 +44,7 @@ GpuBvh::GpuBvh(const Device& device, const Bvh& bvh)
 std::vector<Binding> GpuBvh::bindings() const {
     const auto binding = [&](uint32_t index, const Texels& texels) {
         if (usage_ == Usage::eStorageBuffer) return storage_binding(index, texels.buffer);
-        return Binding{
-            .index = index, .type = vk::DescriptorType::eUniformTexelBuffer, .texel_views = {*texels.view}};
+        return Binding{.index = index, .type = vk::DescriptorType::eUniformTexelBuffer, .texel_views = {*texels.view}};
     };
     return {binding(BINDING_BVH_NODES, nodes_), binding(BINDING_BVH_TRIANGLES, triangles_)};
 }

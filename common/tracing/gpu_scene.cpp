@@ -16,16 +16,15 @@ struct Array {
     std::span<const std::byte> data;
 };
 
-// Throws DeviceFailure for more textures than shaders can see. They see the light probe and both arrays of
-// the backend compute as images, too, and each other binding takes a place.
+// Throws DeviceFailure for more textures than shaders can see. They see the light probe and both arrays of the backend compute as
+// images, too, and each other binding takes a place.
 void require_visible(const Device& device, size_t texture_count) {
     const auto& limits = device.limits();
     const size_t most = std::min(std::max(limits.maxPerStageDescriptorSampledImages, 3u) - 3,
                                  std::max(limits.maxPerStageResources, BINDING_COUNT) - BINDING_COUNT);
     if (texture_count > most)
-        throw DeviceFailure("the scene has " + std::to_string(texture_count) +
-                            " textures, and shaders of the device see " + std::to_string(most) +
-                            " at most: join some of them");
+        throw DeviceFailure("the scene has " + std::to_string(texture_count) + " textures, and shaders of the device see " +
+                            std::to_string(most) + " at most: join some of them");
 }
 
 size_t bytes_of(const Image& probe) { return probe.pixels.size() / 3 * 4 * sizeof(float); }
@@ -36,22 +35,19 @@ std::string to_string(Strategy strategy) {
     return strategy == Strategy::both ? "both" : strategy == Strategy::light ? "light" : "bounces";
 }
 
-GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe)
-    : scene_(&scene) {
+GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe) : scene_(&scene) {
     const SceneFeatures features = features_of(scene);
     defines_ = features.defines();
     std::vector<Array> arrays;
-    const auto add = [&](const char* name, uint32_t binding, const auto& data,
-                         vk::BufferUsageFlags usage = {}) {
+    const auto add = [&](const char* name, uint32_t binding, const auto& data, vk::BufferUsageFlags usage = {}) {
         arrays.push_back({binding, std::as_bytes(std::span(data))});
-        memory_needs_.push_back(
-            {name, arrays.back().data.size(), usage | vk::BufferUsageFlagBits::eStorageBuffer});
+        memory_needs_.push_back({name, arrays.back().data.size(), usage | vk::BufferUsageFlagBits::eStorageBuffer});
     };
     // The driver builds its acceleration structure from the first two.
     vk::BufferUsageFlags build_input;
     if (device.has_acceleration_structures())
-        build_input = vk::BufferUsageFlagBits::eAccelerationStructureBuildInputReadOnlyKHR |
-                      vk::BufferUsageFlagBits::eShaderDeviceAddress;
+        build_input =
+            vk::BufferUsageFlagBits::eAccelerationStructureBuildInputReadOnlyKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress;
     add("positions", BINDING_POSITIONS, scene.positions, build_input);
     add("triangles", BINDING_TRIANGLES, scene.triangles, build_input);
     add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
@@ -75,8 +71,7 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, 
     std::vector<uvec2> texture_sizes;
     if (features.textures) {
         add("texture coordinates", BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
-        for (const Texture& texture : scene.textures)
-            texture_sizes.emplace_back(texture.width, texture.height);
+        for (const Texture& texture : scene.textures) texture_sizes.emplace_back(texture.width, texture.height);
         add("sizes of textures", BINDING_TEXTURE_SIZES, texture_sizes);
     }
     if (features.transforms) add("instances", BINDING_INSTANCES, scene.instances);
@@ -119,8 +114,7 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
         defines_.push_back("TEXTURE_COUNT " + std::to_string(scene_->textures.size()));
     }
     if (features.light_probe) {
-        // Four channels: few devices have images of three floats. 32 bits, since a sun is brighter than 16
-        // bits hold.
+        // Four channels: few devices have images of three floats. 32 bits, since a sun is brighter than 16 bits hold.
         const Image& probe = *scene_->light_probe;
         std::vector<float> rgba;
         rgba.reserve(probe.pixels.size() / 3 * 4);

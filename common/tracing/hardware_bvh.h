@@ -1,5 +1,5 @@
-// The driver's acceleration structure for `pipeline` and `query`: a bottom level (BLAS) per mesh file, a top
-// level (TLAS) of instances.
+// The driver's acceleration structure for `pipeline` and `query`: a bottom level (BLAS) per mesh file, a top level (TLAS) of
+// instances.
 #pragma once
 #include <optional>
 
@@ -12,8 +12,7 @@ std::vector<uint32_t> material_classes(const Scene& scene);
 
 class HardwareBvh {
   public:
-    // Builds and compacts. The device must support acceleration structures. Throws DeviceFailure if memory
-    // runs out.
+    // Builds and compacts. The device must support acceleration structures. Throws DeviceFailure if memory runs out.
     HardwareBvh(const Device& device, const GpuScene& scene);
 
     // The top level, and the first triangle of each geometry of each instance.
@@ -30,8 +29,7 @@ class HardwareBvh {
         vk::DeviceAddress address = 0;
     };
     Level make_level(vk::AccelerationStructureTypeKHR type, vk::DeviceSize size) const;
-    Level build_level(vk::AccelerationStructureTypeKHR type,
-                      const std::vector<vk::AccelerationStructureGeometryKHR>& geometries,
+    Level build_level(vk::AccelerationStructureTypeKHR type, const std::vector<vk::AccelerationStructureGeometryKHR>& geometries,
                       const std::vector<vk::AccelerationStructureBuildRangeInfoKHR>& ranges);
     Level compact(const Level& level);
     Level build_mesh(const GpuScene& scene, const Mesh& mesh);

@@ -8,12 +8,10 @@
 namespace lab {
 namespace {
 
-constexpr auto all_stages = vk::ShaderStageFlagBits::eRaygenKHR | vk::ShaderStageFlagBits::eMissKHR |
-                            vk::ShaderStageFlagBits::eClosestHitKHR;
+constexpr auto all_stages =
+    vk::ShaderStageFlagBits::eRaygenKHR | vk::ShaderStageFlagBits::eMissKHR | vk::ShaderStageFlagBits::eClosestHitKHR;
 
-vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) {
-    return (size + alignment - 1) / alignment * alignment;
-}
+vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
 
 // Shaders in the order of their records: ray generation, the miss shader, a hit group per material class.
 constexpr uint32_t first_miss_group = 1;
@@ -21,8 +19,7 @@ constexpr uint32_t first_hit_group = 2;
 
 class PipelineTracer : public Tracer {
   public:
-    PipelineTracer(const Device& device, const std::vector<ShaderSource>& shaders,
-                   const std::vector<Binding>& bindings)
+    PipelineTracer(const Device& device, const std::vector<ShaderSource>& shaders, const std::vector<Binding>& bindings)
         : descriptors_(device, bindings, all_stages) {
         const auto set_layout = descriptors_.layout();
         const vk::PushConstantRange range(all_stages, 0, sizeof(DispatchParameters));
@@ -31,13 +28,11 @@ class PipelineTracer : public Tracer {
         fill_shader_binding_table(device, static_cast<uint32_t>(shaders.size()));
     }
 
-    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                uint32_t block_count, uint32_t film_offset) const override {
+    void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
+                uint32_t film_offset) const override {
         commands.bindPipeline(vk::PipelineBindPoint::eRayTracingKHR, *pipeline_);
-        commands.bindDescriptorSets(vk::PipelineBindPoint::eRayTracingKHR, *layout_, 0, descriptors_.handle(),
-                                    film_offset);
-        (*commands).pushConstants(*layout_, all_stages, 0, sizeof dispatch, &dispatch,
-                                  *commands.getDispatcher());
+        commands.bindDescriptorSets(vk::PipelineBindPoint::eRayTracingKHR, *layout_, 0, descriptors_.handle(), film_offset);
+        (*commands).pushConstants(*layout_, all_stages, 0, sizeof dispatch, &dispatch, *commands.getDispatcher());
         commands.traceRaysKHR(ray_generation_records_, miss_records_, hit_records_, {},
                               block_count * dispatch.threads_per_pixel * BLOCK_SIZE, 1, 1);
     }
@@ -56,37 +51,32 @@ class PipelineTracer : public Tracer {
                                : index >= first_miss_group ? vk::ShaderStageFlagBits::eMissKHR
                                                            : vk::ShaderStageFlagBits::eRaygenKHR;
             stages.emplace_back(vk::PipelineShaderStageCreateFlags(), stage, *modules.back(), "main");
-            groups.emplace_back(is_hit ? vk::RayTracingShaderGroupTypeKHR::eTrianglesHitGroup
-                                       : vk::RayTracingShaderGroupTypeKHR::eGeneral,
-                                is_hit ? VK_SHADER_UNUSED_KHR : index, is_hit ? index : VK_SHADER_UNUSED_KHR,
-                                VK_SHADER_UNUSED_KHR, VK_SHADER_UNUSED_KHR);
+            groups.emplace_back(
+                is_hit ? vk::RayTracingShaderGroupTypeKHR::eTrianglesHitGroup : vk::RayTracingShaderGroupTypeKHR::eGeneral,
+                is_hit ? VK_SHADER_UNUSED_KHR : index, is_hit ? index : VK_SHADER_UNUSED_KHR, VK_SHADER_UNUSED_KHR,
+                VK_SHADER_UNUSED_KHR);
         }
         // Only the ray generation shader traces rays: the loop over a path needs no recursion.
         constexpr uint32_t max_recursion_depth = 1;
-        const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {},
-                                                       *layout_);
+        const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {}, *layout_);
         pipeline_ = {device.handle(), nullptr, device.pipeline_cache(), info};
     }
 
-    // Fills the driver's table of shader handles. Sections of records must be aligned to the larger of two
-    // alignments; here every record is.
+    // Fills the driver's table of shader handles. Sections of records must be aligned to the larger of two alignments; here every
+    // record is.
     void fill_shader_binding_table(const Device& device, uint32_t group_count) {
         const auto properties = device.properties<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
         const vk::DeviceSize handle_size = properties.shaderGroupHandleSize;
-        const vk::DeviceSize alignment =
-            std::max(properties.shaderGroupBaseAlignment, properties.shaderGroupHandleAlignment);
+        const vk::DeviceSize alignment = std::max(properties.shaderGroupBaseAlignment, properties.shaderGroupHandleAlignment);
         const vk::DeviceSize stride = align(handle_size, alignment);
-        const auto handles =
-            pipeline_.getRayTracingShaderGroupHandlesKHR<uint8_t>(0, group_count, group_count * handle_size);
+        const auto handles = pipeline_.getRayTracingShaderGroupHandlesKHR<uint8_t>(0, group_count, group_count * handle_size);
         // Buffers start at an address of their own, so the table is moved to the next aligned one.
-        table_.emplace(
-            device, group_count * stride + alignment,
-            vk::BufferUsageFlagBits::eShaderBindingTableKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress);
+        table_.emplace(device, group_count * stride + alignment,
+                       vk::BufferUsageFlagBits::eShaderBindingTableKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress);
         const vk::DeviceAddress start = align(table_->address(), alignment);
         std::vector<uint8_t> table(table_->size());
         for (uint32_t group = 0; group < group_count; ++group)
-            std::memcpy(&table[start - table_->address() + group * stride], &handles[group * handle_size],
-                        handle_size);
+            std::memcpy(&table[start - table_->address() + group * stride], &handles[group * handle_size], handle_size);
         table_->write(table.data(), table.size());
         const auto section = [&](uint32_t first, uint32_t end) {
             return vk::StridedDeviceAddressRegionKHR(start + first * stride, stride, (end - first) * stride);

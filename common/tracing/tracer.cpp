@@ -13,17 +13,16 @@ void require_support(Backend backend, const DeviceDescription& device) {
     std::string working;
     for (const Backend other : all_backends)
         if (device.supports(other)) working += (working.empty() ? "" : ", ") + to_string(other);
-    throw DeviceError("device '" + device.name + "' lacks " + device.missing.at(backend).front() +
-                      " for the backend '" + to_string(backend) + "'; these work on it: " + working);
+    throw DeviceError("device '" + device.name + "' lacks " + device.missing.at(backend).front() + " for the backend '" +
+                      to_string(backend) + "'; these work on it: " + working);
 }
 
 // These shaders of shaders/ and all that they include.
-std::set<std::filesystem::path> files_of(std::initializer_list<const char*> names,
-                                         const Estimator& estimator) {
+std::set<std::filesystem::path> files_of(std::initializer_list<const char*> names, const Estimator& estimator) {
     std::set<std::filesystem::path> files;
     for (const char* name : names)
-        for (const auto& file : shader_files(
-                 {.file = project_folder() / "shaders" / name, .named_includes = named_includes(estimator)}))
+        for (const auto& file :
+             shader_files({.file = project_folder() / "shaders" / name, .named_includes = named_includes(estimator)}))
             files.insert(file);
     return files;
 }
@@ -57,8 +56,8 @@ ShaderSource shader_source(const std::string& name, const GpuScene& scene, const
 }
 
 std::set<std::filesystem::path> shader_files(const Estimator& estimator) {
-    return files_of({"engine/render.comp", "engine/render.rgen", "engine/add_samples.comp",
-                     "engine/trace_ray/closest_hit.rchit", "engine/trace_ray/miss.rmiss"},
+    return files_of({"engine/render.comp", "engine/render.rgen", "engine/add_samples.comp", "engine/trace_ray/closest_hit.rchit",
+                     "engine/trace_ray/miss.rmiss"},
                     estimator);
 }
 

@@ -18,32 +18,30 @@ namespace lab {
 struct Estimator {
     std::filesystem::path file;
     std::vector<std::string> defines = {};
-    // If `file` observes another estimator: that one's file, included as "observed.glsl", and an edit of the
-    // text of both.
+    // If `file` observes another estimator: that one's file, included as "observed.glsl", and an edit of the text of both.
     std::filesystem::path observed = {};
     std::function<std::string(const std::string&)> edit = {};
 };
 
-// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. The chapter's folder may
-// replace the defaults of "random_words.glsl" and "sample_loop.glsl" by files of these names.
+// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. The chapter's folder may replace the
+// defaults of "random_words.glsl" and "sample_loop.glsl" by files of these names.
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator);
 
 // All files that an estimator is compiled from with any backend.
 std::set<std::filesystem::path> shader_files(const Estimator& estimator);
 
-// Hash of an estimator's defines and shaders, without those that depend on backend or device. Renders with
-// equal hashes can be joined.
+// Hash of an estimator's defines and shaders, without those that depend on backend or device. Renders with equal hashes can be
+// joined.
 uint64_t estimator_hash(const Estimator& estimator);
 
 // An estimator compiled for a scene and a backend.
 class Tracer {
   public:
     virtual ~Tracer() = default;
-    // Records the rendering of `block_count` blocks of pixels up to the dispatch's sample count. With
-    // SHARED_PIXELS shaders/engine/add_samples.comp must add the samples to the film. `film_offset` in bytes is that
-    // of the film's binding.
-    virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch,
-                        uint32_t block_count, uint32_t film_offset) const = 0;
+    // Records the rendering of `block_count` blocks of pixels up to the dispatch's sample count. With SHARED_PIXELS
+    // shaders/engine/add_samples.comp must add the samples to the film. `film_offset` in bytes is that of the film's binding.
+    virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
+                        uint32_t film_offset) const = 0;
 };
 
 // A scene's acceleration structure, shared by its tracers.
@@ -52,16 +50,14 @@ class AccelerationStructure {
     virtual ~AccelerationStructure() = default;
     // The shaders of make_tracer(), main program first.
     virtual std::vector<ShaderSource> shaders(const Estimator& estimator) const = 0;
-    // `bindings`: render parameters, film, ray counters, and samples of shared pixels. Throws UserError if
-    // the estimator does not compile.
-    virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator,
-                                                std::span<const Binding> bindings) const = 0;
+    // `bindings`: render parameters, film, ray counters, and samples of shared pixels. Throws UserError if the estimator does not
+    // compile.
+    virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator, std::span<const Binding> bindings) const = 0;
     virtual size_t bytes() const = 0;          // of device memory
     virtual double build_seconds() const = 0;  // on the CPU or the device
 };
 
 // Device and scene must outlive the result. Throws DeviceError if the device lacks the backend.
-std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
-                                                                    const GpuScene& scene);
+std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device, const GpuScene& scene);
 
 }  // namespace lab

@@ -11,8 +11,7 @@
 
 namespace lab {
 
-// Call in a handler of the work's exceptions: returns the message for the window, or rethrows the loss of the
-// device.
+// Call in a handler of the work's exceptions: returns the message for the window, or rethrows the loss of the device.
 inline std::string window_message(const std::exception& error) {
     if (dynamic_cast<const vk::DeviceLostError*>(&error)) throw;
     return failure_of(error).message;

@@ -23,8 +23,7 @@ dvec3 turn(dvec3 direction, const dvec3& up, double right_angle, double up_angle
     direction = rotate(direction, -right_angle, up);
     const double elevation = std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
     const double limit = std::asin(steepest_sine);
-    const double turned =
-        std::clamp(elevation + up_angle, std::min(-limit, elevation), std::max(limit, elevation));
+    const double turned = std::clamp(elevation + up_angle, std::min(-limit, elevation), std::max(limit, elevation));
     dvec3 level = direction - glm::dot(direction, up) * up;
     if (glm::length(level) < 1e-9) return direction;  // straight up: no direction to turn to
     level = glm::normalize(level);
@@ -48,16 +47,15 @@ CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motio
         forward = turn(forward, up, radians_per_height * motion.drag.x, -radians_per_height * motion.drag.y);
     if (navigation == Navigation::first_person) {
         target = position + distance * forward;
-        speed_ = static_cast<float>(
-            std::clamp(speed_ * std::pow(speed_per_notch, motion.zoom), 1e-4 * size_, 1e2 * size_));
+        speed_ = static_cast<float>(std::clamp(speed_ * std::pow(speed_per_notch, motion.zoom), 1e-4 * size_, 1e2 * size_));
     } else {
         const double closer = distance * std::pow(distance_per_notch, motion.zoom);
         position = target - std::clamp(closer, 1e-4 * size_, std::max(1e3 * size_, distance)) * forward;
     }
     dvec3 right = glm::cross(forward, up);
     right = glm::length(right) > 1e-9 ? glm::normalize(right) : dvec3(0);
-    const dvec3 step = double{speed_} * (double{motion.steps.x} * right + double{motion.steps.y} * up +
-                                         double{motion.steps.z} * forward);
+    const dvec3 step =
+        double{speed_} * (double{motion.steps.x} * right + double{motion.steps.y} * up + double{motion.steps.z} * forward);
     CameraPose moved = pose;
     moved.position = vec3(position + step);
     moved.target = vec3(target + step);

@@ -22,9 +22,8 @@ class CameraControl {
     // Adapts the speed to the size of the scene.
     void fit_to(const Bounds& bounds);
 
-    // First person: dragging turns the head, the wheel changes the speed. Orbit: dragging turns the camera
-    // about its target, the wheel changes the distance. Steps move both camera and target. `up` stays the
-    // upright axis.
+    // First person: dragging turns the head, the wheel changes the speed. Orbit: dragging turns the camera about its target, the
+    // wheel changes the distance. Steps move both camera and target. `up` stays the upright axis.
     CameraPose move(const CameraPose& pose, const CameraMotion& motion);
 
     Navigation navigation = Navigation::first_person;

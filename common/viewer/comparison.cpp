@@ -72,9 +72,7 @@ void Comparison::update(Session& first, double seconds, bool is_moving) {
     if (!had_second) first.restart();  // both start together
     second_->change(with_same_view(second_->options(), first.options()));
     second_->is_paused = first.is_paused;
-    const auto progress = [&](const Session& session) {
-        return equal == Equal::time ? session.seconds() : session.samples();
-    };
+    const auto progress = [&](const Session& session) { return equal == Equal::time ? session.seconds() : session.samples(); };
     // Reduced pictures are about to be replaced.
     const bool are_complete = first.reduction() == 1 && second_->reduction() == 1;
     first.waits = are_complete && progress(first) > progress(*second_);
@@ -98,23 +96,19 @@ std::vector<Layer> Comparison::layers(const Session& first, const Rectangle& whe
 }
 
 std::optional<Difference> Comparison::difference(const Session& first) const {
-    if (!second_ || first.earlier_snapshot().pixels.empty() || second_->earlier_snapshot().pixels.empty())
-        return std::nullopt;
+    if (!second_ || first.earlier_snapshot().pixels.empty() || second_->earlier_snapshot().pixels.empty()) return std::nullopt;
     // Images of different sizes are about to be replaced.
     const FilmImage &a = first.last_snapshot(), &b = second_->last_snapshot();
     if (a.pixels.size() != b.pixels.size()) return std::nullopt;
     const glm::uvec2 size(a.width, a.height);
     const NoiseEstimate noise_a = estimate_noise(first.earlier_snapshot(), a, {0, 0}, size),
                         noise_b = estimate_noise(second_->earlier_snapshot(), b, {0, 0}, size);
-    const auto mean = [](const NoiseEstimate& noise) {
-        return (noise.mean[0] + noise.mean[1] + noise.mean[2]) / 3;
-    };
+    const auto mean = [](const NoiseEstimate& noise) { return (noise.mean[0] + noise.mean[1] + noise.mean[2]) / 3; };
     if (!(mean(noise_b) > 0)) return std::nullopt;
     // Pixels are independent, the channels of a pixel are not.
     const double pixels = static_cast<double>(a.pixels.size());
-    const Difference difference{
-        mean(noise_a) - mean(noise_b),
-        std::hypot(noise_a.standard_error, noise_b.standard_error) / std::sqrt(pixels), pixels};
+    const Difference difference{mean(noise_a) - mean(noise_b),
+                                std::hypot(noise_a.standard_error, noise_b.standard_error) / std::sqrt(pixels), pixels};
     return difference.relative_to(mean(noise_b));
 }
 

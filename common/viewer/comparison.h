@@ -22,8 +22,8 @@ class Comparison {
     const std::string& message() const { return message_; }  // why there is no second render, or empty
     const Session& second() const { return *second_; }
 
-    // Does a frame's work of both in about so many seconds. The second follows the first in scene, camera,
-    // path length and view; the one that is ahead waits.
+    // Does a frame's work of both in about so many seconds. The second follows the first in scene, camera, path length and view;
+    // the one that is ahead waits.
     void update(Session& first, double seconds, bool is_moving);
 
     Equal equal = Equal::time;

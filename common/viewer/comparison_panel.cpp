@@ -17,8 +17,7 @@ void draw_choice(Comparison& comparison, const Session& first) {
         const std::string same = first.chapter().name + ", with the settings of now";
         if (ImGui::Selectable(same.c_str())) comparison.start(first, first.chapter().name);
         for (const std::string& chapter : comparison.chapters())
-            if (chapter != first.chapter().name && ImGui::Selectable(chapter.c_str()))
-                comparison.start(first, chapter);
+            if (chapter != first.chapter().name && ImGui::Selectable(chapter.c_str())) comparison.start(first, chapter);
         ImGui::EndCombo();
     }
     if (!comparison.is_active()) return;
@@ -40,14 +39,11 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
     row("left:", first);
     row("right:", second);
     if (const auto difference = comparison.difference(first))
-        ImGui::Text("left - right: %+.2f %% ± %.2f %%", 100 * difference->value,
-                    100 * 1.96 * difference->standard_error);
+        ImGui::Text("left - right: %+.2f %% ± %.2f %%", 100 * difference->value, 100 * 1.96 * difference->standard_error);
     if (const auto speedup = comparison.speedup(first))
         ImGui::TextWrapped("to equal error, right takes %.3g times as long as left", *speedup);
-    const uint32_t length = first.build().job.parameters.max_path_length,
-                   other = second.build().job.parameters.max_path_length;
-    if (length != other)
-        ImGui::TextWrapped("paths end after %u bounces left, %u right: the images differ", length, other);
+    const uint32_t length = first.build().job.parameters.max_path_length, other = second.build().job.parameters.max_path_length;
+    if (length != other) ImGui::TextWrapped("paths end after %u bounces left, %u right: the images differ", length, other);
     if (!second.message().empty()) ImGui::TextWrapped("%s", second.message().c_str());
 }
 
@@ -57,8 +53,7 @@ std::string half_label(const Session& session, const Session& other) {
     std::string label = std::filesystem::path(session.chapter().name).filename().string();
     std::replace(label.begin(), label.end(), '_', ' ');  // where lines may break
     if (session.chapter().name != other.chapter().name) return label;
-    const std::string flags = session.build().job.record.settings + " --",
-                      others = other.build().job.record.settings + " --";
+    const std::string flags = session.build().job.record.settings + " --", others = other.build().job.record.settings + " --";
     for (size_t from = 0, to; (to = flags.find(" --", from)) != std::string::npos; from = to + 1)
         if (others.find(flags.substr(from, to - from) + " --") == std::string::npos)
             label += "\n" + flags.substr(from, to - from);
@@ -69,18 +64,15 @@ void draw_halves(const Comparison& comparison, const Session& first, const Recta
     if (!comparison.is_active()) return;
     const Placement placement(picture);
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    list.AddLine(placement.at({comparison.split, 0}), placement.at({comparison.split, 1}),
-                 IM_COL32(255, 255, 255, 200));
+    list.AddLine(placement.at({comparison.split, 0}), placement.at({comparison.split, 1}), IM_COL32(255, 255, 255, 200));
     const auto draw_label = [&](const std::string& label, float from, float to) {
         const ImVec2 corner = placement.at({from, 0}), end = placement.at({to, 1});
         const float margin = 0.3f * ImGui::GetFontSize(), width = end.x - corner.x - 2 * margin;
         if (width < ImGui::GetFontSize()) return;  // hardly anything is seen of this half
         const ImVec2 size = ImGui::CalcTextSize(label.c_str(), nullptr, false, width);
         list.PushClipRect(corner, end, true);
-        list.AddRectFilled(corner, {corner.x + size.x + 2 * margin, corner.y + size.y + 2 * margin},
-                           IM_COL32(0, 0, 0, 160));
-        list.AddText(nullptr, 0, {corner.x + margin, corner.y + margin}, IM_COL32_WHITE, label.c_str(),
-                     nullptr, width);
+        list.AddRectFilled(corner, {corner.x + size.x + 2 * margin, corner.y + size.y + 2 * margin}, IM_COL32(0, 0, 0, 160));
+        list.AddText(nullptr, 0, {corner.x + margin, corner.y + margin}, IM_COL32_WHITE, label.c_str(), nullptr, width);
         list.PopClipRect();
     };
     const Session& second = comparison.second();

@@ -29,8 +29,7 @@ void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t
     ImGui::SameLine();
     if (is_given) {
         int number = static_cast<int>(*value);
-        if (ImGui::SliderInt(label, &number, 0, high, "%d", ImGuiSliderFlags_AlwaysClamp))
-            value = static_cast<uint32_t>(number);
+        if (ImGui::SliderInt(label, &number, 0, high, "%d", ImGuiSliderFlags_AlwaysClamp)) value = static_cast<uint32_t>(number);
     } else {
         ImGui::TextUnformatted(label);
     }
@@ -39,12 +38,10 @@ void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t
 
 // A field for a whole number that takes effect on Enter.
 bool number_field(const char* label, uint32_t& number) {
-    return ImGui::InputScalar(label, ImGuiDataType_U32, &number, nullptr, nullptr, "%u",
-                              ImGuiInputTextFlags_EnterReturnsTrue);
+    return ImGui::InputScalar(label, ImGuiDataType_U32, &number, nullptr, nullptr, "%u", ImGuiInputTextFlags_EnterReturnsTrue);
 }
 
-void draw_chapter_option(const ChapterOption& option, const RenderParameters& parameters,
-                         std::optional<double>& value) {
+void draw_chapter_option(const ChapterOption& option, const RenderParameters& parameters, std::optional<double>& value) {
     const char* label = option.name.c_str() + 2;  // without the dashes
     const double low = option.low, high = option.high;
     if (const auto* member = std::get_if<uint32_t RenderParameters::*>(&option.parameter)) {
@@ -68,13 +65,11 @@ void draw_progress(const Session& session, double frames_per_second) {
     ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
     ImGui::Separator();
     if (session.target_samples() < UINT32_MAX - record.first_sample)
-        ImGui::Text("%.6g of %u samples per pixel in %s", samples, session.target_samples(),
-                    duration_text(seconds).c_str());
+        ImGui::Text("%.6g of %u samples per pixel in %s", samples, session.target_samples(), duration_text(seconds).c_str());
     else
         ImGui::Text("%.6g samples per pixel in %s", samples, duration_text(seconds).c_str());
-    ImGui::TextWrapped(
-        "per second: %s samples, %s rays, %.0f frames", short_number(samples / seconds).c_str(),
-        short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
+    ImGui::TextWrapped("per second: %s samples, %s rays, %.0f frames", short_number(samples / seconds).c_str(),
+                       short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
     constexpr double wanted = 0.01;
     if (const auto error = session.relative_error(); error && *error > wanted)
         ImGui::TextWrapped("relative error %.3g %%, 1 %% in %s", 100 * *error,
@@ -82,8 +77,7 @@ void draw_progress(const Session& session, double frames_per_second) {
     else if (error)
         ImGui::Text("relative error %.2g %%", 100 * *error);
     else
-        ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves"
-                                                       : "error not known yet");
+        ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves" : "error not known yet");
     if (session.is_building()) ImGui::TextUnformatted("building ...");
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
     if (!session.message().empty()) ImGui::TextWrapped("%s", session.message().c_str());
@@ -105,8 +99,7 @@ void draw_picture(const Session& session, Options& options) {
     if (ImGui::BeginCombo("view", options.image.view ? options.image.view->name.c_str() : "radiance")) {
         if (ImGui::Selectable("radiance", !options.image.view)) options.image.view = nullptr;
         for (const View& view : views()) {
-            if (can_show(view, session.build().backend) &&
-                ImGui::Selectable(view.name.c_str(), options.image.view == &view))
+            if (can_show(view, session.build().backend) && ImGui::Selectable(view.name.c_str(), options.image.view == &view))
                 options.image.view = &view;
         }
         ImGui::EndCombo();
@@ -114,31 +107,27 @@ void draw_picture(const Session& session, Options& options) {
     ImGui::SliderFloat("exposure", &options.appearance.exposure, -10, 10, "%.1f EV");
     uint32_t width = size.x, height = size.y;
     if (number_field("width (pixels)", width)) options.image.width = std::clamp(width, 1u, max_image_extent);
-    if (number_field("height (pixels)", height))
-        options.image.height = std::clamp(height, 1u, max_image_extent);
+    if (number_field("height (pixels)", height)) options.image.height = std::clamp(height, 1u, max_image_extent);
 }
 
 }  // namespace
 
 Controls::Controls() {
     std::error_code ignored;  // without the folder there is nothing to choose from
-    for (const auto& entry :
-         std::filesystem::directory_iterator(project_folder() / "assets" / "scenes", ignored))
+    for (const auto& entry : std::filesystem::directory_iterator(project_folder() / "assets" / "scenes", ignored))
         if (entry.path().extension() == ".json") scenes_.push_back(entry.path());
     std::sort(scenes_.begin(), scenes_.end());
 }
 
-int Controls::width() const {
-    return static_cast<int>(std::ceil(panel_width() * ImGui::GetIO().DisplayFramebufferScale.x));
-}
+int Controls::width() const { return static_cast<int>(std::ceil(panel_width() * ImGui::GetIO().DisplayFramebufferScale.x)); }
 
 void Controls::draw(Session& session, CameraControl& camera_control, double frames_per_second,
                     const std::function<void()>& further) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({panel_width(), ImGui::GetIO().DisplaySize.y});
     ImGui::Begin("Controls", nullptr,
-                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus);
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PushItemWidth(0.45f * panel_width());
     draw_progress(session, frames_per_second);
     draw_actions(session);
@@ -167,8 +156,8 @@ void Controls::draw_actions(Session& session) {
 void Controls::save(Session& session, const char* ending) {
     const std::string scene = session.build().job.scene->file.stem().string();
     const std::string samples = std::to_string(static_cast<uint64_t>(session.samples()));
-    const auto file = std::filesystem::path("output") /
-                      (session.chapter().name + "_" + scene + "_" + samples + "_samples" + ending);
+    const auto file =
+        std::filesystem::path("output") / (session.chapter().name + "_" + scene + "_" + samples + "_samples" + ending);
     try {
         check_writable(file);
         session.save({file});
@@ -190,20 +179,17 @@ void Controls::draw_scene(Session& session, Options& options) {
     }
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Or drop a .json or .obj file on the window");
     vec3 background = session.background();
-    if (ImGui::ColorEdit3("background radiance", &background.x,
-                          ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR))
+    if (ImGui::ColorEdit3("background radiance", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR))
         options.light.background = glm::max(background, vec3(0));
     ImGui::Checkbox("specular lobes (Ks)", &options.scene.specular);
 }
 
 void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options) {
     ImGui::Separator();
-    optional_slider("max path length", options.light.max_path_length, parameters.max_path_length,
-                    longest_shown_path);
+    optional_slider("max path length", options.light.max_path_length, parameters.max_path_length, longest_shown_path);
     optional_slider("only path length", options.light.only_path_length, 1, longest_shown_path);
     if (options.light.max_path_length && options.light.only_path_length)
-        options.light.max_path_length =
-            std::max(*options.light.max_path_length, *options.light.only_path_length);
+        options.light.max_path_length = std::max(*options.light.max_path_length, *options.light.only_path_length);
     draw_strategy(chapter, options.estimator);
     options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i)
@@ -218,13 +204,11 @@ void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parame
 void Controls::draw_camera(Session& session, CameraControl& camera_control) {
     ImGui::Separator();
     Navigation& navigation = camera_control.navigation;
-    if (ImGui::RadioButton("first person", navigation == Navigation::first_person))
-        navigation = Navigation::first_person;
+    if (ImGui::RadioButton("first person", navigation == Navigation::first_person)) navigation = Navigation::first_person;
     ImGui::SameLine();
     if (ImGui::RadioButton("orbit", navigation == Navigation::orbit)) navigation = Navigation::orbit;
     CameraPose pose = session.camera();
-    if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees",
-                           ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees", ImGuiSliderFlags_AlwaysClamp))
         session.set_camera(pose);
     const auto copy = [&](const char* button, const std::string& text) {
         if (!ImGui::Button(button)) return;

@@ -14,8 +14,7 @@ class Controls {
     Controls();
 
     // Call between Screen::begin_frame() and Screen::show(). `further` draws other sections of the panel.
-    void draw(Session& session, CameraControl& camera_control, double frames_per_second,
-              const std::function<void()>& further);
+    void draw(Session& session, CameraControl& camera_control, double frames_per_second, const std::function<void()>& further);
     int width() const;                               // pixels of the framebuffer
     vec2 seed_field() const { return seed_field_; }  // for tests
 

@@ -33,15 +33,13 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
     const auto& vertices = path.vertices;
     for (const PathVertex& vertex : vertices)
         for (const LightSample& light : vertex.light_samples)
-            draw_line(vertex.position, light.point,
-                      light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200), 1);
+            draw_line(vertex.position, light.point, light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200),
+                      1);
     for (const PathVertex& vertex : vertices) {
         if (vertex.parent < 0) continue;  // the camera's own ray is a point in the picture
         const vec3 start = vertices[static_cast<size_t>(vertex.parent)].position;
         constexpr float far = 1e3f;
-        const vec3 end = vertex.is_hit
-                             ? vertex.position
-                             : start + far * glm::length(start - camera.position) * vertex.direction;
+        const vec3 end = vertex.is_hit ? vertex.position : start + far * glm::length(start - camera.position) * vertex.direction;
         draw_line(start, end, IM_COL32(60, 200, 255, 255), 2);
     }
     for (size_t i = 0; i < vertices.size(); ++i) {
@@ -62,8 +60,7 @@ void draw_disc(const Image& picture, float scale, float width) {
         for (uint32_t x = 0; x < cells; ++x) {
             const glm::vec2 centre = 2.0f * (glm::vec2(x, y) + 0.5f) / static_cast<float>(cells) - 1.0f;
             if (glm::dot(centre, centre) >= 1) continue;
-            const glm::uvec2 first = glm::uvec2(x, y) * extent / cells,
-                             last = glm::uvec2(x + 1, y + 1) * extent / cells;
+            const glm::uvec2 first = glm::uvec2(x, y) * extent / cells, last = glm::uvec2(x + 1, y + 1) * extent / cells;
             vec3 sum(0);
             for (uint32_t py = first.y; py < last.y; ++py)
                 for (uint32_t px = first.x; px < last.x; ++px)

@@ -17,8 +17,7 @@ struct Placement {
     glm::vec2 corner, size;
 };
 
-// Draws a path over the picture: rays blue, light samples yellow or, if occluded, grey; the chosen vertex
-// stands out.
+// Draws a path over the picture: rays blue, light samples yellow or, if occluded, grey; the chosen vertex stands out.
 void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, const Rectangle& picture);
 
 // Draws the disc of a HemisphereView times a factor, coarser to be fast.

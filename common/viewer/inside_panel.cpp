@@ -20,12 +20,8 @@ ImVec4 colour_of(VerdictState state) {
     return state == VerdictState::agrees ? green : state == VerdictState::biased ? red : grey;
 }
 
-void text_colour(const char* name, const vec3& v) {
-    ImGui::TextWrapped("%s RGB %.3g %.3g %.3g", name, v.x, v.y, v.z);
-}
-void text_point(const char* name, const vec3& v) {
-    ImGui::TextWrapped("%s (%.3g, %.3g, %.3g)", name, v.x, v.y, v.z);
-}
+void text_colour(const char* name, const vec3& v) { ImGui::TextWrapped("%s RGB %.3g %.3g %.3g", name, v.x, v.y, v.z); }
+void text_point(const char* name, const vec3& v) { ImGui::TextWrapped("%s (%.3g, %.3g, %.3g)", name, v.x, v.y, v.z); }
 
 }  // namespace
 
@@ -34,15 +30,13 @@ int InsidePanel::height() const {
     return static_cast<int>(17 * ImGui::GetFontSize() * ImGui::GetIO().DisplayFramebufferScale.y);
 }
 
-void InsidePanel::draw(const Session& session, const Rectangle& picture, const Rectangle& panel,
-                       double seconds) {
+void InsidePanel::draw(const Session& session, const Rectangle& picture, const Rectangle& panel, double seconds) {
     select_clicked_pixel(session, picture);
     inspection_.update(session, seconds);
     overlay_.draw(session, picture);
     if (hovered_) overlay_.explain(session, *hovered_);
     if (inspection_.path())
-        draw_path(*inspection_.path(), inspection_.parameters().camera, inspection_.selection()->vertex,
-                  picture);
+        draw_path(*inspection_.path(), inspection_.parameters().camera, inspection_.selection()->vertex, picture);
 
     if (inspection_.selection() && panel.size.y > 0) draw_panel(panel);
 }
@@ -53,11 +47,10 @@ void InsidePanel::draw_panel(const Rectangle& panel) {
     ImGui::SetNextWindowSize({placement.size.x, placement.size.y});
     const auto& selection = *inspection_.selection();
     char title[80];
-    std::snprintf(title, sizeof title, "A path: sample %u of pixel (%u, %u)###path", selection.sample,
-                  selection.pixel.x, selection.pixel.y);
+    std::snprintf(title, sizeof title, "A path: sample %u of pixel (%u, %u)###path", selection.sample, selection.pixel.x,
+                  selection.pixel.y);
     bool is_open = true;
-    if (ImGui::Begin(title, &is_open,
-                     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse)) {
+    if (ImGui::Begin(title, &is_open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse)) {
         if (inspection_.is_building()) ImGui::TextColored(grey, "compiling the recorder ...");
         if (!inspection_.message().empty()) ImGui::TextWrapped("%s", inspection_.message().c_str());
         if (inspection_.path()) {
@@ -95,8 +88,8 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
     hovered_.reset();
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) was_dragged_ = io.WantCaptureMouse;
     if (ImGui::IsMouseDragging(ImGuiMouseButton_Left)) was_dragged_ = true;
-    const bool is_inside = glm::all(glm::greaterThanEqual(position, glm::vec2(0))) &&
-                           glm::all(glm::lessThan(position, glm::vec2(1)));
+    const bool is_inside =
+        glm::all(glm::greaterThanEqual(position, glm::vec2(0))) && glm::all(glm::lessThan(position, glm::vec2(1)));
     if (io.WantCaptureMouse || !is_inside) return;
     hovered_ = glm::min(glm::uvec2(position * glm::vec2(size)), size - 1u);
     // A drag moves the camera instead.
@@ -107,8 +100,7 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
 void InsidePanel::draw_verdict(const Session& session) {
     const VerdictState state = session.verdict_state();
     // Of constant height, so that nothing below jumps.
-    ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false,
-                      ImGuiWindowFlags_NoScrollbar);
+    ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false, ImGuiWindowFlags_NoScrollbar);
     ImGui::PushStyleColor(ImGuiCol_Text, colour_of(state));
     ImGui::TextWrapped("%s", session.verdict_text().c_str());
     if (session.has_moved()) ImGui::TextWrapped("F: back to the first camera");
@@ -122,15 +114,13 @@ void InsidePanel::draw_verdict(const Session& session) {
 void InsidePanel::draw_pixel(const Session& session) {
     const std::optional<Inspection::Selection>& selection = inspection_.selection();
     const FilmImage& film = session.last_snapshot();
-    const std::optional<glm::uvec2> pixel = hovered_    ? hovered_
-                                            : selection ? std::optional(selection->pixel)
-                                                        : std::nullopt;
+    const std::optional<glm::uvec2> pixel = hovered_ ? hovered_ : selection ? std::optional(selection->pixel) : std::nullopt;
     if (pixel && pixel->x < film.width && pixel->y < film.height) {
         const NoiseEstimate value = estimate_noise(session.earlier_snapshot(), film, *pixel, {1, 1});
         const glm::uvec2 corner = *pixel - glm::min(*pixel, glm::uvec2(3));
         const NoiseEstimate around = estimate_noise(session.earlier_snapshot(), film, corner, {7, 7});
-        ImGui::TextWrapped("pixel (%u, %u): mean of %.0f samples, %llu invalid", pixel->x, pixel->y,
-                           value.samples, static_cast<unsigned long long>(value.invalid_samples));
+        ImGui::TextWrapped("pixel (%u, %u): mean of %.0f samples, %llu invalid", pixel->x, pixel->y, value.samples,
+                           static_cast<unsigned long long>(value.invalid_samples));
         text_colour("radiance", vec3(value.mean[0], value.mean[1], value.mean[2]));
         ImGui::Text("standard error about %.2g", around.standard_error);
     } else {
@@ -160,11 +150,10 @@ void InsidePanel::draw_vertices() {
         const PathVertex& vertex = path.vertices[i];
         ImGui::PushID(static_cast<int>(i));
         char title[80];
-        std::snprintf(title, sizeof title, vertex.parent < 0 ? "x%zu, seen by the camera" : "x%zu, after x%d",
-                      i + 1, vertex.parent + 1);
+        std::snprintf(title, sizeof title, vertex.parent < 0 ? "x%zu, seen by the camera" : "x%zu, after x%d", i + 1,
+                      vertex.parent + 1);
         if (ImGui::Selectable(title, i == selection.vertex)) selection.vertex = i;
-        if (vertex.survival_probability)
-            ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
+        if (vertex.survival_probability) ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
         if (is_weighted) text_colour("throughput", vertex.throughput);
         if (vertex.is_hit) {
             text_point("position", vertex.position);
@@ -180,8 +169,7 @@ void InsidePanel::draw_vertices() {
                 ImGui::TextUnformatted("  hidden: adds nothing");
         }
         if (vertex.radiance != vec3(0)) text_colour("radiance found", vertex.radiance);
-        for (const float probability : vertex.lost_roulettes)
-            ImGui::Text("Russian roulette: ended, survival %.3g", probability);
+        for (const float probability : vertex.lost_roulettes) ImGui::Text("Russian roulette: ended, survival %.3g", probability);
         ImGui::PopID();
     }
 }
@@ -194,8 +182,7 @@ void InsidePanel::draw_hemisphere() {
     const HemisphereView& view = inspection_.hemisphere();
     if (view.samples() < 1) return;
     // Updates at twice the samples, or after the point has changed.
-    if (pictures_samples_ < 0 || view.samples() < pictures_samples_ ||
-        view.samples() >= 2 * pictures_samples_) {
+    if (pictures_samples_ < 0 || view.samples() < pictures_samples_ || view.samples() >= 2 * pictures_samples_) {
         pictures_ = view.pictures();
         pictures_samples_ = std::floor(view.samples());
     }
@@ -208,9 +195,8 @@ void InsidePanel::draw_hemisphere() {
     mean /= static_cast<double>(pictures_.incoming_radiance.pixels.size());
     ImGui::TextWrapped("what x%zu sees: incoming radiance, BRDF, cosine", vertex);
     const ImVec2 free = ImGui::GetContentRegionAvail();
-    const float width = std::max(std::min((free.x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3,
-                                          free.y - 3 * ImGui::GetTextLineHeightWithSpacing()),
-                                 1.0f);
+    const float width = std::max(
+        std::min((free.x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3, free.y - 3 * ImGui::GetTextLineHeightWithSpacing()), 1.0f);
     draw_disc(pictures_.incoming_radiance, mean > 0 ? static_cast<float>(0.25 / mean) : 1, width);
     ImGui::SameLine();
     draw_disc(pictures_.brdf, 1 / largest(pictures_.brdf), width);
@@ -261,8 +247,7 @@ bool Inspection::have_tools(const Session& session) {
     work_hash_ = hash;
     work_.start([&device = device_, wanted] {
         const AccelerationStructure& structure = *wanted->acceleration_structure;
-        wanted->recorder =
-            std::make_unique<PathRecorder>(device, structure, wanted->estimator, wanted->image_size);
+        wanted->recorder = std::make_unique<PathRecorder>(device, structure, wanted->estimator, wanted->image_size);
         wanted->hemisphere = std::make_unique<HemisphereView>(device, structure, wanted->estimator);
         return wanted;
     });
@@ -282,8 +267,7 @@ void Inspection::update(const Session& session, double seconds) {
     selection_->pixel = glm::min(selection_->pixel, parameters.image_size - 1u);
     if (shown_ != selection_) {
         if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample)
-            path_ = tools_->recorder->record(parameters, selection_->pixel,
-                                             parameters.first_sample + selection_->sample);
+            path_ = tools_->recorder->record(parameters, selection_->pixel, parameters.first_sample + selection_->sample);
         has_hemisphere_ = false;
         if (const auto& vertices = path_->vertices; !vertices.empty()) {  // else it traced no ray
             selection_->vertex = std::min(selection_->vertex, vertices.size() - 1);

@@ -64,8 +64,8 @@ class InsidePanel {
   public:
     explicit InsidePanel(const Device& device) : inspection_(device) {}
 
-    // Draws over the picture, and a panel for the path of a selected pixel. Renders hemispheres for about so
-    // many seconds. Call between Screen::begin_frame() and Screen::show().
+    // Draws over the picture, and a panel for the path of a selected pixel. Renders hemispheres for about so many seconds. Call
+    // between Screen::begin_frame() and Screen::show().
     void draw(const Session& session, const Rectangle& picture, const Rectangle& panel, double seconds);
     int height() const;  // of the panel, in framebuffer pixels
     // Draws a section of the controls.

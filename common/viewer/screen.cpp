@@ -16,16 +16,14 @@ namespace lab {
 namespace {
 
 void check(VkResult result) {
-    if (result < 0)
-        throw DeviceFailure("drawing the user interface failed: " + vk::to_string(vk::Result(result)));
+    if (result < 0) throw DeviceFailure("drawing the user interface failed: " + vk::to_string(vk::Result(result)));
 }
 
 // We encode sRGB ourselves: prefer formats without.
 vk::SurfaceFormatKHR choose_format(const Device& device) {
     const auto formats = device.physical().getSurfaceFormatsKHR(*device.surface());
     for (const auto& format : formats)
-        if (format.format == vk::Format::eB8G8R8A8Unorm || format.format == vk::Format::eR8G8B8A8Unorm)
-            return format;
+        if (format.format == vk::Format::eB8G8R8A8Unorm || format.format == vk::Format::eR8G8B8A8Unorm) return format;
     return formats.front();
 }
 
@@ -44,33 +42,28 @@ void add_font(ImFontAtlas& fonts, float scale) {
 
 // Draws over an image that a blit has written, for presenting.
 vk::raii::RenderPass make_render_pass(const Device& device, vk::Format format) {
-    const vk::AttachmentDescription attachment(
-        {}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore,
-        vk::AttachmentLoadOp::eDontCare, vk::AttachmentStoreOp::eDontCare,
-        vk::ImageLayout::eTransferDstOptimal, vk::ImageLayout::ePresentSrcKHR);
+    const vk::AttachmentDescription attachment({}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad,
+                                               vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
+                                               vk::AttachmentStoreOp::eDontCare, vk::ImageLayout::eTransferDstOptimal,
+                                               vk::ImageLayout::ePresentSrcKHR);
     const vk::AttachmentReference reference(0, vk::ImageLayout::eColorAttachmentOptimal);
     const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, {}, reference);
-    const vk::SubpassDependency after_blit(
-        VK_SUBPASS_EXTERNAL, 0, vk::PipelineStageFlagBits::eTransfer,
-        vk::PipelineStageFlagBits::eColorAttachmentOutput, vk::AccessFlagBits::eTransferWrite,
-        vk::AccessFlagBits::eColorAttachmentRead | vk::AccessFlagBits::eColorAttachmentWrite);
+    const vk::SubpassDependency after_blit(VK_SUBPASS_EXTERNAL, 0, vk::PipelineStageFlagBits::eTransfer,
+                                           vk::PipelineStageFlagBits::eColorAttachmentOutput, vk::AccessFlagBits::eTransferWrite,
+                                           vk::AccessFlagBits::eColorAttachmentRead | vk::AccessFlagBits::eColorAttachmentWrite);
     return {device.handle(), vk::RenderPassCreateInfo({}, attachment, subpass, after_blit)};
 }
 
 }  // namespace
 
-Screen::Screen(const Device& device, const Window& window)
-    : device_(&device), window_(&window), format_(choose_format(device)) {
+Screen::Screen(const Device& device, const Window& window) : device_(&device), window_(&window), format_(choose_format(device)) {
     render_pass_ = make_render_pass(device, format_.format);
     constexpr uint32_t texture_count = 8;  // of the user interface: its font
     const vk::DescriptorPoolSize textures(vk::DescriptorType::eCombinedImageSampler, texture_count);
-    descriptor_pool_ = {device.handle(),
-                        vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
-                                                     texture_count, textures)};
-    command_pool_ = {device.handle(),
-                     {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}};
-    commands_ = std::move(
-        vk::raii::CommandBuffers(device.handle(), {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
+    descriptor_pool_ = {device.handle(), vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                                                      texture_count, textures)};
+    command_pool_ = {device.handle(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}};
+    commands_ = std::move(vk::raii::CommandBuffers(device.handle(), {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
     fence_ = {device.handle(), vk::FenceCreateInfo()};
     acquired_ = {device.handle(), vk::SemaphoreCreateInfo()};
     make_swapchain();
@@ -79,8 +72,7 @@ Screen::Screen(const Device& device, const Window& window)
 
 Screen::~Screen() {
     const auto lock = device_->lock_queue();
-    device_->handle().getDispatcher()->vkDeviceWaitIdle(
-        *device_->handle());  // a lost device waits for nothing
+    device_->handle().getDispatcher()->vkDeviceWaitIdle(*device_->handle());  // a lost device waits for nothing
     ImGui_ImplVulkan_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -110,11 +102,9 @@ void Screen::start_user_interface() {
     info.ImageCount = std::max(2u, static_cast<uint32_t>(targets_.size()));
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     info.CheckVkResultFn = check;
-    if (!ImGui_ImplVulkan_Init(&info, *render_pass_))
-        throw DeviceFailure("the user interface could not start");
+    if (!ImGui_ImplVulkan_Init(&info, *render_pass_)) throw DeviceFailure("the user interface could not start");
 #if IMGUI_VERSION_NUM < 19000
-    device_->submit(
-        [](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
+    device_->submit([](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 #else
     const auto lock = device_->lock_queue();
@@ -135,10 +125,9 @@ void Screen::make_swapchain() {
     targets_.clear();
     if (extent_.width == 0 || extent_.height == 0) return;  // minimised
     const uint32_t most = limits.maxImageCount == 0 ? UINT32_MAX : limits.maxImageCount;
-    vk::SwapchainCreateInfoKHR info({}, *surface, std::min(limits.minImageCount + 1, most), format_.format,
-                                    format_.colorSpace, extent_, 1,
-                                    vk::ImageUsageFlagBits::eColorAttachment |
-                                        vk::ImageUsageFlagBits::eTransferDst |
+    vk::SwapchainCreateInfoKHR info({}, *surface, std::min(limits.minImageCount + 1, most), format_.format, format_.colorSpace,
+                                    extent_, 1,
+                                    vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferDst |
                                         (limits.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferSrc));
     info.preTransform = limits.currentTransform;
     info.compositeAlpha = limits.supportedCompositeAlpha & vk::CompositeAlphaFlagBitsKHR::eOpaque
@@ -149,13 +138,12 @@ void Screen::make_swapchain() {
     info.oldSwapchain = *swapchain_;
     swapchain_ = vk::raii::SwapchainKHR(device_->handle(), info);
     for (const vk::Image image : swapchain_.getImages()) {
-        vk::raii::ImageView view(device_->handle(), vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D,
-                                                                            format_.format, {}, whole_image));
-        vk::raii::Framebuffer framebuffer(
-            device_->handle(),
-            vk::FramebufferCreateInfo({}, *render_pass_, *view, extent_.width, extent_.height, 1));
-        targets_.push_back({image, std::move(view), std::move(framebuffer),
-                            vk::raii::Semaphore(device_->handle(), vk::SemaphoreCreateInfo())});
+        vk::raii::ImageView view(device_->handle(),
+                                 vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, format_.format, {}, whole_image));
+        vk::raii::Framebuffer framebuffer(device_->handle(),
+                                          vk::FramebufferCreateInfo({}, *render_pass_, *view, extent_.width, extent_.height, 1));
+        targets_.push_back(
+            {image, std::move(view), std::move(framebuffer), vk::raii::Semaphore(device_->handle(), vk::SemaphoreCreateInfo())});
     }
 }
 
@@ -214,8 +202,7 @@ double Screen::show(std::span<const Layer> layers) {
     return waited;
 }
 
-void Screen::record(const vk::raii::CommandBuffer& commands, const Target& target,
-                    std::span<const Layer> layers) {
+void Screen::record(const vk::raii::CommandBuffer& commands, const Target& target, std::span<const Layer> layers) {
     constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
     const vk::ClearColorValue grey(std::array<float, 4>{0.07f, 0.07f, 0.07f, 1.0f});
     for (const Layer& layer : layers) layer.pass->record(commands, layer.transform, layer.exposure);
@@ -231,13 +218,10 @@ void Screen::record(const vk::raii::CommandBuffer& commands, const Target& targe
     const size_t bytes = size_t{4} * extent_.width * extent_.height;
     if (!capture_buffer_ || capture_buffer_->size() < bytes)
         capture_buffer_.emplace(*device_, bytes, vk::BufferUsageFlags(), Buffer::Location::host);
-    change_layout(commands, target.image, vk::ImageLayout::ePresentSrcKHR,
-                  vk::ImageLayout::eTransferSrcOptimal);
-    commands.copyImageToBuffer(
-        target.image, vk::ImageLayout::eTransferSrcOptimal, capture_buffer_->handle(),
-        vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {extent_.width, extent_.height, 1}));
-    change_layout(commands, target.image, vk::ImageLayout::eTransferSrcOptimal,
-                  vk::ImageLayout::ePresentSrcKHR);
+    change_layout(commands, target.image, vk::ImageLayout::ePresentSrcKHR, vk::ImageLayout::eTransferSrcOptimal);
+    commands.copyImageToBuffer(target.image, vk::ImageLayout::eTransferSrcOptimal, capture_buffer_->handle(),
+                               vk::BufferImageCopy(0, 0, 0, whole_layer, {}, {extent_.width, extent_.height, 1}));
+    change_layout(commands, target.image, vk::ImageLayout::eTransferSrcOptimal, vk::ImageLayout::ePresentSrcKHR);
 }
 
 void Screen::draw(const vk::raii::CommandBuffer& commands, vk::Image image, const Layer& layer) const {
@@ -245,25 +229,21 @@ void Screen::draw(const vk::raii::CommandBuffer& commands, vk::Image image, cons
     const Rectangle& where = layer.where;
     const glm::ivec2 end = where.corner + where.size;
     // False if the window has just changed its size.
-    const bool fits = glm::all(glm::greaterThan(where.size, glm::ivec2(0))) &&
-                      glm::all(glm::lessThanEqual(end, glm::ivec2(size())));
-    const int width = static_cast<int>(layer.pass->picture().width()),
-              height = static_cast<int>(layer.pass->picture().height());
+    const bool fits =
+        glm::all(glm::greaterThan(where.size, glm::ivec2(0))) && glm::all(glm::lessThanEqual(end, glm::ivec2(size())));
+    const int width = static_cast<int>(layer.pass->picture().width()), height = static_cast<int>(layer.pass->picture().height());
     // Parts begin and end between pixels of the picture.
     const auto pixel_at = [&](float fraction) {
         return std::clamp(static_cast<int>(std::lround(fraction * static_cast<float>(width))), 0, width);
     };
     const int from = pixel_at(layer.from), to = pixel_at(layer.to);
     if (!fits || from >= to) return;
-    const auto place = [&](int pixel) {
-        return where.corner.x + static_cast<int>(int64_t{pixel} * where.size.x / width);
-    };
+    const auto place = [&](int pixel) { return where.corner.x + static_cast<int>(int64_t{pixel} * where.size.x / width); };
     change_layout(commands, image, target_layout, target_layout);  // what came before this blit
     const vk::Image source = layer.pass->picture().handle();
     change_layout(commands, source, vk::ImageLayout::eGeneral, vk::ImageLayout::eTransferSrcOptimal);
-    const vk::ImageBlit blit(
-        whole_layer, {vk::Offset3D(from, 0, 0), vk::Offset3D(to, height, 1)}, whole_layer,
-        {vk::Offset3D(place(from), where.corner.y, 0), vk::Offset3D(place(to), end.y, 1)});
+    const vk::ImageBlit blit(whole_layer, {vk::Offset3D(from, 0, 0), vk::Offset3D(to, height, 1)}, whole_layer,
+                             {vk::Offset3D(place(from), where.corner.y, 0), vk::Offset3D(place(to), end.y, 1)});
     // Enlarged pixels stay sharp.
     const bool enlarges = where.size.x >= width;
     commands.blitImage(source, vk::ImageLayout::eTransferSrcOptimal, image, target_layout, blit,
@@ -273,12 +253,10 @@ void Screen::draw(const vk::raii::CommandBuffer& commands, vk::Image image, cons
 
 void Screen::keep_capture() {
     captures_ = false;
-    captured_ = {extent_.width, extent_.height,
-                 std::vector<uint8_t>(size_t{4} * extent_.width * extent_.height)};
+    captured_ = {extent_.width, extent_.height, std::vector<uint8_t>(size_t{4} * extent_.width * extent_.height)};
     capture_buffer_->read(captured_.pixels.data(), captured_.pixels.size());
     for (size_t i = 0; i < captured_.pixels.size(); i += 4) {
-        if (format_.format == vk::Format::eB8G8R8A8Unorm)
-            std::swap(captured_.pixels[i], captured_.pixels[i + 2]);
+        if (format_.format == vk::Format::eB8G8R8A8Unorm) std::swap(captured_.pixels[i], captured_.pixels[i + 2]);
         captured_.pixels[i + 3] = 255;
     }
 }
@@ -289,15 +267,13 @@ DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr
       picture_(std::move(picture)),
       largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
       kernel_(device, {.file = project_folder() / "shaders" / "engine/display.comp"},
-              std::vector<Binding>{film.binding(),
-                                   {.index = BINDING_PICTURE,
-                                    .type = vk::DescriptorType::eStorageImage,
-                                    .images = {picture_->info()}},
-                                   storage_binding(BINDING_LARGEST_VALUE, largest_value_)},
+              std::vector<Binding>{
+                  film.binding(),
+                  {.index = BINDING_PICTURE, .type = vk::DescriptorType::eStorageImage, .images = {picture_->info()}},
+                  storage_binding(BINDING_LARGEST_VALUE, largest_value_)},
               sizeof(DisplayParameters)) {}
 
-void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform,
-                         float exposure) const {
+void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform, float exposure) const {
     const bool is_radiance = transform == DisplayTransform::exposure;
     DisplayParameters parameters{.film_size = {film_->width(), film_->height()},
                                  .image_size = {picture_->width(), picture_->height()},

@@ -51,16 +51,15 @@ struct Layer {
 
 class Screen {
   public:
-    // The device must have the window's surface, and both must outlive the screen. At most one exists at a
-    // time, because Dear ImGui has one context.
+    // The device must have the window's surface, and both must outlive the screen. At most one exists at a time, because Dear
+    // ImGui has one context.
     Screen(const Device& device, const Window& window);
     ~Screen();
 
     // Starts a frame: use Dear ImGui until show().
     void begin_frame();
 
-    // Ends and shows the frame, unless the window is minimised. Returns the seconds of waiting for the
-    // display.
+    // Ends and shows the frame, unless the window is minimised. Returns the seconds of waiting for the display.
     double show(std::span<const Layer> layers);
 
     uvec2 size() const { return {extent_.width, extent_.height}; }  // pixels

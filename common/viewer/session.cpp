@@ -22,8 +22,7 @@ bool has_same_samples(const Options& a, const Options& b) {
 // Removes the project's folder from file names in a message.
 std::string shortened(std::string message) {
     const std::string folder = project_folder().generic_string() + "/";
-    for (size_t at = message.find(folder); at != std::string::npos; at = message.find(folder))
-        message.erase(at, folder.size());
+    for (size_t at = message.find(folder); at != std::string::npos; at = message.find(folder)) message.erase(at, folder.size());
     return message;
 }
 
@@ -106,8 +105,7 @@ void Session::start_build_if_needed() {
     if (is_building()) return;
     work_stage_ = reloads_scene_ ? BuildStage::scene : first_difference(build_->job.options, options_);
     BuildStage first = work_stage_;
-    if (shader_hash_ != build_->shader_hash && shader_hash_ != failed_shader_hash_)
-        first = std::min(first, BuildStage::renderer);
+    if (shader_hash_ != build_->shader_hash && shader_hash_ != failed_shader_hash_) first = std::min(first, BuildStage::renderer);
     if (first == BuildStage::nothing) return;
     reloads_scene_ = false;
     work_shader_hash_ = shader_hash_;
@@ -115,8 +113,7 @@ void Session::start_build_if_needed() {
     options.run.resume.clear();
     work_.start([this, options, first, before = build_.get()] {
         auto scene = before->job.scene;
-        if (first == BuildStage::scene)
-            scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
+        if (first == BuildStage::scene) scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
         return make_window_build(device_, chapter_, make_job(chapter_, options, scene), first, before);
     });
 }
@@ -207,8 +204,7 @@ void Session::render(double seconds) {
     const auto goes_on = [&] {
         // Changes show even while paused.
         if ((is_paused || waits) && renderer.samples() >= 1) return false;
-        return elapsed < 0.75 * seconds ||
-               (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
+        return elapsed < 0.75 * seconds || (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
     };
     while (renderer.samples() < target_samples() && goes_on()) {
         uint32_t next = next_look(static_cast<uint32_t>(renderer.samples()), target_samples());
@@ -261,8 +257,7 @@ void Session::save(const std::vector<std::filesystem::path>& files) {
     write(files, build_->renderer->film().read(), record(seconds_));
 }
 
-void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film,
-                    const FilmRecord& record) const {
+void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmRecord& record) const {
     Options options = build_->job.options;
     options.appearance = options_.appearance;
     write_each(files, [&](const std::filesystem::path& file) { write_picture(file, film, record, options); });
@@ -275,8 +270,7 @@ FilmRecord Session::record(double seconds) const {
     return record;
 }
 
-void Session::keep_snapshot_after(const std::exception& error,
-                                  const std::vector<std::filesystem::path>& files) const {
+void Session::keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const {
     keep_after(error, snapshot_, [&] { write(files, snapshot_, snapshot_record_); });
 }
 
@@ -290,8 +284,8 @@ uint64_t hash_of(const std::set<std::filesystem::path>& files) {
     return hash;
 }
 
-std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job,
-                                               BuildStage first, const WindowBuild* before) {
+std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first,
+                                               const WindowBuild* before) {
     auto build = std::make_unique<WindowBuild>();
     // Hash before compiling, so that changes in between show.
     build->shader_files = shader_files(job.estimator);

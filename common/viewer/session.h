@@ -20,8 +20,7 @@ struct WindowBuild : Build {
 
 // make_build(), and a pass that shows the film.
 std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job,
-                                               BuildStage first = BuildStage::scene,
-                                               const WindowBuild* before = nullptr);
+                                               BuildStage first = BuildStage::scene, const WindowBuild* before = nullptr);
 
 // Hash of all contents; 0 if a file cannot be read, as while an editor replaces it.
 uint64_t hash_of(const std::set<std::filesystem::path>& files);
@@ -41,8 +40,8 @@ class Session {
     CameraPose camera() const;
     vec3 background() const;
 
-    // Changes options. Parameters take effect at the next update(); what must be built is built in the
-    // background while the picture stays. Impossible changes are reverted, and message() says why.
+    // Changes options. Parameters take effect at the next update(); what must be built is built in the background while the
+    // picture stays. Impossible changes are reverted, and message() says why.
     void change(const Options& options);
     void set_camera(const CameraPose& pose);
     void reset_camera();  // to the first one
@@ -50,9 +49,8 @@ class Session {
     void open_scene(const std::filesystem::path& file);  // with its own camera and background
     void restart() { needs_restart_ = true; }
 
-    // Does a frame's work: adopts finished builds, looks for changed shaders, and renders for about so many
-    // seconds. After a restart and while the camera moves, the image is reduced so that a sample per pixel
-    // fits into that time.
+    // Does a frame's work: adopts finished builds, looks for changed shaders, and renders for about so many seconds. After a
+    // restart and while the camera moves, the image is reduced so that a sample per pixel fits into that time.
     void update(double dispatch_seconds, bool is_moving);
 
     bool is_paused = false;
@@ -61,9 +59,7 @@ class Session {
     // Whether the session can end without waiting for a build.
     bool can_end() const { return !is_building() || work_.is_done(); }
     // Another scene is being loaded; camera and background are its own already.
-    bool is_loading_scene() const {
-        return reloads_scene_ || options_.scene.file != build_->job.options.scene.file;
-    }
+    bool is_loading_scene() const { return reloads_scene_ || options_.scene.file != build_->job.options.scene.file; }
     const std::string& message() const { return message_; }  // the last failure, or empty
 
     // --- Progress since the last restart.
@@ -78,9 +74,7 @@ class Session {
     // Test against the scene's reference; null without one, and verdict_text() says why.
     const LiveVerdict* verdict() const { return std::get_if<LiveVerdict>(&verdict_); }
     // Its latest verdict, or null.
-    const Verdict* latest_verdict() const {
-        return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr;
-    }
+    const Verdict* latest_verdict() const { return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr; }
     VerdictState verdict_state() const;
     std::string verdict_text() const;
 
@@ -90,8 +84,7 @@ class Session {
     // The one before, mostly of half the samples; without pixels if there is none.
     const FilmImage& earlier_snapshot() const { return earlier_snapshot_; }
     // After a failure: keep_after() with the last snapshot.
-    [[noreturn]] void keep_snapshot_after(const std::exception& error,
-                                          const std::vector<std::filesystem::path>& files) const;
+    [[noreturn]] void keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const;
 
   private:
     CameraOptions first_camera() const;
@@ -102,8 +95,7 @@ class Session {
     void render(double seconds);
     void take_snapshots(uint32_t samples, double seconds);
     std::variant<LiveVerdict, std::string> find_verdict() const;
-    void write(const std::vector<std::filesystem::path>& files, const FilmImage& film,
-               const FilmRecord& record) const;
+    void write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmRecord& record) const;
     FilmRecord record(double seconds) const;  // after so many seconds of rendering
     uint32_t find_reduction(double seconds) const;
     void take_back(const std::string& why);

@@ -40,9 +40,7 @@ uint32_t tile_size_for(const glm::uvec2& image_size) {
 
 }  // namespace
 
-void TileOverlay::show_next() {
-    shown = static_cast<Overlay>((static_cast<size_t>(shown) + 1) % std::size(overlay_names));
-}
+void TileOverlay::show_next() { shown = static_cast<Overlay>((static_cast<size_t>(shown) + 1) % std::size(overlay_names)); }
 
 void TileOverlay::draw(const Session& session, const Rectangle& picture) {
     update(session);
@@ -52,11 +50,9 @@ void TileOverlay::draw(const Session& session, const Rectangle& picture) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     for (uint32_t y = 0; y < tiles_.y; ++y)
         for (uint32_t x = 0; x < tiles_.x; ++x) {
-            const glm::uvec2 first(x * tile_size_, y * tile_size_),
-                last = glm::min(first + tile_size_, image);
+            const glm::uvec2 first(x * tile_size_, y * tile_size_), last = glm::min(first + tile_size_, image);
             list.AddRectFilled(placement.at(glm::vec2(first) / glm::vec2(image)),
-                               placement.at(glm::vec2(last) / glm::vec2(image)),
-                               colours_[size_t{y} * tiles_.x + x]);
+                               placement.at(glm::vec2(last) / glm::vec2(image)), colours_[size_t{y} * tiles_.x + x]);
         }
 }
 
@@ -103,9 +99,7 @@ void TileOverlay::colour_bias(const Session& session) {
         return;
     }
     // In dark tiles noise may be any fraction of the mean: colour only what is certain.
-    const auto certain = [&](size_t i) {
-        return std::abs(verdict->map.values[i]) >= 5 ? verdict->map_differences[i].value : 0;
-    };
+    const auto certain = [&](size_t i) { return std::abs(verdict->map.values[i]) >= 5 ? verdict->map_differences[i].value : 0; };
     double largest = 0;
     for (size_t i = 0; i < verdict->map.values.size(); ++i) largest = std::max(largest, std::abs(certain(i)));
     const double full = full_colour_at(largest);
@@ -128,8 +122,8 @@ void TileOverlay::colour_tiles(const FilmImage& earlier, const FilmImage& later,
                                const std::function<double(const NoiseEstimate&)>& heat_of) {
     for (uint32_t y = 0; y < tiles_.y; ++y)
         for (uint32_t x = 0; x < tiles_.x; ++x)
-            colours_.push_back(heat(heat_of(
-                estimate_noise(earlier, later, glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_)))));
+            colours_.push_back(
+                heat(heat_of(estimate_noise(earlier, later, glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_)))));
 }
 
 void TileOverlay::colour_noise(const Session& session) {
@@ -139,21 +133,17 @@ void TileOverlay::colour_noise(const Session& session) {
         return;
     }
     // Decades from 0.1 % to 100 %.
-    colour_tiles(session.earlier_snapshot(), later, [](const NoiseEstimate& noise) {
-        return (3 + std::log10(std::max(noise.relative_error, 1e-9))) / 3;
-    });
-    legend_ =
-        text("standard error of a pixel as part of its tile's mean: dark 0.1 %%, yellow 100 %%; %.0f samples",
-             later.min_samples(), 0);
+    colour_tiles(session.earlier_snapshot(), later,
+                 [](const NoiseEstimate& noise) { return (3 + std::log10(std::max(noise.relative_error, 1e-9))) / 3; });
+    legend_ = text("standard error of a pixel as part of its tile's mean: dark 0.1 %%, yellow 100 %%; %.0f samples",
+                   later.min_samples(), 0);
 }
 
 void TileOverlay::colour_samples(const Session& session) {
     const FilmImage film = session.build().renderer->film().read();
     const auto [fewest, most] = std::ranges::minmax(film.pixels, {}, &FilmPixel::sample_count);
     const double low = fewest.sample_count, high = most.sample_count;
-    colour_tiles({}, film, [&](const NoiseEstimate& tile) {
-        return high > low ? (tile.samples - low) / (high - low) : 1;
-    });
+    colour_tiles({}, film, [&](const NoiseEstimate& tile) { return high > low ? (tile.samples - low) / (high - low) : 1; });
     legend_ = text("samples of a pixel: dark %.0f, yellow %.0f", low, high);
 }
 

@@ -12,8 +12,7 @@
 namespace lab {
 
 enum class Overlay { none, bias, relative_bias, noise, samples };
-inline constexpr const char* overlay_names[] = {"none", "bias in standard errors", "bias in percent", "noise",
-                                                "sample count"};
+inline constexpr const char* overlay_names[] = {"none", "bias in standard errors", "bias in percent", "noise", "sample count"};
 
 class TileOverlay {
   public:

@@ -16,16 +16,15 @@ namespace {
 double smooth(double average, double number) { return average + 0.1 * (number - average); }
 
 // Makes the first build in the background while the window says so.
-std::unique_ptr<WindowBuild> build_while_waiting(Window& window, Screen& screen, const Device& device,
-                                                 const Chapter& chapter, const RenderJob& job) {
+std::unique_ptr<WindowBuild> build_while_waiting(Window& window, Screen& screen, const Device& device, const Chapter& chapter,
+                                                 const RenderJob& job) {
     BackgroundWork<std::unique_ptr<WindowBuild>> work;
     work.start([&] { return make_window_build(device, chapter, job); });
     while (!work.is_done()) {
         work.wait(std::chrono::milliseconds(20));
         window.poll_events();
         screen.begin_frame();
-        ImGui::GetBackgroundDrawList()->AddText({20, 20}, IM_COL32_WHITE,
-                                                "Building what traces the rays and the shaders ...");
+        ImGui::GetBackgroundDrawList()->AddText({20, 20}, IM_COL32_WHITE, "Building what traces the rays and the shaders ...");
         screen.show({});
     }
     return work.take();
@@ -41,8 +40,7 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
       comparison_(device) {}
 
 bool Viewer::frame() {
-    const bool has_work =
-        !session_.is_paused && !session_.is_building() && session_.samples() < session_.target_samples();
+    const bool has_work = !session_.is_paused && !session_.is_building() && session_.samples() < session_.target_samples();
     window_.poll_events(has_work ? 0 : 0.02);
     if (window_.should_close() || is_interrupted()) return false;
     const auto start = Clock::now();
@@ -104,17 +102,14 @@ void Viewer::move_camera(double seconds) {
     CameraMotion motion;
     if (!io.WantCaptureKeyboard && !io.WantTextInput) {
         const auto pull = [&](int forth, int back) {
-            return static_cast<float>(window_.is_key_down(forth)) -
-                   static_cast<float>(window_.is_key_down(back));
+            return static_cast<float>(window_.is_key_down(forth)) - static_cast<float>(window_.is_key_down(back));
         };
-        motion.steps =
-            static_cast<float>(seconds) *
-            vec3(pull(GLFW_KEY_D, GLFW_KEY_A), pull(GLFW_KEY_E, GLFW_KEY_Q), pull(GLFW_KEY_W, GLFW_KEY_S));
+        motion.steps = static_cast<float>(seconds) *
+                       vec3(pull(GLFW_KEY_D, GLFW_KEY_A), pull(GLFW_KEY_E, GLFW_KEY_Q), pull(GLFW_KEY_W, GLFW_KEY_S));
     }
     if (!io.WantCaptureMouse) {
         if (ImGui::IsMouseDragging(ImGuiMouseButton_Left)) {
-            const float height =
-                static_cast<float>(picture_rectangle().size.y) / io.DisplayFramebufferScale.y;
+            const float height = static_cast<float>(picture_rectangle().size.y) / io.DisplayFramebufferScale.y;
             motion.drag = vec2(io.MouseDelta.x, io.MouseDelta.y) / std::max(height, 1.0f);
         }
         motion.zoom = io.MouseWheel;

@@ -47,18 +47,17 @@ class Viewer {
     Clock::time_point last_motion_{};
 };
 
-// Renders until the window is closed, then writes the outputs. Throws DeviceFailure if the device is lost,
-// after writing what was last read.
+// Renders until the window is closed, then writes the outputs. Throws DeviceFailure if the device is lost, after writing what was
+// last read.
 void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
 
-// Seconds of a frame for rendering, given those of everything else but waiting. A fast device fills the
-// display's period. Where the interface is slow, as on a CPU, frames get longer, so that most of the time
-// goes into the picture, but not below 5 frames per second if the interface allows.
+// Seconds of a frame for rendering, given those of everything else but waiting. A fast device fills the display's period. Where
+// the interface is slow, as on a CPU, frames get longer, so that most of the time goes into the picture, but not below 5 frames
+// per second if the interface allows.
 inline double rendering_seconds(double refresh_seconds, double interface_seconds) {
     constexpr double slowest_frame = 0.16;  // leaves room for blocks that take longer than expected
     constexpr double shortest = 0.002;
-    const double frame =
-        std::clamp(4 * interface_seconds, refresh_seconds, std::max(refresh_seconds, slowest_frame));
+    const double frame = std::clamp(4 * interface_seconds, refresh_seconds, std::max(refresh_seconds, slowest_frame));
     return std::max(frame - interface_seconds, shortest);
 }
 

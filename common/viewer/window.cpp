@@ -23,8 +23,7 @@ bool start_glfw() {
     for ([[maybe_unused]] const WindowSystem system : window_systems()) {
 #ifdef GLFW_PLATFORM
         if (system != WindowSystem::other)
-            glfwInitHint(GLFW_PLATFORM,
-                         system == WindowSystem::wayland ? GLFW_PLATFORM_WAYLAND : GLFW_PLATFORM_X11);
+            glfwInitHint(GLFW_PLATFORM, system == WindowSystem::wayland ? GLFW_PLATFORM_WAYLAND : GLFW_PLATFORM_X11);
 #endif
         // GLFW 3.4 dies on Wayland's compositors without a seat, which have neither keyboard nor mouse.
         if (would_survive(glfwInit) && glfwInit()) return true;
@@ -42,8 +41,7 @@ Window::Window(const std::string& title, uvec2 size) {
     if (start_glfw() && glfwVulkanSupported()) {
         glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-        window_ = glfwCreateWindow(static_cast<int>(size.x), static_cast<int>(size.y), title.c_str(), nullptr,
-                                   nullptr);
+        window_ = glfwCreateWindow(static_cast<int>(size.x), static_cast<int>(size.y), title.c_str(), nullptr, nullptr);
     }
     if (!window_) {
         const std::string why = glfw_error();
@@ -107,8 +105,7 @@ float Window::scale() const {
     glfwGetWindowContentScale(window_, &scale, nullptr);
     glfwGetWindowSize(window_, &window_width, &ignored);
     glfwGetFramebufferSize(window_, &pixel_width, &ignored);
-    if (pixel_width > 0 && window_width > 0)
-        scale *= static_cast<float>(window_width) / static_cast<float>(pixel_width);
+    if (pixel_width > 0 && window_width > 0) scale *= static_cast<float>(window_width) / static_cast<float>(pixel_width);
     return std::isfinite(scale) && scale > 0.5f ? scale : 1.0f;
 }
 

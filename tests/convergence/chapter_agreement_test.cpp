@@ -29,8 +29,7 @@ Subject subject(const std::string& name, uint32_t splitting_factor = 1) {
 const Pair bounces{subject("uniform_sampling"), subject("cosine_sampling")};
 std::vector<Pair> light_sampling_pairs(uint32_t length) {
     const auto at_every_hit = [](const std::string& name, uint32_t s, uint32_t roulette_start) {
-        return Subject{name + " at every hit, s = " + std::to_string(s), every_hit_estimator(), s,
-                       roulette_start, 2};
+        return Subject{name + " at every hit, s = " + std::to_string(s), every_hit_estimator(), s, roulette_start, 2};
     };
     const uint32_t s = length == 1 ? 1 : length == 2 ? 5 : 3;
     std::vector<Pair> pairs;
@@ -68,8 +67,7 @@ Scene load_test_scene(const std::string& name) {
     return scene;
 }
 
-Batches render_subject(const Scene& scene, const Subject& subject, uint32_t length, uint32_t samples,
-                       uint32_t seed) {
+Batches render_subject(const Scene& scene, const Subject& subject, uint32_t length, uint32_t samples, uint32_t seed) {
     RenderSettings settings{.width = size,
                             .height = size,
                             .samples = samples / subject.samples_divisor,
@@ -90,9 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ChapterAgreement,
                                          AgreementCase{"heart_light", 8, 24, {0.025, 0.45}, {0.02, 0.4}},
                                          AgreementCase{"textured", 9, 6, {0.045, 0.45}, {0.045, 0.45}},
                                          AgreementCase{"glossy", 8, 64, {0.12, 3.5}, {0.05, 1.3}}),
-                         [](const auto& instance) {
-                             return instance_name(instance.param.scene, Run::with_all);
-                         });
+                         [](const auto& instance) { return instance_name(instance.param.scene, Run::with_all); });
 
 TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
     const auto& [name, samples, bounce_samples, of_bounces, of_light_samples] = GetParam();
@@ -100,25 +96,21 @@ TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
     uint32_t seed = 1000;
     std::vector<double> p_values;
     for (const uint32_t length : {2u, 1u, 4u}) {
-        const auto compare_pair = [&](const Pair& pair, uint32_t pair_samples,
-                                      const AgreementLimits& limits) {
+        const auto compare_pair = [&](const Pair& pair, uint32_t pair_samples, const AgreementLimits& limits) {
             const std::array images{render_subject(scene, pair[0], length, pair_samples, ++seed),
                                     render_subject(scene, pair[1], length, pair_samples, ++seed)};
-            const auto more = expect_agreement(
-                "length " + std::to_string(length) + ": " + pair[0].name + " and " + pair[1].name, images[0],
-                images[1], limits);
+            const auto more = expect_agreement("length " + std::to_string(length) + ": " + pair[0].name + " and " + pair[1].name,
+                                               images[0], images[1], limits);
             p_values.insert(p_values.end(), more.begin(), more.end());
             return images;
         };
-        const Batches oracle = length == 2
-                                   ? compare_pair(bounces, bounce_samples, of_bounces)[1]
-                                   : render_subject(scene, bounces[1], length, bounce_samples, ++seed);
+        const Batches oracle = length == 2 ? compare_pair(bounces, bounce_samples, of_bounces)[1]
+                                           : render_subject(scene, bounces[1], length, bounce_samples, ++seed);
         for (const Pair& pair : light_sampling_pairs(length)) {
             const auto images = compare_pair(pair, samples, of_light_samples);
             for (size_t i = 0; i < pair.size(); ++i)
-                expect_agreement(
-                    "length " + std::to_string(length) + ": " + pair[i].name + " and cosine_sampling",
-                    images[i], oracle, of_bounces);
+                expect_agreement("length " + std::to_string(length) + ": " + pair[i].name + " and cosine_sampling", images[i],
+                                 oracle, of_bounces);
         }
     }
     expect_uniform("p-values of the tiles", p_values, 0.3);

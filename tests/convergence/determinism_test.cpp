@@ -88,12 +88,10 @@ TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
 // With a renderer made for a large image: it keeps one thread per pixel when it restarts with a small one.
 FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSettings& settings) {
     const GpuScene gpu_scene = make_gpu_scene(scene, settings);
-    const auto acceleration_structure =
-        build_acceleration_structure(settings.backend, test_device(), gpu_scene);
+    const auto acceleration_structure = build_acceleration_structure(settings.backend, test_device(), gpu_scene);
     RenderSettings large = settings;
     large.width = large.height = 640;
-    Renderer renderer(test_device(), *acceleration_structure, settings.estimator,
-                      make_parameters(scene, large));
+    Renderer renderer(test_device(), *acceleration_structure, settings.estimator, make_parameters(scene, large));
     renderer.restart(make_parameters(scene, settings));
     renderer.set_dispatch_seconds(settings.dispatch_seconds);
     while (renderer.advance(settings.samples)) {
@@ -113,11 +111,10 @@ TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
     // With a film that shaders see in parts: the checkpoint has the samples of all parts.
     const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
     const GpuScene gpu_scene(test_device(), scene);
-    const auto acceleration_structure =
-        build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
+    const auto acceleration_structure = build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
     const auto make_renderer = [&] {
-        return Renderer(test_device(), *acceleration_structure, settings().estimator,
-                        make_parameters(scene, settings()), {}, two_rows_of_blocks);
+        return Renderer(test_device(), *acceleration_structure, settings().estimator, make_parameters(scene, settings()), {},
+                        two_rows_of_blocks);
     };
     // Interrupted in the middle of a pass, when some pixels have one sample more than others.
     Renderer interrupted = make_renderer();
@@ -159,8 +156,7 @@ class PathRegeneration : public OnEachBackend {
     template <typename Render>
     std::array<FilmImage, 2> render_both(RenderSettings settings, const Render& render_one) const {
         settings.backend = GetParam();
-        const std::array chapters{chapter_named("low_discrepancy_points"),
-                                  chapter_named("path_regeneration")};
+        const std::array chapters{chapter_named("low_discrepancy_points"), chapter_named("path_regeneration")};
         std::array<FilmImage, 2> films;
         for (size_t i = 0; i < films.size(); ++i) {
             settings.estimator = chapter_estimator(chapters[i]);
@@ -172,8 +168,7 @@ class PathRegeneration : public OnEachBackend {
     // To the bit, but for the pipelines of GPUs: the driver of an NVIDIA H200 compiles copies of a loop that
     // round differently, and 5 % of the pixels differed by up to 3e-6.
     static void expect_same(const FilmImage& a, const FilmImage& b, const std::string& name) {
-        const bool is_cpu =
-            test_device().physical().getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
+        const bool is_cpu = test_device().physical().getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
         if (GetParam() != Backend::pipeline || is_cpu) {
             EXPECT_TRUE(are_identical(a, b)) << name;
             return;
@@ -181,8 +176,7 @@ class PathRegeneration : public OnEachBackend {
         ASSERT_EQ(a.pixels.size(), b.pixels.size());
         for (size_t i = 0; i < a.pixels.size(); ++i)
             for (int channel = 0; channel < 3; ++channel)
-                EXPECT_NEAR(a.pixels[i].sum[channel], b.pixels[i].sum[channel],
-                            1e-5f * a.pixels[i].sum[channel])
+                EXPECT_NEAR(a.pixels[i].sum[channel], b.pixels[i].sum[channel], 1e-5f * a.pixels[i].sum[channel])
                     << name << ", pixel " << i;
     }
 };
@@ -191,11 +185,10 @@ INSTANTIATE_TEST_SUITE_P(Backends, PathRegeneration, testing::ValuesIn(all_backe
 TEST_P(PathRegeneration, GivesTheImageOfChapterNine) {
     for (const char* name : {"cornell_box", "glass", "studio"}) {
         const Scene scene = load_shipped_scene(name + std::string(".json"));
-        RenderSettings settings{
-            .width = 40, .height = 24, .samples = 21, .max_path_length = 30, .dispatch_seconds = 10};
+        RenderSettings settings{.width = 40, .height = 24, .samples = 21, .max_path_length = 30, .dispatch_seconds = 10};
         // One thread renders all samples of a pixel.
-        const auto whole = render_both(
-            settings, [&](const RenderSettings& s) { return render_with_a_thread_for_each_pixel(scene, s); });
+        const auto whole =
+            render_both(settings, [&](const RenderSettings& s) { return render_with_a_thread_for_each_pixel(scene, s); });
         expect_same(whole[0], whole[1], name);
         // Dispatches of one block and one sample leave nothing to regenerate.
         settings.dispatch_seconds = 1e-9;
@@ -207,10 +200,8 @@ TEST_P(PathRegeneration, GivesTheImageOfChapterNine) {
 // Several threads share a pixel, and each renders several samples of it.
 TEST_P(PathRegeneration, OfThreadsThatShareAPixelGivesTheImageOfChapterNine) {
     const Scene scene = load_shipped_scene("cornell_box.json");
-    const RenderSettings settings{
-        .width = 200, .height = 136, .samples = 40, .max_path_length = 5, .dispatch_seconds = 10};
-    const auto [before, now] =
-        render_both(settings, [&](const RenderSettings& s) { return render(scene, s); });
+    const RenderSettings settings{.width = 200, .height = 136, .samples = 40, .max_path_length = 5, .dispatch_seconds = 10};
+    const auto [before, now] = render_both(settings, [&](const RenderSettings& s) { return render(scene, s); });
     expect_same(before, now, "cornell_box");
 }
 

@@ -94,8 +94,7 @@ TEST(DielectricScene, TouchingSurfacesStayFinite) {
         scene.camera = {.position = camera, .target = {0, 0.4f, -1}, .up = {0, 1, 0}, .vertical_fov = 50};
         const FilmImage film = render(scene, room_settings(25, 9));
         const std::vector<double> means = pixel_means(film, 0);
-        const double mean =
-            std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
+        const double mean = std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
         std::printf("  %s: mean radiance %.3f\n", name, mean);
         EXPECT_GT(mean, 0.01) << name;
         EXPECT_LT(mean, 2.25 * 1.1) << name;

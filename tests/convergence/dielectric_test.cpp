@@ -23,12 +23,11 @@ RenderSettings make_settings(uint32_t samples, uint32_t seed) {
 }
 
 // Each channel of all pixels has this mean, and a relative bias would have been found.
-void expect_radiance(const std::string& what, const FilmImage& film, const glm::dvec3& expected,
-                     double largest_relative_bias, size_t comparisons) {
+void expect_radiance(const std::string& what, const FilmImage& film, const glm::dvec3& expected, double largest_relative_bias,
+                     size_t comparisons) {
     for (int channel = 0; channel < 3; ++channel)
-        expect_mean(what + ", " + channel_names[static_cast<size_t>(channel)],
-                    estimate_mean(pixel_means(film, channel)), expected[channel], largest_relative_bias,
-                    comparisons);
+        expect_mean(what + ", " + channel_names[static_cast<size_t>(channel)], estimate_mean(pixel_means(film, channel)),
+                    expected[channel], largest_relative_bias, comparisons);
 }
 
 // The mean of Fresnel's two reflectances. (Estimators that follow polarisation would find slightly more light
@@ -50,13 +49,10 @@ Scene make_pane(const Material& glass, float thickness, float degrees, Lamp lamp
         const vec3 corner(-size, -size, z), x(2 * size, 0, 0), y(0, 2 * size, 0);
         return faces_up ? Quad{corner, x, y, material} : Quad{corner, y, x, material};
     };
-    Scene scene = make_scene(
-        {diffuse_material(vec3(0), vec3(1)), glass},
-        {wall(is_behind ? -5.0f : 5.0f, is_behind, 0), wall(0, true, 1), wall(-thickness, false, 1)});
-    scene.camera = {.position = {0, 0, 1},
-                    .target = {std::tan(glm::radians(degrees)), 0, 0},
-                    .up = {0, 1, 0},
-                    .vertical_fov = 0.001f};
+    Scene scene = make_scene({diffuse_material(vec3(0), vec3(1)), glass},
+                             {wall(is_behind ? -5.0f : 5.0f, is_behind, 0), wall(0, true, 1), wall(-thickness, false, 1)});
+    scene.camera = {
+        .position = {0, 0, 1}, .target = {std::tan(glm::radians(degrees)), 0, 0}, .up = {0, 1, 0}, .vertical_fov = 0.001f};
     return scene;
 }
 
@@ -76,14 +72,12 @@ TEST(Dielectric, PaneTransmitsAndReflectsTheGeometricSeries) {
                                       (absorption == vec3(0) ? " degrees, clear, " : " degrees, absorbing, ");
             const Material glass = dielectric_material(index, absorption);
             // Without absorption these are (1 - R)/(1 + R) and 2R/(1 + R).
-            expect_radiance(
-                angle + "transmitted",
-                render(make_pane(glass, thickness, degrees, Lamp::behind_pane), make_settings(180, ++seed)),
-                (1 - r) * (1 - r) * t * series, 0.01, 24);
-            expect_radiance(
-                angle + "reflected",
-                render(make_pane(glass, thickness, degrees, Lamp::behind_camera), make_settings(360, ++seed)),
-                r + (1 - r) * (1 - r) * r * t * t * series, 0.03, 24);
+            expect_radiance(angle + "transmitted",
+                            render(make_pane(glass, thickness, degrees, Lamp::behind_pane), make_settings(180, ++seed)),
+                            (1 - r) * (1 - r) * t * series, 0.01, 24);
+            expect_radiance(angle + "reflected",
+                            render(make_pane(glass, thickness, degrees, Lamp::behind_camera), make_settings(360, ++seed)),
+                            r + (1 - r) * (1 - r) * r * t * t * series, 0.03, 24);
         }
 }
 
@@ -128,8 +122,8 @@ TEST(Dielectric, BodyUnderAUniformSkyIsInvisible) {
         scene.camera.vertical_fov = 40;
         RenderSettings settings = make_settings(40, 1);
         settings.roulette_start = unlimited;
-        expect_radiance("sphere of index " + std::to_string(index), render(scene, settings),
-                        glm::dvec3(scene.background), 1e-4, 9);
+        expect_radiance("sphere of index " + std::to_string(index), render(scene, settings), glm::dvec3(scene.background), 1e-4,
+                        9);
     }
 }
 
@@ -143,8 +137,7 @@ TEST(Dielectric, SmoothBodyLosesLittle) {
         scene.camera.vertical_fov = 40;
         const std::vector<double> means = pixel_means(render(scene, make_settings(100, 1)), 0);
         const double loss = 1 - estimate_mean(means).mean;
-        std::printf("  sphere of 80 triangles, index %.2f: %.2f %% of the image is lost\n", index,
-                    100 * loss);
+        std::printf("  sphere of 80 triangles, index %.2f: %.2f %% of the image is lost\n", index, 100 * loss);
         EXPECT_LT(*std::max_element(means.begin(), means.end()), 1 + 1e-5);
         EXPECT_LT(loss, 0.05);
     }
@@ -179,23 +172,19 @@ TEST(Dielectric, EmissionPassesTheSurfaceOnce) {
                         .target = {0.1f, 0.2f, -1},
                         .up = {0, 1, 0},
                         .vertical_fov = 1};
-        expect_radiance(
-            is_lamp_inside ? "lamp within" : "camera within", render(scene, make_settings(100, 1)),
-            glm::dvec3(is_lamp_inside ? (1 - r) / (index * index) : index * index / (1 + r)), 0.01, 6);
+        expect_radiance(is_lamp_inside ? "lamp within" : "camera within", render(scene, make_settings(100, 1)),
+                        glm::dvec3(is_lamp_inside ? (1 - r) / (index * index) : index * index / (1 + r)), 0.01, 6);
     }
 }
 
 // The camera ray is absorbed, too: over a length of 1, and of 2 more per reflection.
 TEST(Dielectric, AbsorbsWhatTheCameraSeesWithin) {
     const glm::dvec3 absorption(0, 0.5, 1), once = glm::exp(-absorption), twice = once * once;
-    Scene scene = make_scene({dielectric_material(1.5f, vec3(absorption))},
-                             box_sides(vec3(-1), vec3(1), 0, Facing::outwards));
+    Scene scene = make_scene({dielectric_material(1.5f, vec3(absorption))}, box_sides(vec3(-1), vec3(1), 0, Facing::outwards));
     scene.background = vec3(1);
-    scene.camera = {
-        .position = {0.1f, 0.2f, 0}, .target = {0.1f, 0.2f, -1}, .up = {0, 1, 0}, .vertical_fov = 1};
+    scene.camera = {.position = {0.1f, 0.2f, 0}, .target = {0.1f, 0.2f, -1}, .up = {0, 1, 0}, .vertical_fov = 1};
     const double r = fresnel_reflectance(1, 1.5);
-    expect_radiance("towards a side", render(scene, make_settings(100, 1)),
-                    2.25 * (1 - r) * once / (1.0 - r * twice), 0.01, 3);
+    expect_radiance("towards a side", render(scene, make_settings(100, 1)), 2.25 * (1 - r) * once / (1.0 - r * twice), 0.01, 3);
 }
 
 }  // namespace

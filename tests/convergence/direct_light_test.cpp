@@ -41,9 +41,7 @@ class Receiver {
         bitangent_ = glm::cross(normal_, tangent_);
     }
 
-    dvec3 to_world(const dvec3& p) const {
-        return centre_ + p.x * tangent_ + p.y * bitangent_ + p.z * normal_;
-    }
+    dvec3 to_world(const dvec3& p) const { return centre_ + p.x * tangent_ + p.y * bitangent_ + p.z * normal_; }
 
     // Corners of a light in the world as the scene holds them, in an order that lets it face the receiver.
     Corners place(Corners light) const {
@@ -57,8 +55,7 @@ class Receiver {
     Scene scene(const std::vector<vec3>& emissions = {colour}) const {
         std::vector<Material> materials{diffuse_material(albedo)};
         for (const vec3& emission : emissions) materials.push_back(diffuse_material(vec3(0), emission));
-        Scene scene =
-            make_scene(materials, {{vec3(to_world({-0.5, -0.5, 0})), vec3(tangent_), vec3(bitangent_), 0}});
+        Scene scene = make_scene(materials, {{vec3(to_world({-0.5, -0.5, 0})), vec3(tangent_), vec3(bitangent_), 0}});
         scene.camera = {.position = vec3(to_world({0.02, -0.3, 0.2})),
                         .target = vec3(to_world({0, 0, 0})),
                         .up = vec3(normal_),
@@ -79,8 +76,7 @@ class Receiver {
                                  t = (2.0 * static_cast<double>(i / size) + 1 + nodes[b]) / size - 1;
                     const dvec3 origin(camera.position),
                         direction = dvec3(camera.forward) + s * dvec3(camera.right) - t * dvec3(camera.up);
-                    const double distance =
-                        glm::dot(centre_ - origin, normal_) / glm::dot(direction, normal_);
+                    const double distance = glm::dot(centre_ - origin, normal_) / glm::dot(direction, normal_);
                     const dvec3 point = origin + distance * direction;
                     EXPECT_LT(std::abs(glm::dot(point - centre_, tangent_)), 0.45);
                     EXPECT_LT(std::abs(glm::dot(point - centre_, bitangent_)), 0.45);
@@ -106,9 +102,8 @@ struct Limits {
 
 // The image is the albedo times what arrives: colour · irradiance / π and the part of the sky that no light
 // covers.
-void expect_direct_light(const std::string& what, const Batches& batches,
-                         const std::vector<double>& irradiance, const Limits& limits, size_t comparisons,
-                         double sky = 0) {
+void expect_direct_light(const std::string& what, const Batches& batches, const std::vector<double>& irradiance,
+                         const Limits& limits, size_t comparisons, double sky = 0) {
     const auto radiance = [&](double e, int channel) {
         return double{albedo[channel]} * (double{colour[channel]} * e / pi + sky * (1 - e / pi));
     };
@@ -119,11 +114,9 @@ void expect_direct_light(const std::string& what, const Batches& batches,
     ZMap map{batches.width, batches.height, std::vector<double>(irradiance.size())};
     Image expected{batches.width, batches.height, {}};
     for (const double e : irradiance)
-        for (int channel = 0; channel < 3; ++channel)
-            expected.pixels.push_back(static_cast<float>(radiance(e, channel)));
+        for (int channel = 0; channel < 3; ++channel) expected.pixels.push_back(static_cast<float>(radiance(e, channel)));
     for (int channel = 0; channel < 3; ++channel)
-        of_image.push_back(difference_from(batches.means(channel), radiance(mean, channel))
-                               .relative_to(radiance(mean, channel)));
+        of_image.push_back(difference_from(batches.means(channel), radiance(mean, channel)).relative_to(radiance(mean, channel)));
     for (uint32_t i = 0; i < irradiance.size(); ++i) {
         const std::vector<double> means = batches.means(1, {i % batches.width, i / batches.width}, {1, 1});
         if (irradiance[i] == 0) {
@@ -131,8 +124,7 @@ void expect_direct_light(const std::string& what, const Batches& batches,
             ASSERT_LE(estimate_mean(means).mean, 1e-4 * radiance(mean, 1));
             continue;
         }
-        of_pixels.push_back(
-            difference_from(means, radiance(irradiance[i], 1)).relative_to(radiance(mean, 1)));
+        of_pixels.push_back(difference_from(means, radiance(irradiance[i], 1)).relative_to(radiance(mean, 1)));
         const Difference& difference = of_pixels.back();
         if (difference.standard_error > 0) map.values[i] = difference.value / difference.standard_error;
     }
@@ -164,9 +156,7 @@ const std::vector<LightCase>& light_cases() {
     static const std::vector<LightCase> cases = [] {
         std::vector<LightCase> all;
         std::mt19937 random(7);
-        const auto uniform = [&](double low, double high) {
-            return std::uniform_real_distribution<>(low, high)(random);
-        };
+        const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
         // Random triangles that the middle of the receiver does not see from the side, where noise would hide
         // them.
         const auto triangle_in = [&](const dvec3& low, const dvec3& high) {
@@ -176,8 +166,7 @@ const std::vector<LightCase>& light_cases() {
                     light.push_back({uniform(low.x, high.x), uniform(low.y, high.y), uniform(low.z, high.z)});
                 const Corners back(light.rbegin(), light.rend());
                 const dvec3 up(0, 0, 1);
-                if (polygon_irradiance(light, dvec3(0), up) + polygon_irradiance(back, dvec3(0), up) > 0.03)
-                    return light;
+                if (polygon_irradiance(light, dvec3(0), up) + polygon_irradiance(back, dvec3(0), up) > 0.03) return light;
             }
         };
         const auto scaled = [](Corners light, double scale, const dvec3& centre) {
@@ -187,9 +176,7 @@ const std::vector<LightCase>& light_cases() {
         const Corners shape{{-0.9, 0.2, 0.5}, {0.3, 0.8, -0.6}, {0.6, -0.7, 0.1}};
         const dvec3 floor(0, 1, 0), walls[] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {0, -1, 0}};
         for (int i = 0; i < 10; ++i) {
-            const dvec3 normal = i < 3   ? floor
-                                 : i < 8 ? walls[i - 3]
-                                         : dvec3(uniform(-1, 1), uniform(-1, 1), 0.5);
+            const dvec3 normal = i < 3 ? floor : i < 8 ? walls[i - 3] : dvec3(uniform(-1, 1), uniform(-1, 1), 0.5);
             all.push_back({"random " + std::to_string(i), normal, triangle_in({-1, -1, 0.4}, {1, 1, 1.6})});
         }
         for (int i = 0; i < 5; ++i)
@@ -204,16 +191,14 @@ const std::vector<LightCase>& light_cases() {
         all.push_back({"narrow", floor, {{-1, 0.5, 0.7}, {1, 0.5, 0.8}, {0.2, 0.55, 0.65}}});
         all.push_back({"sliver", floor, {{-1, 0.5, 0.7}, {1, 0.5, 0.8}, {0.2, 0.5002, 0.75}}});
         all.push_back({"just above the horizon", floor, {{1, -0.5, 0.01}, {1.2, 0.5, 0.02}, {1.1, 0, 0.1}}});
-        all.push_back(
-            {"seen from the side", walls[4], {{-0.3, 0.5, 0.5}, {0.4, 0.6, 0.62}, {0.1, 1.6, 1.25}}});
+        all.push_back({"seen from the side", walls[4], {{-0.3, 0.5, 0.5}, {0.4, 0.6, 0.62}, {0.1, 1.6, 1.25}}});
         return all;
     }();
     return cases;
 }
 
 class DirectLight : public OnEachChapter {};
-INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(chapters_that(samples_lights)),
-                         own_estimator_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, DirectLight, testing::ValuesIn(chapters_that(samples_lights)), own_estimator_name);
 
 TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
     uint32_t seed = 100;
@@ -222,8 +207,7 @@ TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
         Scene scene = receiver.scene();
         add_triangle(scene, receiver.place(light), 1);
         const Batches batches = render_batches(scene, settings_of(GetParam(), 80, ++seed), light_batches);
-        expect_direct_light(name, batches, receiver.irradiance(receiver.place(light)), {0.02, 0.7},
-                            light_cases().size());
+        expect_direct_light(name, batches, receiver.irradiance(receiver.place(light)), {0.02, 0.7}, light_cases().size());
     }
 }
 
@@ -246,15 +230,14 @@ TEST_P(DirectLight, OfTransformedInstancesIsThatOfTheirImages) {
     for (int k = 0; k < 3; ++k) {
         const vec3 centre(receiver.to_world(dvec3(0.8 * (k - 1), 0.3, 0.9 + 0.2 * k)));
         const mat4 placement = glm::translate(identity, centre) * placements[k];
-        scene.instances.push_back({.object_to_world = mat4x3(placement),
-                                   .normal_to_world = glm::transpose(glm::inverse(mat3(placement)))});
+        scene.instances.push_back(
+            {.object_to_world = mat4x3(placement), .normal_to_world = glm::transpose(glm::inverse(mat3(placement)))});
         scene.instance_meshes.push_back(1);
         Corners image;
         for (const dvec3& corner : light) image.emplace_back(placement * glm::vec4(vec3(corner), 1));
         if (glm::determinant(mat3(placement)) < 0) std::swap(image[1], image[2]);
         const auto of_light = receiver.irradiance(image);
-        EXPECT_GT(*std::min_element(of_light.begin(), of_light.end()), 0.01)
-            << "light " << k << " faces away";
+        EXPECT_GT(*std::min_element(of_light.begin(), of_light.end()), 0.01) << "light " << k << " faces away";
         for (size_t i = 0; i < irradiance.size(); ++i) irradiance[i] += of_light[i];
     }
     const Batches batches = render_batches(scene, settings_of(GetParam(), 64, 1), light_batches);
@@ -267,8 +250,7 @@ TEST_P(DirectLight, IsBlockedCloseToTheLight) {
     add_triangle(scene, receiver.place({{-1, -1, 1}, {1, -1, 1}, {0, 1.2, 1}}), 1);
     // A little below the light, and a little larger.
     add_triangle(scene, receiver.place({{-1.5, -1.3, 0.97}, {1.5, -1.3, 0.97}, {0, 1.7, 0.97}}), 0);
-    for (const FilmPixel& pixel : render(scene, settings_of(GetParam(), 64, 1)).pixels)
-        ASSERT_EQ(pixel.sum, vec3(0));
+    for (const FilmPixel& pixel : render(scene, settings_of(GetParam(), 64, 1)).pixels) ASSERT_EQ(pixel.sum, vec3(0));
 }
 
 TEST_P(DirectLight, AddsToTheLightOfTheSky) {
@@ -296,8 +278,8 @@ TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {
         add_triangle(scene, receiver.place(light), 1);
         RenderSettings settings = settings_of(GetParam(), 450, ++seed);
         settings.strategy = Strategy::bounces;
-        expect_direct_light(name, render_batches(scene, settings, light_batches),
-                            receiver.irradiance(receiver.place(light)), {0.05, 2}, 3);
+        expect_direct_light(name, render_batches(scene, settings, light_batches), receiver.irradiance(receiver.place(light)),
+                            {0.05, 2}, 3);
     }
 }
 
@@ -308,8 +290,7 @@ TEST_P(AllChapters, GiveExactlyNothingWithoutLight) {
     Scene dark = receiver.scene(), turned_away = dark;
     add_triangle(turned_away, turned, 1);
     for (const Scene& scene : {dark, turned_away})
-        for (const FilmPixel& pixel : render(scene, settings_of(GetParam(), 64, 1)).pixels)
-            ASSERT_EQ(pixel.sum, vec3(0));
+        for (const FilmPixel& pixel : render(scene, settings_of(GetParam(), 64, 1)).pixels) ASSERT_EQ(pixel.sum, vec3(0));
 }
 
 }  // namespace

@@ -27,8 +27,7 @@ Cost measure(const Scene& scene, RenderSettings settings) {
         ++settings.seed;
         const Rendering second = renderer.render(settings);
         ++settings.seed;
-        const double error =
-            2 * settings.samples * estimate_error(first.film.mean(), second.film.mean()).rel_mse;
+        const double error = 2 * settings.samples * estimate_error(first.film.mean(), second.film.mean()).rel_mse;
         const double rays = static_cast<double>(first.rays + second.rays) / paths;
         cost.error += error / pairs;
         cost.rays += rays / pairs;
@@ -41,15 +40,14 @@ Cost measure(const Scene& scene, RenderSettings settings) {
 // logarithms).
 void expect_gain(const std::string& what, const Cost& before, const Cost& technique) {
     const Difference gain = difference_of(technique.logarithms, before.logarithms);
-    std::printf(
-        "  %s: error x %.3f, rays x %.2f, error times rays x %.3f, p = %.2g; finds a gain of x %.2f\n",
-        what.c_str(), technique.error / before.error, technique.rays / before.rays, std::exp(gain.value),
-        gain.p_value(), std::exp(-gain.smallest_detectable(significance, power)));
+    std::printf("  %s: error x %.3f, rays x %.2f, error times rays x %.3f, p = %.2g; finds a gain of x %.2f\n", what.c_str(),
+                technique.error / before.error, technique.rays / before.rays, std::exp(gain.value), gain.p_value(),
+                std::exp(-gain.smallest_detectable(significance, power)));
     EXPECT_TRUE(gain.value < 0 && gain.p_value() < significance) << what << " does not pay";
 }
 
-Cost measure_chapter(const std::string& scene_name, const std::string& name, uint32_t samples,
-                     uint32_t length, uint32_t splitting = 1) {
+Cost measure_chapter(const std::string& scene_name, const std::string& name, uint32_t samples, uint32_t length,
+                     uint32_t splitting = 1) {
     const Scene scene = load_shipped_scene(scene_name + ".json");
     RenderSettings settings{.width = 64, .height = 64, .samples = samples, .max_path_length = length};
     settings.splitting_factor = splitting;
@@ -82,8 +80,7 @@ TEST(Efficiency, CosineSamplingAndNextEventEstimationPay_all) {
 // Splitting pays where what comes after the first hit is noisy, as with a light of thousands of triangles. In
 // the Cornell box edges and camera rays weigh as much as they save each other.
 TEST(Efficiency, SplittingPaysForNoisyLight_all) {
-    expect_gain("splitting in 4 against next event estimation",
-                measure_chapter("heart_light", "next_event_estimation", 16, 4),
+    expect_gain("splitting in 4 against next event estimation", measure_chapter("heart_light", "next_event_estimation", 16, 4),
                 measure_chapter("heart_light", "splitting", 4, 4, 4));
 }
 
@@ -108,31 +105,25 @@ TEST(Efficiency, RoulettePaysWhereEveryHitSplits_all) {
 
 // Where lights are near, light samples are noisy; where surfaces are glossy, they miss the lobe.
 TEST(Efficiency, MultipleImportanceSamplingPays_all) {
-    expect_gain("multiple importance sampling against dielectrics, heart",
-                measure_chapter("heart_light", "dielectrics", 12, 4),
+    expect_gain("multiple importance sampling against dielectrics, heart", measure_chapter("heart_light", "dielectrics", 12, 4),
                 measure_chapter("heart_light", "multiple_importance_sampling", 12, 4));
     const Cost both = measure_chapter("plates", "multiple_importance_sampling", 8, 2);
-    expect_gain("both strategies against light samples", measure_strategy("plates", Strategy::light, 32, 2),
-                both);
-    expect_gain("both strategies against bounces", measure_strategy("plates", Strategy::bounces, 32, 2),
-                both);
+    expect_gain("both strategies against light samples", measure_strategy("plates", Strategy::light, 32, 2), both);
+    expect_gain("both strategies against bounces", measure_strategy("plates", Strategy::bounces, 32, 2), both);
 }
 
 TEST(Efficiency, SamplingTheLightProbePays_all) {
     expect_gain("light probes against multiple importance sampling, small sun",
-                measure_chapter("sunny", "multiple_importance_sampling", 8, 2),
-                measure_chapter("sunny", "light_probes", 4, 2));
+                measure_chapter("sunny", "multiple_importance_sampling", 8, 2), measure_chapter("sunny", "light_probes", 4, 2));
     expect_gain("light probes against multiple importance sampling, wide sun",
                 measure_chapter("textured", "multiple_importance_sampling", 8, 2),
                 measure_chapter("textured", "light_probes", 4, 2));
 }
 
 TEST(Efficiency, LowDiscrepancyPointsPay_all) {
-    expect_gain("low-discrepancy points against light probes, Cornell box",
-                measure_chapter("cornell_box", "light_probes", 16, 4),
+    expect_gain("low-discrepancy points against light probes, Cornell box", measure_chapter("cornell_box", "light_probes", 16, 4),
                 measure_chapter("cornell_box", "low_discrepancy_points", 16, 4));
-    expect_gain("low-discrepancy points against light probes, wide sun",
-                measure_chapter("textured", "light_probes", 8, 2),
+    expect_gain("low-discrepancy points against light probes, wide sun", measure_chapter("textured", "light_probes", 8, 2),
                 measure_chapter("textured", "low_discrepancy_points", 8, 2));
 }
 

@@ -29,8 +29,8 @@ struct Samples {
 
 // Inside a closed surface of albedo a and emission E every point shows E (1 + a + a² + ... + a^m) at path
 // length m. Each channel has its own numbers.
-void expect_furnace(const std::string& chapter, Scene (*make_furnace)(const Material&), const vec3& albedo,
-                    const vec3& emission, const Samples& samples) {
+void expect_furnace(const std::string& chapter, Scene (*make_furnace)(const Material&), const vec3& albedo, const vec3& emission,
+                    const Samples& samples) {
     const Scene scene = make_furnace(diffuse_material(albedo, emission));
     // In a room whose walls all emit, samples of the lights have infinite variance at the edges.
     RenderSettings settings{.strategy = Strategy::bounces, .estimator = chapter_estimator(chapter)};
@@ -42,9 +42,8 @@ void expect_furnace(const std::string& chapter, Scene (*make_furnace)(const Mate
         const FilmImage film = renderer.render(settings).film;
         for (int channel = 0; channel < 3; ++channel) {
             const double a = albedo[channel], e = emission[channel];
-            expect_mean(
-                "path length " + std::to_string(m) + ", " + channel_names[static_cast<size_t>(channel)],
-                estimate_mean(pixel_means(film, channel)), e * (1 - std::pow(a, m + 1)) / (1 - a), 0.002, 15);
+            expect_mean("path length " + std::to_string(m) + ", " + channel_names[static_cast<size_t>(channel)],
+                        estimate_mean(pixel_means(film, channel)), e * (1 - std::pow(a, m + 1)) / (1 - a), 0.002, 15);
         }
     }
 }
@@ -60,15 +59,12 @@ TEST_P(Furnace, ConvexObjectShowsItsAlbedoTimesTheSky) {
     Scene scene = make_sphere(diffuse_material(albedo), Facing::outwards);
     scene.background = sky;
     for (const uint32_t m : {1u, 8u}) {
-        RenderSettings settings{
-            .samples = 900, .max_path_length = m, .seed = chapter_seed(GetParam()) + 20 + m};
+        RenderSettings settings{.samples = 900, .max_path_length = m, .seed = chapter_seed(GetParam()) + 20 + m};
         settings.estimator = chapter_estimator(GetParam());
         const FilmImage film = render(scene, settings);
         for (int channel = 0; channel < 3; ++channel)
-            expect_mean(
-                "path length " + std::to_string(m) + ", " + channel_names[static_cast<size_t>(channel)],
-                estimate_mean(pixel_means(film, channel)), double{albedo[channel]} * double{sky[channel]},
-                0.002, 6);
+            expect_mean("path length " + std::to_string(m) + ", " + channel_names[static_cast<size_t>(channel)],
+                        estimate_mean(pixel_means(film, channel)), double{albedo[channel]} * double{sky[channel]}, 0.002, 6);
     }
 }
 

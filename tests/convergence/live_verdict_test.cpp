@@ -26,8 +26,7 @@ INSTANTIATE_TEST_SUITE_P(, LiveVerdictOf, testing::ValuesIn(all_chapters), own_e
 void LiveVerdictOf::expect_agreement(uint32_t seeds) {
     const Scene scene = load_shipped_scene("cornell_box.json");
     const GpuScene gpu_scene(test_device(), scene);
-    const auto acceleration_structure =
-        build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
+    const auto acceleration_structure = build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
     // Bounces find the light by chance: direct light will do.
     const uint32_t max_path_length = samples_lights(GetParam()) ? 6 : 1;
     RenderParameters parameters = parameters_for(scene, max_path_length, 1);
@@ -61,8 +60,7 @@ TEST(SceneReference, IsThatOfTheSameImageOnly) {
     Scene scene = load_shipped_scene("cornell_box.json");
     const RenderParameters good = parameters_for(scene, 6, 1);
     EXPECT_EQ(why_not(scene, good), "");
-    EXPECT_EQ(why_not(scene, parameters_for(scene, 5, 1)),
-              "this scene's references are for a maximal path length of 1 and 6");
+    EXPECT_EQ(why_not(scene, parameters_for(scene, 5, 1)), "this scene's references are for a maximal path length of 1 and 6");
     RenderParameters changed = good;
     changed.camera.position.x += 0.01f;
     EXPECT_EQ(why_not(scene, changed), "the camera has moved");
@@ -74,8 +72,7 @@ TEST(SceneReference, IsThatOfTheSameImageOnly) {
     EXPECT_EQ(why_not(scene, changed), "the picture shows a single path length");
     changed = good;
     changed.image_size = {200, 200};
-    EXPECT_EQ(why_not(scene, changed),
-              "the reference has 128x128 pixels, the image is no whole number of times larger");
+    EXPECT_EQ(why_not(scene, changed), "the reference has 128x128 pixels, the image is no whole number of times larger");
     scene.hash ^= 1;
     EXPECT_EQ(why_not(scene, good), "this scene's reference is older than the scene: ./lab reference --all");
     EXPECT_EQ(why_not(load_shipped_scene("furnace.json"), good), "this scene has no reference");

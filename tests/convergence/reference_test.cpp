@@ -37,8 +37,7 @@ struct Comparison {
         Difference difference = difference_from(batches.means(channel, corner, size), expected.mean);
         // Emission alone has no variance, but the two programs round it differently.
         const double rounding = 1e-5 * std::abs(expected.mean);
-        difference.standard_error =
-            std::hypot(difference.standard_error, std::sqrt(expected.variance), rounding);
+        difference.standard_error = std::hypot(difference.standard_error, std::sqrt(expected.variance), rounding);
         return difference.relative_to(scale);
     }
 };
@@ -83,8 +82,7 @@ double sign_map_p_value(const ZMap& map) {
 }
 
 std::string case_name(const ReferenceCase& c) {
-    return instance_name(c.reference + "_chapter_" + c.chapter,
-                         c.runs_with_all ? Run::with_all : Run::always);
+    return instance_name(c.reference + "_chapter_" + c.chapter, c.runs_with_all ? Run::with_all : Run::always);
 }
 
 class ReferenceImage : public testing::TestWithParam<size_t> {};
@@ -100,8 +98,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     ASSERT_EQ(attributes.at("scene_hash"), hexadecimal(scene.hash))
         << file << " is stale: its scene has changed; run ./lab reference --all";
 
-    RenderSettings settings{
-        .width = reference.mean.width, .height = reference.mean.height, .samples = c.samples};
+    RenderSettings settings{.width = reference.mean.width, .height = reference.mean.height, .samples = c.samples};
     settings.max_path_length = static_cast<uint32_t>(std::stoul(attributes.at("max_path_length")));
     // Another one for each case: chapters may follow the same paths if their seeds are equal.
     settings.seed = 1000 + static_cast<uint32_t>(&c - all_references.data());
@@ -136,8 +133,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     expect_no_difference("tiles", of_tiles, c.largest_tile_bias);
     expect_uniform("p-values of the tiles", p_values, 0.3);
     const double sign_p_value = sign_map_p_value(map), kurtosis = excess_kurtosis(batches);
-    std::printf("  signs of neighbouring tiles: p = %.2g; excess kurtosis of batches %.2f\n", sign_p_value,
-                kurtosis);
+    std::printf("  signs of neighbouring tiles: p = %.2g; excess kurtosis of batches %.2f\n", sign_p_value, kurtosis);
     EXPECT_GT(sign_p_value, significance) << "neighbouring tiles are off to the same side";
     if (!c.has_heavy_tail) {
         EXPECT_LT(kurtosis, 2) << "the batches' spread does not tell the error of their mean";

@@ -15,9 +15,7 @@ const std::vector<Repetition> repeated_chapters = repetitions();
 
 class RepeatedChapter : public testing::TestWithParam<size_t> {};
 INSTANTIATE_TEST_SUITE_P(, RepeatedChapter, testing::Range(size_t{0}, repeated_chapters.size()),
-                         [](const auto& instance) {
-                             return "chapter_" + repeated_chapters[instance.param].chapter;
-                         });
+                         [](const auto& instance) { return "chapter_" + repeated_chapters[instance.param].chapter; });
 
 Estimator repetition_estimator(const Repetition& repetition) {
     Estimator estimator = chapter_estimator(repetition.chapter);
@@ -36,12 +34,9 @@ std::vector<std::pair<Scene, Strategy>> scenes_of(const Repetition& repetition) 
     glossy.materials[0].specular_exponent = 20;
     open.background = {0.2f, 0.3f, 0.5f};
     for (Material& material : furnace.materials) material.emission = vec3(1);
-    std::vector<std::pair<Scene, Strategy>> scenes{{room, Strategy::both},
-                                                   {glossy, Strategy::both},
-                                                   {open, Strategy::both},
-                                                   {furnace, Strategy::bounces}};
-    if (repetition.has("glass"))
-        scenes.emplace_back(room_with_box(dielectric_material(1.5f, vec3(0.3f))), Strategy::both);
+    std::vector<std::pair<Scene, Strategy>> scenes{
+        {room, Strategy::both}, {glossy, Strategy::both}, {open, Strategy::both}, {furnace, Strategy::bounces}};
+    if (repetition.has("glass")) scenes.emplace_back(room_with_box(dielectric_material(1.5f, vec3(0.3f))), Strategy::both);
     if (repetition.has("probe")) scenes.emplace_back(load_shipped_scene("textured.json"), Strategy::both);
     return scenes;
 }
@@ -56,8 +51,7 @@ void expect_same_paths(const Rendering& chapter, const Rendering& before) {
         equal += sum == expected[i].sum;
         close += glm::distance(sum, expected[i].sum) <= 1e-5f * glm::length(expected[i].sum);
     }
-    std::printf("  %zu of %zu pixels are equal to the bit, %zu up to roundings\n", equal, expected.size(),
-                close);
+    std::printf("  %zu of %zu pixels are equal to the bit, %zu up to roundings\n", equal, expected.size(), close);
     EXPECT_GE(close, expected.size() * 99 / 100);
     const double rays = static_cast<double>(before.rays);
     EXPECT_NEAR(static_cast<double>(chapter.rays), rays, 1e-3 * rays);
@@ -69,11 +63,8 @@ TEST_P(RepeatedChapter, IsTheChapterBeforeIt) {
     std::vector<std::tuple<uint32_t, uint32_t, float, float>> limits{
         {0, no_roulette, 1.0f, 1.0f}, {1, no_roulette, 1.0f, 1.0f}, {8, no_roulette, 1.0f, 1.0f}};
     if (repetition.has("roulette"))
-        limits = {{0, 1, 0.95f, 1.0f},
-                  {1, 1, 0.95f, 1.0f},
-                  {8, 1, 0.95f, 0.25f},
-                  {endless, 3, 0.95f, 0.5f},
-                  {endless, 1, 0.5f, 1.0f}};
+        limits = {
+            {0, 1, 0.95f, 1.0f}, {1, 1, 0.95f, 1.0f}, {8, 1, 0.95f, 0.25f}, {endless, 3, 0.95f, 0.5f}, {endless, 1, 0.5f, 1.0f}};
     for (const auto& [scene, strategy] : scenes_of(repetition)) {
         RenderSettings settings{.width = 48,
                                 .height = 48,

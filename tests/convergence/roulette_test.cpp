@@ -12,8 +12,7 @@ namespace {
 constexpr uint32_t endless = 100'000;
 
 // Inside a box whose walls emit 1 and reflect `albedo`; emission is found by bounces.
-Batches render_furnace(const std::string& chapter, const vec3& albedo, RenderSettings settings,
-                       uint32_t count) {
+Batches render_furnace(const std::string& chapter, const vec3& albedo, RenderSettings settings, uint32_t count) {
     settings.strategy = Strategy::bounces;
     settings.estimator = chapter_estimator(chapter);
     return render_batches(closed_box(diffuse_material(albedo, vec3(1))), settings, count);
@@ -35,8 +34,7 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
 }
 
 class Roulette : public OnEachChapter {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_that(has_roulette)),
-                         own_estimator_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_that(has_roulette)), own_estimator_name);
 
 // With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So
 // E[X] = m = 1/(1-a), E[X²] = (1 + 2am)/(1 - a²/p), and it has 1/(1-p) rays.
@@ -58,12 +56,10 @@ TEST_P(Roulette, HasTheKnownMeanVarianceAndCost) {
         char name[100];
         std::snprintf(name, sizeof(name), "albedo %.2f, cap %.2f: ", a, double{cap});
         expect_no_difference(std::string(name) + "mean", relative_difference(batches.means(1), m), 0.02, 20);
-        expect_no_difference(std::string(name) + "rays", relative_difference(batches.rays, 1 / (1 - p)), 0.01,
-                             20);
+        expect_no_difference(std::string(name) + "rays", relative_difference(batches.rays, 1 / (1 - p)), 0.01, 20);
         if (is_fourth_moment_finite)
-            expect_no_difference(
-                std::string(name) + "square",
-                relative_difference(square_means(batches), (1 + 2 * a * m) / (1 - a * a / p)), 0.15, 20);
+            expect_no_difference(std::string(name) + "square",
+                                 relative_difference(square_means(batches), (1 + 2 * a * m) / (1 - a * a / p)), 0.15, 20);
     }
 }
 
@@ -73,31 +69,26 @@ TEST_P(Roulette, SurvivalIsTheLargestComponentOfTheThroughput) {
     const Batches batches = render_furnace(GetParam(), albedo, settings, 64);
     std::vector<Difference> means;
     for (int channel = 0; channel < 3; ++channel)
-        means.push_back(
-            relative_difference(batches.means(channel), 1 / (1 - double{albedo[channel]})).front());
+        means.push_back(relative_difference(batches.means(channel), 1 / (1 - double{albedo[channel]})).front());
     expect_no_difference("means", means, 0.01, 2);
     expect_no_difference("rays", relative_difference(batches.rays, 1 / (1 - 0.6)), 0.01, 2);
 }
 
 class SplitRoulette : public Roulette {};
-INSTANTIATE_TEST_SUITE_P(Chapters, SplitRoulette,
-                         testing::ValuesIn(chapters_that(has_roulette, splits_paths)), chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, SplitRoulette, testing::ValuesIn(chapters_that(has_roulette, splits_paths)), chapter_name);
 
 TEST_P(SplitRoulette, IgnoresTheSplitting) {
     // Each of s branches has p/(1-p) rays, and the variance of one is divided by s: were the factor 1/s part
     // of the throughput, more of them would end.
     const double a = 0.5, m = 2, variance = (1 + 2 * a * m) / (1 - a) - m * m;
     for (const uint32_t s : {1u, 4u, 7u}) {
-        RenderSettings settings{.samples = 1,
-                                .max_path_length = endless,
-                                .seed = chapter_seed(GetParam()) + 20 + s,
-                                .splitting_factor = s};
+        RenderSettings settings{
+            .samples = 1, .max_path_length = endless, .seed = chapter_seed(GetParam()) + 20 + s, .splitting_factor = s};
         const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 96);
         const std::string name = "s = " + std::to_string(s) + ": ";
         expect_no_difference(name + "mean", relative_difference(batches.means(1), m), 0.02, 9);
         expect_no_difference(name + "rays", relative_difference(batches.rays, 1 + s * a / (1 - a)), 0.02, 9);
-        expect_no_difference(name + "square",
-                             relative_difference(square_means(batches), m * m + variance / s), 0.03, 9);
+        expect_no_difference(name + "square", relative_difference(square_means(batches), m * m + variance / s), 0.03, 9);
     }
 }
 

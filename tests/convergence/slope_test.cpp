@@ -31,8 +31,7 @@ void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings
 }
 
 class Convergence : public OnEachChapter {};
-INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(chapters_that(is_pseudorandom)),
-                         own_estimator_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(chapters_that(is_pseudorandom)), own_estimator_name);
 TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
     Scene scene = load_shipped_scene("cornell_box.json");
     // Without the lamp: a few pixels at its edge would decide the error of the whole image.
@@ -43,8 +42,7 @@ TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
 
 // What makes samples depend on each other does so in either scene.
 TEST_P(Convergence, ErrorUnderASkyFallsWithTheRootOfTheNumberOfSamples_all) {
-    expect_slope(load_shipped_scene("textured.json"), GetParam(),
-                 {.width = 48, .height = 48, .max_path_length = 2});
+    expect_slope(load_shipped_scene("textured.json"), GetParam(), {.width = 48, .height = 48, .max_path_length = 2});
 }
 
 // --- Low-discrepancy points.
@@ -77,8 +75,7 @@ TEST(LowDiscrepancyConvergence, ErrorOfSmoothIntegralsFallsFast) {
         std::vector<double> by_samples, by_pixels;
         for (settings.samples = 1; settings.samples <= 1024; settings.samples *= 4) {
             double square = 0;
-            for (const double mean : pixel_means(renderer.render(settings).film, channel))
-                square += (mean - 1) * (mean - 1);
+            for (const double mean : pixel_means(renderer.render(settings).film, channel)) square += (mean - 1) * (mean - 1);
             by_samples.push_back(std::sqrt(square / (settings.width * settings.height)));
         }
         settings.samples = 64;
@@ -90,8 +87,7 @@ TEST(LowDiscrepancyConvergence, ErrorOfSmoothIntegralsFallsFast) {
                 for (size_t i = first; i < first + pixels; ++i) sum += means[i] - 1;
                 square += sum * sum / static_cast<double>(pixels * pixels);
             }
-            by_pixels.push_back(
-                std::sqrt(square * static_cast<double>(pixels) / static_cast<double>(means.size())));
+            by_pixels.push_back(std::sqrt(square * static_cast<double>(pixels) / static_cast<double>(means.size())));
         }
         expect_slope_below("samples, function " + std::to_string(channel), by_samples, largest_slope);
         expect_slope_below("pixels, function " + std::to_string(channel), by_pixels, -0.44);
@@ -101,16 +97,15 @@ TEST(LowDiscrepancyConvergence, ErrorOfSmoothIntegralsFallsFast) {
 void expect_fast_convergence(const Scene& scene, RenderSettings settings, double largest_slope) {
     settings.seed = 9200;
     const ErrorSlope slope = measure_error_slope(scene, settings, 1024);
-    std::printf("  variance of a sample, from 1, 4, 16 ... samples:%s\n  slope %.4f ± %.4f\n",
-                slope.variances.c_str(), slope.value, slope.standard_error);
+    std::printf("  variance of a sample, from 1, 4, 16 ... samples:%s\n  slope %.4f ± %.4f\n", slope.variances.c_str(),
+                slope.value, slope.standard_error);
     EXPECT_LT(slope.value + 5 * slope.standard_error, largest_slope);
 }
 
 // A square lamp above a floor: nothing is in the way of its light.
 Scene lamp_above_floor() {
-    Scene scene =
-        make_scene({diffuse_material(vec3(0.8f)), diffuse_material(vec3(0), vec3(5))},
-                   {{{-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 0}, {{-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1}});
+    Scene scene = make_scene({diffuse_material(vec3(0.8f)), diffuse_material(vec3(0), vec3(5))},
+                             {{{-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 0}, {{-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1}});
     scene.camera = {.position = {0, 1, 3}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 25};
     return scene;
 }
@@ -149,8 +144,7 @@ TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
         settings.first_sample = half;
         const Image second = renderer.render(settings).film.mean();
         estimated.push_back(estimate_error(first, second).mse);
-        for (size_t i = 0; i < first.pixels.size(); ++i)
-            first.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
+        for (size_t i = 0; i < first.pixels.size(); ++i) first.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
         means.push_back(std::move(first));
     }
     for (const Image& mean : means) {
@@ -164,8 +158,7 @@ TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
     }
     const MeanEstimate estimate = estimate_mean(estimated), truth = estimate_mean(actual);
     const double ratio = estimate.mean / truth.mean,
-                 error = ratio * std::hypot(estimate.standard_error / estimate.mean,
-                                            truth.standard_error / truth.mean);
+                 error = ratio * std::hypot(estimate.standard_error / estimate.mean, truth.standard_error / truth.mean);
     constexpr double tolerance = 0.1;
     std::printf("  estimated over actual error: %.4f ± %.4f; finds one off by %.3f\n", ratio, error,
                 tolerance + normal_quantile(power) * error);

@@ -65,8 +65,7 @@ SplittingFit fit_variances(const std::vector<std::vector<double>>& variances_of_
     const double determinant = w * wxx - wx * wx;
     SplittingFit fit{};
     fit.inner = (w * wxy - wx * wy) / determinant;
-    const double degrees_of_freedom =
-        static_cast<double>(splitting_factors.size() * (variances_of_factor[0].size() - 1));
+    const double degrees_of_freedom = static_cast<double>(splitting_factors.size() * (variances_of_factor[0].size() - 1));
     fit.outer = {(wxx * wy - wx * wxy) / determinant, std::sqrt(wxx / determinant), degrees_of_freedom};
     double chi_square = 0;
     for (size_t i = 0; i < splitting_factors.size(); ++i) {
@@ -87,11 +86,10 @@ INSTANTIATE_TEST_SUITE_P(Chapters, Splitting, testing::ValuesIn(chapters_that(sp
 TEST_P(Splitting, LowersTheVarianceAfterTheFirstHit) {
     std::vector<std::vector<double>> variances;
     for (const uint32_t s : splitting_factors)
-        variances.push_back(
-            sample_variances(render_batches(view_of_boxes(), settings_of(GetParam(), s), 1024), 32));
+        variances.push_back(sample_variances(render_batches(view_of_boxes(), settings_of(GetParam(), s), 1024), 32));
     const SplittingFit fit = fit_variances(variances);
-    std::printf("  V_out %.4f, V_in %.4f, p of the fit %.2g; finds a variance that is off by %.1f %%\n",
-                fit.outer.value, fit.inner, fit.p_value, 100 * fit.smallest_detectable_misfit);
+    std::printf("  V_out %.4f, V_in %.4f, p of the fit %.2g; finds a variance that is off by %.1f %%\n", fit.outer.value,
+                fit.inner, fit.p_value, 100 * fit.smallest_detectable_misfit);
     EXPECT_GT(fit.p_value, significance);
     EXPECT_LT(fit.smallest_detectable_misfit, 0.2);
     EXPECT_GT(fit.inner, 0);

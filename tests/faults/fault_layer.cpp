@@ -74,8 +74,7 @@ void VKAPI_CALL get_memory_properties(VkPhysicalDevice physical, VkPhysicalDevic
     own.size = carve_out_mebibytes << 20;
     for (uint32_t type = 0; type < driver_memory_types; ++type)
         memory->memoryTypes[memory->memoryTypeCount++] = {
-            memory->memoryTypes[type].propertyFlags & ~VkFlags{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT},
-            memory->memoryHeapCount};
+            memory->memoryTypes[type].propertyFlags & ~VkFlags{VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT}, memory->memoryHeapCount};
     ++memory->memoryHeapCount;
 }
 
@@ -95,8 +94,8 @@ VkResult VKAPI_CALL queue_submit(VkQueue queue, uint32_t count, const VkSubmitIn
     return next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence);
 }
 
-VkResult VKAPI_CALL allocate_memory(VkDevice of, const VkMemoryAllocateInfo* info,
-                                    const VkAllocationCallbacks* callbacks, VkDeviceMemory* memory) {
+VkResult VKAPI_CALL allocate_memory(VkDevice of, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
+                                    VkDeviceMemory* memory) {
     const uint64_t mebibytes = info->allocationSize >> 20;
     if (mebibytes > mebibytes_left) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
     if (allocations_left == 0) return VK_ERROR_TOO_MANY_OBJECTS;
@@ -121,8 +120,7 @@ void VKAPI_CALL free_memory(VkDevice of, VkDeviceMemory memory, const VkAllocati
 template <typename Info, VkStructureType type, typename CreateInfo>
 auto take_link(const CreateInfo* create) {
     auto* info = static_cast<Info*>(const_cast<void*>(create->pNext));
-    while (info->sType != type || info->function != VK_LAYER_LINK_INFO)
-        info = static_cast<Info*>(const_cast<void*>(info->pNext));
+    while (info->sType != type || info->function != VK_LAYER_LINK_INFO) info = static_cast<Info*>(const_cast<void*>(info->pNext));
     auto* link = info->u.pLayerInfo;
     info->u.pLayerInfo = link->pNext;
     return link;
@@ -131,16 +129,13 @@ auto take_link(const CreateInfo* create) {
 VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
                                     VkInstance* created) {
     next_instance_function =
-        take_link<VkLayerInstanceCreateInfo, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO>(info)
-            ->pfnNextGetInstanceProcAddr;
-    const auto create =
-        reinterpret_cast<PFN_vkCreateInstance>(next_instance_function(VK_NULL_HANDLE, "vkCreateInstance"));
+        take_link<VkLayerInstanceCreateInfo, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO>(info)->pfnNextGetInstanceProcAddr;
+    const auto create = reinterpret_cast<PFN_vkCreateInstance>(next_instance_function(VK_NULL_HANDLE, "vkCreateInstance"));
     const VkResult result = create(info, callbacks, created);
     if (result != VK_SUCCESS) return result;
     instance = *created;
     const auto take_next = [](auto& function, const char* name) {
-        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(
-            next_instance_function(instance, name));
+        function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(next_instance_function(instance, name));
     };
     take_next(next_get_properties, "vkGetPhysicalDeviceProperties");
     take_next(next_get_properties2, "vkGetPhysicalDeviceProperties2");
@@ -151,37 +146,29 @@ VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info, const VkAl
 VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const VkDeviceCreateInfo* info,
                                   const VkAllocationCallbacks* callbacks, VkDevice* created) {
     next_device_function =
-        take_link<VkLayerDeviceCreateInfo, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info)
-            ->pfnNextGetDeviceProcAddr;
-    const auto create =
-        reinterpret_cast<PFN_vkCreateDevice>(next_instance_function(instance, "vkCreateDevice"));
+        take_link<VkLayerDeviceCreateInfo, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO>(info)->pfnNextGetDeviceProcAddr;
+    const auto create = reinterpret_cast<PFN_vkCreateDevice>(next_instance_function(instance, "vkCreateDevice"));
     const VkResult result = create(physical, info, callbacks, created);
     if (result == VK_SUCCESS) device = *created;
     return result;
 }
 
 PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice of, const char* name) {
-    if (!std::strcmp(name, "vkGetDeviceProcAddr"))
-        return reinterpret_cast<PFN_vkVoidFunction>(device_function);
+    if (!std::strcmp(name, "vkGetDeviceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(device_function);
     if (!std::strcmp(name, "vkQueueSubmit")) return reinterpret_cast<PFN_vkVoidFunction>(queue_submit);
     if (!std::strcmp(name, "vkAllocateMemory")) return reinterpret_cast<PFN_vkVoidFunction>(allocate_memory);
     if (!std::strcmp(name, "vkFreeMemory")) return reinterpret_cast<PFN_vkVoidFunction>(free_memory);
-    if (!std::strcmp(name, "vkGetBufferMemoryRequirements"))
-        return reinterpret_cast<PFN_vkVoidFunction>(get_buffer_requirements);
-    if (!std::strcmp(name, "vkGetImageMemoryRequirements"))
-        return reinterpret_cast<PFN_vkVoidFunction>(get_image_requirements);
+    if (!std::strcmp(name, "vkGetBufferMemoryRequirements")) return reinterpret_cast<PFN_vkVoidFunction>(get_buffer_requirements);
+    if (!std::strcmp(name, "vkGetImageMemoryRequirements")) return reinterpret_cast<PFN_vkVoidFunction>(get_image_requirements);
     return next_device_function(of, name);
 }
 
 PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance of, const char* name) {
-    if (!std::strcmp(name, "vkGetInstanceProcAddr"))
-        return reinterpret_cast<PFN_vkVoidFunction>(instance_function);
+    if (!std::strcmp(name, "vkGetInstanceProcAddr")) return reinterpret_cast<PFN_vkVoidFunction>(instance_function);
     if (!std::strcmp(name, "vkCreateInstance")) return reinterpret_cast<PFN_vkVoidFunction>(create_instance);
     if (!std::strcmp(name, "vkCreateDevice")) return reinterpret_cast<PFN_vkVoidFunction>(create_device);
-    if (!std::strcmp(name, "vkGetPhysicalDeviceProperties"))
-        return reinterpret_cast<PFN_vkVoidFunction>(get_properties);
-    if (!std::strcmp(name, "vkGetPhysicalDeviceProperties2"))
-        return reinterpret_cast<PFN_vkVoidFunction>(get_properties2);
+    if (!std::strcmp(name, "vkGetPhysicalDeviceProperties")) return reinterpret_cast<PFN_vkVoidFunction>(get_properties);
+    if (!std::strcmp(name, "vkGetPhysicalDeviceProperties2")) return reinterpret_cast<PFN_vkVoidFunction>(get_properties2);
     if (!std::strcmp(name, "vkGetPhysicalDeviceMemoryProperties"))
         return reinterpret_cast<PFN_vkVoidFunction>(get_memory_properties);
     return next_instance_function(of, name);

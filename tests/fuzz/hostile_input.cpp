@@ -75,13 +75,10 @@ void use_scene(const Scene& scene) {
     for (const uint32_t material : scene.triangle_materials)
         require(material < scene.materials.size(), "a material index out of range");
     for (const Material& material : scene.materials)
-        require(material.albedo_texture < static_cast<int>(scene.textures.size()),
-                "a texture index out of range");
-    for (const uint32_t mesh : scene.instance_meshes)
-        require(mesh < scene.meshes.size(), "a mesh index out of range");
+        require(material.albedo_texture < static_cast<int>(scene.textures.size()), "a texture index out of range");
+    for (const uint32_t mesh : scene.instance_meshes) require(mesh < scene.meshes.size(), "a mesh index out of range");
     require(scene.triangle_materials.size() == scene.triangles.size(), "triangles without a material");
-    require(scene.normals.empty() || scene.normals.size() == scene.positions.size(),
-            "vertices without a normal");
+    require(scene.normals.empty() || scene.normals.size() == scene.positions.size(), "vertices without a normal");
     require(scene.texture_coordinates.empty() || scene.texture_coordinates.size() == scene.positions.size(),
             "vertices without texture coordinates");
     for (const std::string& warning : scene.warnings)
@@ -96,8 +93,7 @@ void use_scene(const Scene& scene) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
     static const lab::Folder folder;
-    static const int installed =
-        __sanitizer_install_malloc_and_free_hooks(lab::check_allocation, [](const volatile void*) {});
+    static const int installed = __sanitizer_install_malloc_and_free_hooks(lab::check_allocation, [](const volatile void*) {});
     lab::require(installed != 0, "allocations cannot be watched");
 
     const auto file = folder.write(lab::hostile_file_name, bytes, size);

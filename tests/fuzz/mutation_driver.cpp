@@ -62,8 +62,7 @@ class Mutator {
     // A copy of one input with up to eight changes.
     Input make(const std::vector<Input>& corpus) {
         Input input = corpus[below(corpus.size())];
-        for (size_t changes = 1 + below(8); changes > 0; --changes)
-            change(input, corpus[below(corpus.size())]);
+        for (size_t changes = 1 + below(8); changes > 0; --changes) change(input, corpus[below(corpus.size())]);
         input.resize(std::min(input.size(), max_input_bytes));
         return input;
     }
@@ -72,8 +71,7 @@ class Mutator {
     size_t below(size_t bound) { return std::uniform_int_distribution<size_t>(0, bound - 1)(random_); }
 
     void change(Input& input, const Input& other) {
-        static constexpr std::array<uint8_t, 12> telling_bytes{0,   1,   127, 128,  255, '0',
-                                                               '9', '-', ' ', '\n', '/', '.'};
+        static constexpr std::array<uint8_t, 12> telling_bytes{0, 1, 127, 128, 255, '0', '9', '-', ' ', '\n', '/', '.'};
         if (input.empty()) input.push_back(0);
         const auto at = [&](size_t i) { return input.begin() + static_cast<std::ptrdiff_t>(i); };
         const size_t start = below(input.size());
@@ -99,8 +97,7 @@ class Mutator {
             case 5: {
                 if (other.empty()) break;
                 const auto from = other.begin() + static_cast<std::ptrdiff_t>(below(other.size()));
-                const auto count =
-                    std::min<std::ptrdiff_t>(other.end() - from, static_cast<std::ptrdiff_t>(length));
+                const auto count = std::min<std::ptrdiff_t>(other.end() - from, static_cast<std::ptrdiff_t>(length));
                 const Input part(from, from + count);
                 input.insert(at(start), part.begin(), part.end());
                 break;

@@ -21,8 +21,7 @@ dvec3 direction_of(const CameraPose& pose, double width, double height, double x
     const dvec3 forward = glm::normalize(dvec3(pose.target) - dvec3(pose.position));
     const dvec3 right = glm::normalize(glm::cross(forward, dvec3(pose.up))), up = glm::cross(right, forward);
     const double tangent = std::tan(glm::radians(0.5 * double{pose.vertical_fov}));
-    return glm::normalize(
-        forward + tangent * ((2 * x / width - 1) * width / height * right - (2 * y / height - 1) * up));
+    return glm::normalize(forward + tangent * ((2 * x / width - 1) * width / height * right - (2 * y / height - 1) * up));
 }
 
 // A 32-bit direction is exact to a few times 2^-24, and a position in an image of 2^14 pixels to 2^-10 of a
@@ -34,11 +33,8 @@ TEST_P(HardCamera, RaysHaveTheRightDirections) {
     for (const auto& [width, height] : {std::pair(1u, 1u), {64u, 64u}, {16384u, 1u}, {1u, 16384u}})
         for (const float fov : {1e-4f, 1.0f, 90.0f, 179.0f}) {
             scene.camera.vertical_fov = fov;
-            const RenderSettings settings{.width = width,
-                                          .height = height,
-                                          .samples = 1,
-                                          .estimator = probe("camera_rays"),
-                                          .backend = GetParam()};
+            const RenderSettings settings{
+                .width = width, .height = height, .samples = 1, .estimator = probe("camera_rays"), .backend = GetParam()};
             const FilmImage film = render(scene, settings);
             const uvec2 key = seed_key(test_seed(settings.seed));
             for (uint32_t pixel = 0; pixel < film.pixels.size(); ++pixel) {
@@ -50,12 +46,10 @@ TEST_P(HardCamera, RaysHaveTheRightDirections) {
                     largest_error = std::max(largest_error, error);
                     continue;
                 }
-                const double pixel_size =
-                    std::max(glm::distance(direction_of(scene.camera, width, height, x + 1, y), expected),
-                             glm::distance(direction_of(scene.camera, width, height, x, y + 1), expected));
+                const double pixel_size = std::max(glm::distance(direction_of(scene.camera, width, height, x + 1, y), expected),
+                                                   glm::distance(direction_of(scene.camera, width, height, x, y + 1), expected));
                 largest_part = std::max(largest_part, error / pixel_size);
-                ASSERT_LT(error, pixel_size / 512)
-                    << width << " x " << height << ", " << fov << " degrees, pixel " << pixel;
+                ASSERT_LT(error, pixel_size / 512) << width << " x " << height << ", " << fov << " degrees, pixel " << pixel;
             }
         }
     char text[64];
@@ -72,10 +66,7 @@ TEST_P(HardCamera, GrazingViewsLoseNoLight) {
         for (const bool is_turned : {false, true}) {
             const auto height = static_cast<float>(std::cos(glm::radians(degrees)));
             Scene scene = make_scene({diffuse_material(vec3(1))}, {{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}});
-            scene.camera = {.position = {-0.9f, -0.3f, height},
-                            .target = {0, 0, 0},
-                            .up = {0, 0, 1},
-                            .vertical_fov = 1e-5f};
+            scene.camera = {.position = {-0.9f, -0.3f, height}, .target = {0, 0, 0}, .up = {0, 0, 1}, .vertical_fov = 1e-5f};
             if (is_turned) {
                 const vec3 x = glm::normalize(vec3(2, 1, 0.5f)), y = glm::normalize(vec3(-1, 2, 0));
                 const mat3 turn(x, y, glm::cross(x, y));

@@ -28,10 +28,8 @@ Scene floor_and_wall(double nearest, double farthest) {
                              {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1}});
     const double height = 0.5;
     const auto middle = static_cast<float>(0.5 * (nearest + farthest));
-    scene.camera = {
-        .position = {middle, 0.5f, static_cast<float>(height)}, .target = {middle, 0.5f, 0}, .up = {1, 0, 0}};
-    scene.camera.vertical_fov =
-        static_cast<float>(2 * std::atan(0.5 * (farthest - nearest) / height) * 180 / pi);
+    scene.camera = {.position = {middle, 0.5f, static_cast<float>(height)}, .target = {middle, 0.5f, 0}, .up = {1, 0, 0}};
+    scene.camera.vertical_fov = static_cast<float>(2 * std::atan(0.5 * (farthest - nearest) / height) * 180 / pi);
     return scene;
 }
 
@@ -76,9 +74,8 @@ TEST(ContactEdge, IsLitAsLambertSaysWhereTheVarianceIsFinite) {
 }
 
 TEST(ContactEdge, IsNotNoisyWithMultipleImportanceSampling) {
-    EXPECT_LT(expect_lambert(multiple_importance_sampling,
-                             {{0.1, 32, 0.03}, {0.03, 32, 0.03}, {0.01, 32, 0.03}, {1e-4, 32, 0.03}}),
-              2);
+    EXPECT_LT(
+        expect_lambert(multiple_importance_sampling, {{0.1, 32, 0.03}, {0.03, 32, 0.03}, {0.01, 32, 0.03}, {1e-4, 32, 0.03}}), 2);
 }
 
 // Each pixel shows the whole view: 3136 independent estimates of its mean.
@@ -92,16 +89,14 @@ RenderSettings view_in_each_pixel(const std::string& chapter) {
 TEST(ContactEdge, IsFlaggedByTheSlopeOfTheError) {
     const RenderSettings image = view_in_each_pixel(next_event_estimation);
     for (const bool has_edge : {true, false}) {
-        const ErrorSlope slope =
-            measure_error_slope(has_edge ? floor_and_wall(0, 1) : floor_and_wall(0.2, 1), image, 1024);
+        const ErrorSlope slope = measure_error_slope(has_edge ? floor_and_wall(0, 1) : floor_and_wall(0.2, 1), image, 1024);
         std::printf("  slope %.3f +- %.3f, variance of a sample, from 1, 4, 16 ... samples:%s\n", slope.value,
                     slope.standard_error, slope.variances.c_str());
         RecordProperty(has_edge ? "slope_with_the_edge" : "slope_without", std::to_string(slope.value));
         const bool is_flagged = std::abs(slope.value + 0.5) > slope_tolerance;
         EXPECT_EQ(is_flagged, has_edge) << slope.value;
         if (!has_edge) {
-            EXPECT_LT(slope.standard_error, largest_slope_error)
-                << "the test is too weak, take larger images";
+            EXPECT_LT(slope.standard_error, largest_slope_error) << "the test is too weak, take larger images";
         }
     }
 }

@@ -16,8 +16,8 @@ TEST(DeviceArithmetic, IsAboutWhatVulkanGuarantees) {
         EXPECT_LT(error.share_of_guarantee, 1.5) << error.name << ", guaranteed: " << error.guaranteed;
         if (error.share_of_guarantee <= 1) continue;
         char text[80];
-        std::snprintf(text, sizeof text, "%s%s by a factor of %.2f", outside.empty() ? "" : ", ",
-                      error.name.c_str(), error.share_of_guarantee);
+        std::snprintf(text, sizeof text, "%s%s by a factor of %.2f", outside.empty() ? "" : ", ", error.name.c_str(),
+                      error.share_of_guarantee);
         outside += text;
     }
     record("outside_of_vulkans_guarantees", "%s", outside.empty() ? "nothing" : outside.c_str());
@@ -31,8 +31,7 @@ TEST(DeviceArithmetic, IsAboutWhatVulkanGuarantees) {
 TEST(DeviceArithmetic, MakesSamplersExact) {
     for (const SamplerError& error : measure_samplers(test_device()))
         // Two angles and their products; a root and a product.
-        EXPECT_LT(error.absolute, 3 * test_arithmetic().sine + 4 * test_arithmetic().division + 1e-6)
-            << error.name;
+        EXPECT_LT(error.absolute, 3 * test_arithmetic().sine + 4 * test_arithmetic().division + 1e-6) << error.name;
 }
 
 TEST(DeviceArithmetic, KeepsHitPointsWithinTheOffset) {

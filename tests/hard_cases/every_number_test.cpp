@@ -21,8 +21,7 @@ void for_all_numbers(const Check& check) {
     for (uint32_t first = 0; first < count; first += piece) {
         std::vector<std::array<double, 2>> numbers;
         numbers.reserve(piece);
-        for (uint32_t i = first; i < first + piece; ++i)
-            numbers.push_back({(i * 10368889u % count) * 0x1p-24, i * 0x1p-24});
+        for (uint32_t i = first; i < first + piece; ++i) numbers.push_back({(i * 10368889u % count) * 0x1p-24, i * 0x1p-24});
         check(numbers);
     }
     std::vector<std::array<double, 2>> last;

@@ -14,11 +14,7 @@ namespace {
 class Intersection : public OnEachBackend {
   protected:
     RenderSettings settings(const std::string& name, uint32_t size, uint32_t samples) const {
-        return {.width = size,
-                .height = size,
-                .samples = samples,
-                .estimator = probe(name),
-                .backend = GetParam()};
+        return {.width = size, .height = size, .samples = samples, .estimator = probe(name), .backend = GetParam()};
     }
 
     // `effort` times the fewest rays.
@@ -40,9 +36,7 @@ Scene triangle_scene(const std::vector<vec3>& corners, const mat3& object_to_wor
 class Random {
   public:
     explicit Random(uint32_t seed) : generator_(test_seed(seed)) {}
-    double uniform(double low, double high) {
-        return std::uniform_real_distribution<>(low, high)(generator_);
-    }
+    double uniform(double low, double high) { return std::uniform_real_distribution<>(low, high)(generator_); }
     // Of any magnitude between 10^-8 and 10^8.
     double magnitude() { return std::pow(10.0, uniform(-8, 8)); }
     double coordinate() { return uniform(-1, 1) < 0 ? -magnitude() : magnitude(); }
@@ -95,14 +89,10 @@ void Intersection::expect_no_self_hits(uint32_t effort) const {
 
 TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) { expect_no_self_hits(1); }
 // Trees of slivers can be slow: lavapipe needs a second for 10^5 rays.
-TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleItLeaves_all) {
-    expect_no_self_hits(GetParam() == Backend::compute ? 16 : 4);
-}
+TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleItLeaves_all) { expect_no_self_hits(GetParam() == Backend::compute ? 16 : 4); }
 
 void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) const {
-    const auto turn = [](float angle) {
-        return mat3(glm::rotate(glm::mat4(1), angle, glm::normalize(vec3(1, 2, -0.5f))));
-    };
+    const auto turn = [](float angle) { return mat3(glm::rotate(glm::mat4(1), angle, glm::normalize(vec3(1, 2, -0.5f)))); };
     const auto scale = [](float x, float y, float z) { return mat3(glm::scale(glm::mat4(1), {x, y, z})); };
     const std::tuple<const char*, mat3, mat3> cases[] = {
         // The transform of the instance, and the one applied to the triangles before.
@@ -118,8 +108,7 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
     for (const auto& [name, object_to_world, before] : cases) {
         std::vector<vec3> corners = Random(2).triangles(200);
         for (vec3& corner : corners) corner = before * corner;
-        const glm::dvec3 total =
-            probe_total(triangle_scene(corners, object_to_world), settings("reintersect", size, effort));
+        const glm::dvec3 total = probe_total(triangle_scene(corners, object_to_world), settings("reintersect", size, effort));
         RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
         EXPECT_GE(total.g, 0.9 * size * size) << name;
@@ -129,9 +118,7 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
     }
 }
 
-TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) {
-    expect_no_self_hits_of_stretched_instances(1);
-}
+TEST_P(Intersection, NoRayHitsTheTriangleOfAStretchedInstanceThatItLeaves) { expect_no_self_hits_of_stretched_instances(1); }
 TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleOfAStretchedInstanceThatItLeaves_all) {
     expect_no_self_hits_of_stretched_instances(4);
 }
@@ -139,13 +126,9 @@ TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleOfAStretchedInstanceThatItLeav
 // Two squares that face each other across a gap, with the camera between them. Every path finds exactly the
 // geometric series of albedo and emission unless a ray leaves the gap.
 Scene two_planes(float gap, bool is_turned) {
-    Scene scene =
-        make_scene({diffuse_material(vec3(0.5f), vec3(1))},
-                   {{{-1, -1, 0.3f}, {2, 0, 0}, {0, 2, 0}}, {{-1, -1, 0.3f + gap}, {0, 2, 0}, {2, 0, 0}}});
-    scene.camera = {.position = {0.6f, -0.4f, 0.3f + gap / 2},
-                    .target = {0.6f, -0.4f, 0},
-                    .up = {0, 1, 0},
-                    .vertical_fov = 120};
+    Scene scene = make_scene({diffuse_material(vec3(0.5f), vec3(1))},
+                             {{{-1, -1, 0.3f}, {2, 0, 0}, {0, 2, 0}}, {{-1, -1, 0.3f + gap}, {0, 2, 0}, {2, 0, 0}}});
+    scene.camera = {.position = {0.6f, -0.4f, 0.3f + gap / 2}, .target = {0.6f, -0.4f, 0}, .up = {0, 1, 0}, .vertical_fov = 120};
     if (is_turned) {
         const mat3 turn(glm::rotate(glm::mat4(1), 0.7f, glm::normalize(vec3(1, 2, -0.5f))));
         for (vec3& position : scene.positions) position = turn * position;
@@ -175,8 +158,7 @@ TEST_P(Intersection, NothingLeaksThroughPlanesCloseToEachOther) {
             shadows += total.r;
             shadow_rays += total.g;
         }
-        std::printf("  gap %g: leaks %s, shadowed %s\n", gap, out_of(leaks, rays).c_str(),
-                    out_of(shadows, shadow_rays).c_str());
+        std::printf("  gap %g: leaks %s, shadowed %s\n", gap, out_of(leaks, rays).c_str(), out_of(shadows, shadow_rays).c_str());
         EXPECT_GT(shadow_rays, 1e4);
         if (gap == specified_gap) {
             RecordProperty("paths_that_leak_at_4e-5", out_of(leaks, rays));
@@ -208,8 +190,7 @@ TriangleMesh moved(TriangleMesh mesh, float scale, const vec3& offset) {
 TriangleMesh grid_pyramid(uint32_t cells, float size, const vec3& corner) {
     TriangleMesh mesh;
     for (uint32_t y = 0; y <= cells; ++y)
-        for (uint32_t x = 0; x <= cells; ++x)
-            mesh.positions.push_back(corner + size / static_cast<float>(cells) * vec3(x, y, 0));
+        for (uint32_t x = 0; x <= cells; ++x) mesh.positions.push_back(corner + size / static_cast<float>(cells) * vec3(x, y, 0));
     mesh.positions.push_back(corner + size * vec3(0.5f, 0.5f, 1));
     const uint32_t row = cells + 1, apex = row * row;
     for (uint32_t y = 0; y < cells; ++y)
@@ -250,8 +231,8 @@ void Intersection::expect_no_escapes(uint32_t effort) const {
         const glm::dvec3 escapes = probe_total(scene, settings("escapes", size, samples));
         const double rays = 1.0 * size * size * samples, count = escapes.r + escapes.g + escapes.b;
         RecordProperty(std::string("escapes_") + closed.name, out_of(count, rays));
-        std::printf("  %s: %s escape, at vertices %.0f, edges %.0f, interiors %.0f\n", closed.name,
-                    out_of(count, rays).c_str(), escapes.r, escapes.g, escapes.b);
+        std::printf("  %s: %s escape, at vertices %.0f, edges %.0f, interiors %.0f\n", closed.name, out_of(count, rays).c_str(),
+                    escapes.r, escapes.g, escapes.b);
         EXPECT_LE(count, largest_part * rays) << closed.name;
     }
 }

@@ -14,8 +14,7 @@ namespace {
 
 class InvalidSamples : public OnEachBackend {
   protected:
-    static constexpr uint32_t width = 21, height = 13, samples = 9, poisoned_pixel = 5 * width + 8,
-                              poisoned_sample = 4;
+    static constexpr uint32_t width = 21, height = 13, samples = 9, poisoned_pixel = 5 * width + 8, poisoned_sample = 4;
 
     // The film with samples first, ..., first + count - 1, one of which may be poisoned.
     static FilmImage render(uint32_t bits, int channel, uint32_t first = 0, uint32_t count = samples) {
@@ -23,15 +22,14 @@ class InvalidSamples : public OnEachBackend {
         const Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}, {1, 2, 3}));
         const GpuScene gpu_scene(device, scene);
         const auto structure = build_acceleration_structure(GetParam(), device, gpu_scene);
-        const RenderParameters parameters =
-            make_parameters(scene, {.width = width, .height = height, .first_sample = first});
+        const RenderParameters parameters = make_parameters(scene, {.width = width, .height = height, .first_sample = first});
         // The estimator starts after the two numbers for the position in the pixel.
-        const RandomState state = next_state(
-            start_state(poisoned_pixel, poisoned_sample, {parameters.seed_key.x, parameters.seed_key.y}));
+        const RandomState state =
+            next_state(start_state(poisoned_pixel, poisoned_sample, {parameters.seed_key.x, parameters.seed_key.y}));
         const auto number = [](uint32_t n) { return std::to_string(n) + "u"; };
         const Estimator estimator{project_folder() / "tests/shaders/poisoned.glsl",
-                                  {"POISONED_STATE " + number(state[0]) + ", " + number(state[1]),
-                                   "POISON " + number(bits), "POISONED_CHANNEL " + std::to_string(channel)}};
+                                  {"POISONED_STATE " + number(state[0]) + ", " + number(state[1]), "POISON " + number(bits),
+                                   "POISONED_CHANNEL " + std::to_string(channel)}};
         Renderer renderer(device, *structure, estimator, parameters);
         while (renderer.advance(count)) {
         }
@@ -40,8 +38,8 @@ class InvalidSamples : public OnEachBackend {
 };
 INSTANTIATE_TEST_SUITE_P(Backends, InvalidSamples, testing::ValuesIn(all_backends), own_backend_name);
 
-constexpr uint32_t quiet_nan = 0x7fc00000, signalling_nan = 0x7f800001, negative_nan = 0xffffffff,
-                   infinity = 0x7f800000, negative_infinity = 0xff800000;
+constexpr uint32_t quiet_nan = 0x7fc00000, signalling_nan = 0x7f800001, negative_nan = 0xffffffff, infinity = 0x7f800000,
+                   negative_infinity = 0xff800000;
 
 TEST_P(InvalidSamples, AreCountedAndAddNothing) {
     // The pixel without that sample.

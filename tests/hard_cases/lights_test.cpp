@@ -18,15 +18,10 @@ constexpr float albedo = 0.8f;
 
 class Lights : public OnEachBackend {
   protected:
-    static std::vector<std::string> chapters() {
-        return chapters_for(GetParam(), chapters_that(samples_lights));
-    }
+    static std::vector<std::string> chapters() { return chapters_for(GetParam(), chapters_that(samples_lights)); }
     RenderSettings settings(const std::string& chapter, uint32_t samples, uint32_t seed) const {
-        RenderSettings settings{.width = 16,
-                                .height = 16,
-                                .samples = samples,
-                                .max_path_length = 1,
-                                .seed = chapter_seed(chapter) + seed};
+        RenderSettings settings{
+            .width = 16, .height = 16, .samples = samples, .max_path_length = 1, .seed = chapter_seed(chapter) + seed};
         settings.estimator = chapter_estimator(chapter);
         settings.backend = GetParam();
         return settings;
@@ -41,8 +36,7 @@ Scene floor_with(const std::vector<vec3>& emissions, std::vector<Quad> lights) {
     for (const vec3& emission : emissions) materials.push_back(diffuse_material(vec3(0), emission));
     lights.insert(lights.begin(), {{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0});
     Scene scene = make_scene(materials, lights);
-    scene.camera = {
-        .position = {-0.1f, -0.6f, 0.4f}, .target = {0, 0, 0}, .up = {0, 0, 1}, .vertical_fov = 0.05f};
+    scene.camera = {.position = {-0.1f, -0.6f, 0.4f}, .target = {0, 0, 0}, .up = {0, 0, 1}, .vertical_fov = 0.05f};
     return scene;
 }
 
@@ -77,8 +71,7 @@ TEST_P(Lights, OfExtremeSizesAndDistancesIlluminateAsLambertSays) {
         const double expected = expected_radiance(scene);
         uint32_t seed = 0;
         for (const std::string& chapter : chapters()) {
-            const MeanEstimate radiance =
-                estimate_mean(pixel_means(render(scene, settings(chapter, 16, ++seed)), 0));
+            const MeanEstimate radiance = estimate_mean(pixel_means(render(scene, settings(chapter, 16, ++seed)), 0));
             expect_mean(std::string(name) + ", " + chapter, radiance, expected, 0.1,
                         std::size(cases) * chapters_that(samples_lights).size());
             RecordProperty(std::string("error_of_light_") + name, percent(radiance.mean / expected - 1));
@@ -102,11 +95,9 @@ TEST_P(Lights, AtGrazingAnglesErrByTheRoundingOfPositions) {
             Scene scene = floor_with({vec3(1)}, {quad});
             scene.camera.vertical_fov = 1e-5f;  // elsewhere on the floor the angle is another one
             const double expected = expected_radiance(scene);
-            const MeanEstimate radiance =
-                estimate_mean(pixel_means(render(scene, settings(chapters().front(), 64, 1)), 0));
+            const MeanEstimate radiance = estimate_mean(pixel_means(render(scene, settings(chapters().front(), 64, 1)), 0));
             const double error = radiance.mean / expected - 1, noise = radiance.standard_error / expected;
-            std::printf("  %s, %g degrees: off by %s +- %s\n", name, degrees, percent(error).c_str(),
-                        percent(noise).c_str());
+            std::printf("  %s, %g degrees: off by %s +- %s\n", name, degrees, percent(error).c_str(), percent(noise).c_str());
             EXPECT_LT(noise, 0.01);
             EXPECT_LT(std::abs(error), 2 * 0x1p-24 / cosine + 6 * noise) << name << ", " << degrees;
             if (degrees == 89.9999) RecordProperty(std::string("error_of_light_") + name, percent(error));
@@ -130,16 +121,14 @@ TEST_P(Lights, ScaleThePictureByTheirEmission) {
 TEST_P(Lights, InThePlaneOfTheReceiverGiveNothing) {
     Scene scene = floor_with({vec3(1)}, {{{1, -1, 0}, {1, 0, 0}, {0, 2, 0}, 1}});
     for (const std::string& chapter : chapters())
-        for (const FilmPixel& pixel : render(scene, settings(chapter, 16, 1)).pixels)
-            ASSERT_EQ(pixel.sum, vec3(0));
+        for (const FilmPixel& pixel : render(scene, settings(chapter, 16, 1)).pixels) ASSERT_EQ(pixel.sum, vec3(0));
     // Turned, its corners are no longer exactly in one plane.
     const mat3 turn(glm::normalize(vec3(2, 1, 0.5f)), glm::normalize(vec3(-1, 2, 0)),
                     glm::normalize(glm::cross(vec3(2, 1, 0.5f), vec3(-1, 2, 0))));
     for (vec3& position : scene.positions) position = turn * position;
     scene.camera.position = turn * scene.camera.position;
     for (const std::string& chapter : chapters())
-        for (const FilmPixel& pixel : render(scene, settings(chapter, 16, 1)).pixels)
-            ASSERT_LT(pixel.sum.r, 1e-10f);
+        for (const FilmPixel& pixel : render(scene, settings(chapter, 16, 1)).pixels) ASSERT_LT(pixel.sum.r, 1e-10f);
 }
 
 TEST_P(Lights, ThatAreConvexDoNotLightThemselves) {
@@ -166,8 +155,8 @@ TEST_P(Lights, OfUnequalPowerAreChosenByIt) {
     EXPECT_NEAR(light_probability_sum(scene), 1, 1e-6);
     const double expected = expected_radiance(scene);
     for (const std::string& chapter : chapters())
-        expect_mean(chapter, estimate_mean(pixel_means(render(scene, settings(chapter, 16, 1)), 0)), expected,
-                    0.05, chapters_that(samples_lights).size());
+        expect_mean(chapter, estimate_mean(pixel_means(render(scene, settings(chapter, 16, 1)), 0)), expected, 0.05,
+                    chapters_that(samples_lights).size());
 }
 
 // A light that fills the whole lobe, seen in the floor: k_s cos θ of its radiance. Light samples hardly ever
@@ -177,8 +166,7 @@ TEST_P(Lights, AreMirroredByTheNarrowestLobes) {
     for (const float exponent : {1e4f, 1e6f, 1e8f})
         for (const std::string& chapter : chapters_for(GetParam(), chapters_that(weights_lights))) {
             const vec3 mirrored = glm::normalize(vec3(0.1f, 0.6f, 0.4f)),
-                       across = glm::normalize(glm::cross(mirrored, vec3(1, 0, 0))),
-                       along = glm::cross(across, mirrored);
+                       across = glm::normalize(glm::cross(mirrored, vec3(1, 0, 0))), along = glm::cross(across, mirrored);
             const Quad light{2.0f * mirrored - 0.3f * (across + along), 0.6f * across, 0.6f * along, 1};
             Scene scene = floor_with({vec3(3)}, {light});
             scene.materials[0].diffuse_albedo = vec3(0);
@@ -188,8 +176,7 @@ TEST_P(Lights, AreMirroredByTheNarrowestLobes) {
             std::snprintf(name, sizeof name, "exponent %g, %s", double{exponent}, chapter.c_str());
             RenderSettings without_roulette = settings(chapter, 256, 9);
             without_roulette.roulette_start = no_roulette;
-            expect_mean(name, estimate_mean(pixel_means(render(scene, without_roulette), 0)),
-                        3.0 * albedo * mirrored.z, 0.01, 6);
+            expect_mean(name, estimate_mean(pixel_means(render(scene, without_roulette), 0)), 3.0 * albedo * mirrored.z, 0.01, 6);
         }
 }
 

@@ -82,15 +82,13 @@ TEST(Memory, OfSmallRendersIsThatOfFilmAndSamples) {
 // A tree over so many instances would take minutes to build, and much of the host's memory.
 TEST(Memory, RefusesTheTreeBeforeItIsBuilt) {
     Scene scene = lit_scene(bumpy_sphere(100));
-    const size_t bytes =
-        std::max(largest_visible(test_device(), vk::BufferUsageFlagBits::eUniformTexelBuffer),
-                 largest_visible(test_device(), vk::BufferUsageFlagBits::eStorageBuffer));
+    const size_t bytes = std::max(largest_visible(test_device(), vk::BufferUsageFlagBits::eUniformTexelBuffer),
+                                  largest_visible(test_device(), vk::BufferUsageFlagBits::eStorageBuffer));
     const size_t fitting = bytes / sizeof(BvhTriangle) / scene.triangles.size();
     if (fitting * scene.triangles.size() > max_triangle_count) GTEST_SKIP() << "the device holds any tree";
     for (size_t i = 0; i <= fitting; ++i) place(scene, mat4x3(1));
     const GpuScene gpu_scene(test_device(), scene);
-    const std::string text =
-        refusal([&] { build_acceleration_structure(Backend::compute, test_device(), gpu_scene); });
+    const std::string text = refusal([&] { build_acceleration_structure(Backend::compute, test_device(), gpu_scene); });
     // Once it is built, buffers are refused without a name of their own.
     EXPECT_NE(text.find("triangles of all instances, a buffer of "), std::string::npos) << text;
 }

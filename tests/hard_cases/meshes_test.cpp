@@ -25,8 +25,7 @@ class ObjText {
     }
     void add(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& normal_a, const dvec3& normal_bc) {
         add_positions(a, b, c);
-        for (const dvec3& n : {normal_a, normal_bc})
-            text_ << "vn " << n.x << ' ' << n.y << ' ' << n.z << '\n';
+        for (const dvec3& n : {normal_a, normal_bc}) text_ << "vn " << n.x << ' ' << n.y << ' ' << n.z << '\n';
         text_ << "f -3//-2 -2//-1 -1//-1\n";
     }
     std::string text() const { return text_.str(); }
@@ -73,8 +72,7 @@ class BadMeshes : public OnEachBackend {
     // sampling and bounces agree.
     void expect_sane(const std::string& what, const Scene& scene, const Scene& equivalent) const {
         EXPECT_NEAR(light_probability_sum(scene), 1, 1e-6) << what;
-        const RenderSettings look{
-            .width = 128, .height = 128, .estimator = probe("surface_points"), .backend = GetParam()};
+        const RenderSettings look{.width = 128, .height = 128, .estimator = probe("surface_points"), .backend = GetParam()};
         const glm::dvec3 total = probe_total(scene, look);
         EXPECT_EQ(total.r + total.g, 0) << what << ": points without a normal or position";
         RecordProperty("points_without_a_normal", out_of(total.r, total.b));
@@ -83,8 +81,7 @@ class BadMeshes : public OnEachBackend {
         std::vector<Difference> differences;
         for (const std::string& chapter :
              chapters_for(GetParam(), {chapter_named("russian_roulette"), chapter_named("uniform_sampling")}))
-            differences.push_back(
-                difference_of(batches(scene, chapter).means(0), expected).relative_to(mean));
+            differences.push_back(difference_of(batches(scene, chapter).means(0), expected).relative_to(mean));
         expect_no_difference(what, differences, 0.06, 6);
     }
 };
@@ -92,9 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, BadMeshes, testing::ValuesIn(all_backends), o
 
 class RandomPoints {
   public:
-    double uniform(double low, double high) {
-        return std::uniform_real_distribution<>(low, high)(generator_);
-    }
+    double uniform(double low, double high) { return std::uniform_real_distribution<>(low, high)(generator_); }
     dvec3 point() {
         const double x = uniform(-1, 1), y = uniform(0.2, 1.5);
         return {x, y, uniform(-1, 1)};
@@ -144,8 +139,7 @@ TEST_P(BadMeshes, DuplicatesShineOnce) {
     const auto add = [](ObjText& obj, int count) {
         for (int i = 0; i < count; ++i) obj.add(corners[i % 3], corners[(i + 1) % 3], corners[(i + 2) % 3]);
     };
-    expect_sane("duplicates", load([&](ObjText& obj) { add(obj, 4); }),
-                load([&](ObjText& obj) { add(obj, 1); }));
+    expect_sane("duplicates", load([&](ObjText& obj) { add(obj, 4); }), load([&](ObjText& obj) { add(obj, 1); }));
 }
 
 TEST_P(BadMeshes, TrianglesInTheSamePlaceThatFaceTheSameWayAreTheFirstThatShines) {
@@ -171,8 +165,7 @@ TEST_P(BadMeshes, TrianglesInTheSamePlaceThatFaceOppositeWaysAreTwoSides) {
         });
     };
     for (const auto& [front, back] : {std::pair{"bad", "bad"}, {"bright", "bad"}, {"floor", "bright"}})
-        expect_sane(std::string(front) + " and " + back, load_lamp(front, back, dvec3(0)),
-                    load_lamp(front, back, gap));
+        expect_sane(std::string(front) + " and " + back, load_lamp(front, back, dvec3(0)), load_lamp(front, back, gap));
 }
 
 TEST_P(BadMeshes, NormalsThatAreZeroOrFaceAwayDoNoHarm) {

@@ -85,8 +85,8 @@ TEST_P(Positions, FarFromTheOriginThePictureIsTheSameOrTheLoaderWarns) {
         const Deviation bias = deviation(batches(moved), expected);
         const bool has_warning = !precision_warnings(moved).empty();
         RecordProperty("bias_at_1e" + std::to_string(std::lround(std::log10(distance))),
-                       "image " + percent(bias.image.front().value) + ", worst tile " +
-                           percent(bias.worst_tile()) + (has_warning ? ", warned" : ""));
+                       "image " + percent(bias.image.front().value) + ", worst tile " + percent(bias.worst_tile()) +
+                           (has_warning ? ", warned" : ""));
         if (!has_warning) expect_no_deviation("moved by " + std::to_string(distance), bias, 5);
     }
 }
@@ -98,9 +98,8 @@ TEST_P(Positions, SizeDoesNotMatter) {
         const Scene scaled = place(original, scale, dvec3(0));
         EXPECT_TRUE(precision_warnings(scaled).empty());
         const Deviation bias = deviation(batches(scaled), expected);
-        RecordProperty(
-            "bias_at_1e" + std::to_string(std::lround(std::log10(scale))),
-            "image " + percent(bias.image.front().value) + ", worst tile " + percent(bias.worst_tile()));
+        RecordProperty("bias_at_1e" + std::to_string(std::lround(std::log10(scale))),
+                       "image " + percent(bias.image.front().value) + ", worst tile " + percent(bias.worst_tile()));
         expect_no_deviation("scaled by " + std::to_string(scale), bias, 4);
     }
 }
@@ -124,8 +123,7 @@ TEST_P(Positions, PowersOfTwoChangeNoBit) {
     const auto is_same = [&](int exponent) {
         const FilmImage scaled = render_scaled(exponent);
         size_t different = 0;
-        for (size_t i = 0; i < expected.pixels.size(); ++i)
-            different += scaled.pixels[i].sum != expected.pixels[i].sum;
+        for (size_t i = 0; i < expected.pixels.size(); ++i) different += scaled.pixels[i].sum != expected.pixels[i].sum;
         std::printf("  2^%d: %zu of %zu pixels differ\n", exponent, different, expected.pixels.size());
         return different == 0;
     };

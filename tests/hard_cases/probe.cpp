@@ -7,14 +7,11 @@
 
 namespace lab {
 
-Estimator probe(const std::string& name) {
-    return {project_folder() / "tests" / "hard_cases" / (name + ".glsl")};
-}
+Estimator probe(const std::string& name) { return {project_folder() / "tests" / "hard_cases" / (name + ".glsl")}; }
 
 glm::dvec3 probe_total(const Scene& scene, const RenderSettings& settings) {
     glm::dvec3 total(0);
-    for (const FilmPixel& pixel : render(scene, settings).pixels)
-        total += glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation);
+    for (const FilmPixel& pixel : render(scene, settings).pixels) total += glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation);
     return total;
 }
 
@@ -28,8 +25,7 @@ double light_probability_sum(const Scene& scene) {
     for (const LightTriangle& light : build_light_table(scene).triangles) {
         const uvec3 corners = scene.triangles[light.triangle];
         const auto position = [&](int k) { return glm::dvec3(scene.positions[corners[k]]); };
-        const double area =
-            0.5 * glm::length(glm::cross(position(1) - position(0), position(2) - position(0)));
+        const double area = 0.5 * glm::length(glm::cross(position(1) - position(0), position(2) - position(0)));
         sum += area / static_cast<double>(light.inverse_density);
     }
     return sum;

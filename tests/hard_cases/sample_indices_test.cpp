@@ -31,8 +31,7 @@ TEST_P(SampleIndexCases, TheLastSamplesAreRenderedAsAnyOthers) {
         for (size_t p = 0; p < sums.size(); ++p) sums[p] += glm::dvec3(film.pixels[p].sum);
         others.push_back(i);
     }
-    for (const int bits : {8, 15, 16, 23, 24, 31})
-        others.insert(others.end(), {1u << bits, (1u << bits) - 1});
+    for (const int bits : {8, 15, 16, 23, 24, 31}) others.insert(others.end(), {1u << bits, (1u << bits) - 1});
     for (const uint32_t index : others) images.insert(pixel_means(render_sample(index), 0));
     EXPECT_EQ(images.size(), count + others.size());
     for (size_t p = 0; p < sums.size(); ++p)

@@ -16,8 +16,8 @@ using std::numbers::pi;
 class ShadingNormals : public OnEachBackend {
   protected:
     static std::vector<std::string> chapters() {
-        return chapters_for(GetParam(), {chapter_named("cosine_sampling"), chapter_named("uniform_sampling"),
-                                         chapter_named("russian_roulette")});
+        return chapters_for(
+            GetParam(), {chapter_named("cosine_sampling"), chapter_named("uniform_sampling"), chapter_named("russian_roulette")});
     }
 };
 INSTANTIATE_TEST_SUITE_P(Backends, ShadingNormals, testing::ValuesIn(all_backends), own_backend_name);
@@ -47,8 +47,7 @@ TEST_P(ShadingNormals, TiltedOnesLoseWhatIsBelowTheTriangleAndGainNothing) {
             const MeanEstimate radiance = estimate_mean(pixel_means(film, 0));
             expect_mean(std::to_string(degrees) + " degrees, " + chapter, radiance, expected, 0.05, 15);
             if (chapter == chapters().front())
-                RecordProperty("energy_loss_at_" + std::to_string(degrees) + "_degrees",
-                               percent(1 - radiance.mean));
+                RecordProperty("energy_loss_at_" + std::to_string(degrees) + "_degrees", percent(1 - radiance.mean));
         }
     }
 }
@@ -83,8 +82,7 @@ TEST_P(ShadingNormals, OfAFurnaceNeverAddEnergy) {
             // At the least the emission is seen.
             EXPECT_GE(energy, 1 / most - 1e-6);
             if (chapter == chapters().front())
-                RecordProperty("furnace_loss_at_" + std::to_string(degrees) + "_degrees",
-                               percent(1 - energy));
+                RecordProperty("furnace_loss_at_" + std::to_string(degrees) + "_degrees", percent(1 - energy));
         }
     }
 }

@@ -59,14 +59,12 @@ INSTANTIATE_TEST_SUITE_P(Backends, SunCases, testing::ValuesIn(all_backends), ow
 TEST_P(SunCases, IsSeenAtItsFullRadiance) {
     Scene scene = sunny_floor();
     const uvec2 sun = ordinary_sun;
-    const double azimuth = 2 * pi * (sun.x + 0.5 - width / 2.0) / width,
-                 inclination = pi * (sun.y + 0.5) / height;
-    scene.camera = {
-        .position = {0, 1, 0},
-        .target = vec3(0, 1, 0) + vec3(dvec3(std::sin(inclination) * std::sin(azimuth), std::cos(inclination),
-                                             -std::sin(inclination) * std::cos(azimuth))),
-        .up = {0, 1, 0},
-        .vertical_fov = 1e-3f};
+    const double azimuth = 2 * pi * (sun.x + 0.5 - width / 2.0) / width, inclination = pi * (sun.y + 0.5) / height;
+    scene.camera = {.position = {0, 1, 0},
+                    .target = vec3(0, 1, 0) + vec3(dvec3(std::sin(inclination) * std::sin(azimuth), std::cos(inclination),
+                                                         -std::sin(inclination) * std::cos(azimuth))),
+                    .up = {0, 1, 0},
+                    .vertical_fov = 1e-3f};
     const FilmImage film = render(scene, {.width = 1, .height = 1, .samples = 1, .backend = GetParam()});
     EXPECT_NEAR(radiance_at(film, 0, 0).r / sun_radiance, 1, 1e-3);
 }
@@ -89,40 +87,32 @@ TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
     for (const auto& [name, sun, sky, rotation] : cases)
         for (const bool only_light_samples : {false, true}) {
             const bool is_first = sun == ordinary_sun && !only_light_samples;
-            RenderSettings settings{.samples = is_first ? 2048u : 128u,
-                                    .max_path_length = 1,
-                                    .seed = ++seed,
-                                    .backend = GetParam()};
+            RenderSettings settings{
+                .samples = is_first ? 2048u : 128u, .max_path_length = 1, .seed = ++seed, .backend = GetParam()};
             settings.estimator = chapter_estimator(chapter_named("light_probes"));
             if (only_light_samples) settings.estimator.defines = {"STRATEGY STRATEGY_LIGHT"};
             Scene scene = sunny_floor(sun, sky);
             scene.probe_rotation = rotation;
             const MeanEstimate mean = estimate_mean(pixel_means(render(scene, settings), 1));
             const double expected = floor_radiance(sun, sky);
-            if (is_first)
-                record("mean_over_integral", "%.4f ± %.4f", mean.mean / expected,
-                       mean.standard_error / expected);
+            if (is_first) record("mean_over_integral", "%.4f ± %.4f", mean.mean / expected, mean.standard_error / expected);
             expect_mean(name + std::string(only_light_samples ? ", light samples alone" : ""), mean, expected,
                         is_first ? 0.003 : 0.018, 2 * std::size(cases));
         }
 }
 
 TEST_P(SunCases, LampAndSunAddUp) {
-    RenderSettings settings{.samples = 64,
-                            .max_path_length = 1,
-                            .seed = 77 + static_cast<uint32_t>(GetParam()),
-                            .backend = GetParam()};
+    RenderSettings settings{
+        .samples = 64, .max_path_length = 1, .seed = 77 + static_cast<uint32_t>(GetParam()), .backend = GetParam()};
     settings.estimator = chapter_estimator(chapter_named("light_probes"));
     // A lamp so far to the side that it hides next to nothing of the sky, and not the sun.
     const std::vector<dvec3> lamp{{9, 5, -9}, {10, 5, -8}, {10, 6, -8}, {9, 6, -9}};
-    Scene scene = sunny_floor(ordinary_sun, sky_radiance,
-                              {{vec3(lamp[0]), vec3(lamp[1] - lamp[0]), vec3(lamp[3] - lamp[0]), 1}});
+    Scene scene = sunny_floor(ordinary_sun, sky_radiance, {{vec3(lamp[0]), vec3(lamp[1] - lamp[0]), vec3(lamp[3] - lamp[0]), 1}});
     scene.camera.vertical_fov = 0.5f;
     const double of_lamp = double{lamp_radiance} * polygon_irradiance(lamp, dvec3(0), {0, 1, 0}) / pi;
     const double of_sun = floor_radiance();
     ASSERT_GT(of_lamp, 0.1 * of_sun);
-    expect_mean("lamp and sun", estimate_mean(pixel_means(render(scene, settings), 1)), of_lamp + of_sun,
-                0.02);
+    expect_mean("lamp and sun", estimate_mean(pixel_means(render(scene, settings), 1)), of_lamp + of_sun, 0.02);
 }
 
 // A dim sky, found by light samples alone, beside a sun below the horizon that takes nearly all of them. In a
@@ -133,8 +123,7 @@ TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable_all) {
     scene.light_probe = Image{columns, rows, std::vector<float>(size_t{3} * columns * rows, 1.0f)};
     const size_t sun = 3 * (size_t{1500} * columns + 1000);
     std::fill_n(scene.light_probe->pixels.begin() + static_cast<ptrdiff_t>(sun), 3, 1e10f);
-    for (const std::string& chapter :
-         {chapter_named("light_probes"), chapter_named("low_discrepancy_points")}) {
+    for (const std::string& chapter : {chapter_named("light_probes"), chapter_named("low_discrepancy_points")}) {
         RenderSettings settings{.samples = 1024, .max_path_length = 1, .seed = 31};
         settings.estimator = chapter_estimator(chapter);
         settings.estimator.defines.push_back("STRATEGY STRATEGY_LIGHT");

@@ -28,8 +28,7 @@ Texture numbered_texture(uint32_t width, uint32_t height) {
 
 // The largest error of the colours at centres of texels, some repetitions away. A position that is off by a
 // part of a texel mixes as much of a neighbour in.
-double largest_error(Backend backend, const Texture& texture, const std::vector<uvec2>& texels,
-                     const vec2& repetitions) {
+double largest_error(Backend backend, const Texture& texture, const std::vector<uvec2>& texels, const vec2& repetitions) {
     std::vector<vec2> coordinates;
     for (const uvec2& position : texels)
         coordinates.emplace_back((glm::dvec2(position) + 0.5) / glm::dvec2(texture.width, texture.height) +
@@ -37,8 +36,7 @@ double largest_error(Backend backend, const Texture& texture, const std::vector<
     const auto albedos = albedo_at(backend, texture, coordinates);
     double largest = 0;
     for (size_t i = 0; i < albedos.size(); ++i)
-        largest =
-            std::max(largest, glm::distance(dvec3(albedos[i]), texel(texture, texels[i].x, texels[i].y)));
+        largest = std::max(largest, glm::distance(dvec3(albedos[i]), texel(texture, texels[i].x, texels[i].y)));
     return largest;
 }
 
@@ -70,8 +68,7 @@ TEST_P(TextureCases, SizesNeedNotBePowersOfTwo) {
 
 // The threads of a group see all of them at once.
 TEST_P(TextureCases, NeighboursHaveDifferentSizes) {
-    const std::vector<Texture> textures{numbered_texture(13, 7), numbered_texture(1, 5),
-                                        numbered_texture(200, 3)};
+    const std::vector<Texture> textures{numbered_texture(13, 7), numbered_texture(1, 5), numbered_texture(200, 3)};
     std::vector<vec2> coordinates;
     std::vector<dvec3> expected;
     for (uint32_t i = 0; i < 400; ++i) {
@@ -82,8 +79,7 @@ TEST_P(TextureCases, NeighboursHaveDifferentSizes) {
     }
     const auto albedos = albedo_at(GetParam(), textures, coordinates);
     for (size_t i = 0; i < albedos.size(); ++i)
-        ASSERT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error() + 1e-4)
-            << "texture " << i % 3;
+        ASSERT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error() + 1e-4) << "texture " << i % 3;
 }
 
 TEST_P(TextureCases, LargeOnesShowEveryTexel) {
@@ -117,14 +113,11 @@ TEST_P(TextureCases, FarCoordinatesAreInterpolatedAsNearOnes) {
         Scene scene = make_scene({diffuse_material(vec3(1))}, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
         scene.textures = {numbered_texture(4, 2)};
         const vec2 corner(far + 0.125f, -far - 0.25f);
-        scene.texture_coordinates = {corner, corner + vec2(0.5f, 0), corner + vec2(0.5f, 0.125f),
-                                     corner + vec2(0, 0.125f)};
+        scene.texture_coordinates = {corner, corner + vec2(0.5f, 0), corner + vec2(0.5f, 0.125f), corner + vec2(0, 0.125f)};
         scene.camera = {{0.5f, 0.5f, 2}, {0.5f, 0.5f, 0}, {0, 1, 0}, 20};
-        return render(scene, {.width = 16,
-                              .height = 16,
-                              .samples = 1,
-                              .estimator = view_estimator("texture-coordinates"),
-                              .backend = GetParam()});
+        return render(
+            scene,
+            {.width = 16, .height = 16, .samples = 1, .estimator = view_estimator("texture-coordinates"), .backend = GetParam()});
     };
     const FilmImage near = coordinates_at(0);
     double worst = 0;
@@ -148,8 +141,7 @@ TEST_P(TextureCases, RepeatWithinATriangle) {
         for (const vec2& ends : pieces) {
             const float width = (ends.y - ends.x) / 2.5f;
             quads.push_back({{x, 0, 0}, {width, 0, 0}, {0, 1, 0}});
-            for (const vec2 uv :
-                 {vec2(ends.x, -1.5f), vec2(ends.y, -1.5f), vec2(ends.y, -1), vec2(ends.x, -1)})
+            for (const vec2 uv : {vec2(ends.x, -1.5f), vec2(ends.y, -1.5f), vec2(ends.y, -1), vec2(ends.x, -1)})
                 coordinates.emplace_back(uv[direction], uv[1 - direction]);
             x += width;
         }
@@ -159,11 +151,8 @@ TEST_P(TextureCases, RepeatWithinATriangle) {
         scene.textures = {numbered_texture(8, 4)};
         scene.texture_coordinates = coordinates;
         scene.camera = {{0.5f, 0.5f, 2}, {0.5f, 0.5f, 0}, {0, 1, 0}, 20};
-        return render(scene, {.width = 32,
-                              .height = 32,
-                              .samples = 1,
-                              .estimator = view_estimator("albedo"),
-                              .backend = GetParam()});
+        return render(scene,
+                      {.width = 32, .height = 32, .samples = 1, .estimator = view_estimator("albedo"), .backend = GetParam()});
     };
     for (const int direction : {0, 1}) {
         const FilmImage whole = render_pieces(direction, {{0.25f, 2.75f}}),

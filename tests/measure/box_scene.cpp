@@ -23,17 +23,13 @@ void add_bumpy_sphere(Scene& scene, uint32_t segments, uint32_t rings) {
     const auto first = static_cast<uint32_t>(scene.positions.size());
     for (uint32_t ring = 0; ring <= rings; ++ring)
         for (uint32_t segment = 0; segment < segments; ++segment) {
-            const float theta =
-                std::numbers::pi_v<float> * static_cast<float>(ring) / static_cast<float>(rings);
-            const float phi =
-                2 * std::numbers::pi_v<float> * static_cast<float>(segment) / static_cast<float>(segments);
+            const float theta = std::numbers::pi_v<float> * static_cast<float>(ring) / static_cast<float>(rings);
+            const float phi = 2 * std::numbers::pi_v<float> * static_cast<float>(segment) / static_cast<float>(segments);
             const float radius = 0.6f + 0.06f * std::sin(7 * theta) * std::sin(9 * phi) * std::sin(theta);
-            scene.positions.push_back(centre + radius * vec3(std::sin(theta) * std::cos(phi), std::cos(theta),
-                                                             std::sin(theta) * std::sin(phi)));
+            scene.positions.push_back(
+                centre + radius * vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)));
         }
-    const auto vertex = [&](uint32_t ring, uint32_t segment) {
-        return first + ring * segments + segment % segments;
-    };
+    const auto vertex = [&](uint32_t ring, uint32_t segment) { return first + ring * segments + segment % segments; };
     const size_t box_triangles = scene.triangles.size();
     for (uint32_t ring = 0; ring < rings; ++ring)
         for (uint32_t segment = 0; segment < segments; ++segment) {
@@ -42,8 +38,7 @@ void add_bumpy_sphere(Scene& scene, uint32_t segments, uint32_t rings) {
             if (ring > 0) scene.triangles.push_back({a, b, c});
             if (ring + 1 < rings) scene.triangles.push_back({a, c, d});
         }
-    scene.triangle_materials.insert(scene.triangle_materials.end(), scene.triangles.size() - box_triangles,
-                                    white);
+    scene.triangle_materials.insert(scene.triangle_materials.end(), scene.triangles.size() - box_triangles, white);
 }
 
 }  // namespace

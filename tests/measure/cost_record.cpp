@@ -29,8 +29,7 @@ struct Options {
 // Of each array and image of a scene on the device.
 json bytes_of(const GpuScene& scene) {
     json bytes = json::object();
-    for (const auto& need : scene.memory_needs())
-        bytes[need.what] = bytes.value(need.what, size_t{0}) + need.bytes;
+    for (const auto& need : scene.memory_needs()) bytes[need.what] = bytes.value(need.what, size_t{0}) + need.bytes;
     return bytes;
 }
 
@@ -96,11 +95,9 @@ std::vector<std::vector<Rates>> measure(const Subjects& subjects, const Options&
     return measure_in_turns(renderers, options.seconds);
 }
 
-void print(const std::string& what, Backend backend, const std::vector<Rates>& runs,
-           const std::vector<Rates>& base) {
+void print(const std::string& what, Backend backend, const std::vector<Rates>& runs, const std::vector<Rates>& base) {
     std::printf("%-48s %-8s %9.4g million paths/s, time x %.3f\n", what.c_str(), to_string(backend).c_str(),
-                1e-6 * median(runs).paths_per_second,
-                median(base).paths_per_second / median(runs).paths_per_second);
+                1e-6 * median(runs).paths_per_second, median(base).paths_per_second / median(runs).paths_per_second);
     std::fflush(stdout);
 }
 
@@ -142,8 +139,7 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
             try {
                 subjects.push_back(std::make_unique<Subject>(device, backend, growth.chapter, step));
             } catch (const DeviceFailure& failure) {
-                std::printf("%s %s: %s\n", std::to_string(step.count).c_str(), growth.quantity.c_str(),
-                            failure.what());
+                std::printf("%s %s: %s\n", std::to_string(step.count).c_str(), growth.quantity.c_str(), failure.what());
                 break;
             }
             counts.push_back(step.count);
@@ -156,30 +152,24 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
         rows.push_back(row);
         print(std::to_string(counts[i]) + " " + growth.quantity, backend, rates[i], rates[0]);
     }
-    return {{"backend", to_string(backend)},
-            {"quantity", growth.quantity},
-            {"chapter", growth.chapter},
-            {"rows", rows}};
+    return {{"backend", to_string(backend)}, {"quantity", growth.quantity}, {"chapter", growth.chapter}, {"rows", rows}};
 }
 
 int run(const Options& options) {
     check_writable(options.output, {".json"});  // before minutes are spent
     const Device device({options.device});
     const auto& description = device.description();
-    std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size,
-                options.size);
+    std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size, options.size);
     json record = record_of(device);
     record["cpu_threads"] = std::thread::hardware_concurrency();
     record["size"] = options.size;
     record["seconds_per_run"] = options.seconds;
     record["scenes"] = describe_shipped_scenes(device);
     for (const Backend backend : all_backends)
-        if (description.supports(backend))
-            record["features"].push_back(measure_features(device, backend, options));
+        if (description.supports(backend)) record["features"].push_back(measure_features(device, backend, options));
     for (const Growth& growth : all_growths(options.size))
         for (const Backend backend : all_backends)
-            if (description.supports(backend))
-                record["growth"].push_back(measure_growth(device, backend, growth, options));
+            if (description.supports(backend)) record["growth"].push_back(measure_growth(device, backend, growth, options));
     write_file(options.output, record.dump(1) + "\n");
     return 0;
 }
@@ -191,15 +181,11 @@ int main(int argument_count, char** arguments) {
     CLI::App app("Measures what features cost and how cost grows, and writes a JSON record");
     lab::Options options;
     app.add_option("--device", options.device, "Number or part of the name of a device");
-    app.add_option("--size", options.size, "Width and height of the image")
-        ->check(CLI::Range(8, 4096))
-        ->capture_default_str();
-    app.add_option("--seconds", options.seconds,
-                   "Device time of a run: of each there are five, and one that warms up")
+    app.add_option("--size", options.size, "Width and height of the image")->check(CLI::Range(8, 4096))->capture_default_str();
+    app.add_option("--seconds", options.seconds, "Device time of a run: of each there are five, and one that warms up")
         ->check(CLI::Range(0.001, 100.0))
         ->capture_default_str();
-    app.add_option("--largest", options.largest, "Largest number of triangles, pixels and so on")
-        ->capture_default_str();
+    app.add_option("--largest", options.largest, "Largest number of triangles, pixels and so on")->capture_default_str();
     app.add_option("--output", options.output, "JSON file to write")->capture_default_str();
     return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(options); });
 }

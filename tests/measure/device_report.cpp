@@ -11,14 +11,13 @@ namespace {
 
 json report_functions(const Device& device) {
     json rows = json::array();
-    std::printf("\n%-22s %-48s %10s %10s   %s\n", "function", "arguments", "absolute", "ulp",
-                "Vulkan guarantees");
+    std::printf("\n%-22s %-48s %10s %10s   %s\n", "function", "arguments", "absolute", "ulp", "Vulkan guarantees");
     for (const FunctionError& error : measure_functions(device)) {
         const bool is_broken = error.share_of_guarantee > 1;
         char absolute[16] = "";
         if (error.absolute) std::snprintf(absolute, sizeof absolute, "%.2g", *error.absolute);
-        std::printf("%-22s %-48s %10s %10.4g   %s%s\n", error.name.c_str(), error.range.c_str(), absolute,
-                    error.ulps, error.guaranteed.c_str(), is_broken ? "  BROKEN" : "");
+        std::printf("%-22s %-48s %10s %10.4g   %s%s\n", error.name.c_str(), error.range.c_str(), absolute, error.ulps,
+                    error.guaranteed.c_str(), is_broken ? "  BROKEN" : "");
         rows.push_back({{"function", error.name},
                         {"arguments", error.range},
                         {"absolute", error.absolute ? json(*error.absolute) : json()},
@@ -48,12 +47,9 @@ json report_hit_points(const Device& device) {
     std::printf("\n%-12s %-44s %20s %20s\n", "hit points", "scene", "off plane / offset", "off ray / length");
     for (const HitPointError& error : measure_hit_points(device)) {
         const std::string backend = to_string(error.backend);
-        std::printf("%-12s %-44s %20.2g %20.2g\n", backend.c_str(), error.scene.c_str(), error.off_plane,
-                    error.off_ray);
-        rows.push_back({{"backend", backend},
-                        {"scene", error.scene},
-                        {"off_plane", error.off_plane},
-                        {"off_ray", error.off_ray}});
+        std::printf("%-12s %-44s %20.2g %20.2g\n", backend.c_str(), error.scene.c_str(), error.off_plane, error.off_ray);
+        rows.push_back(
+            {{"backend", backend}, {"scene", error.scene}, {"off_plane", error.off_plane}, {"off_ray", error.off_ray}});
     }
     return rows;
 }
@@ -61,8 +57,7 @@ json report_hit_points(const Device& device) {
 int run(const std::string& choice, const std::filesystem::path& output) {
     const Device device({choice});
     const auto& description = device.description();
-    std::printf("%s, %s: largest errors against double\n", description.name.c_str(),
-                description.driver.c_str());
+    std::printf("%s, %s: largest errors against double\n", description.name.c_str(), description.driver.c_str());
     json record = record_of(device);
     record["functions"] = report_functions(device);
     record["samplers"] = report_samplers(device);

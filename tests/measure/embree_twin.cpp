@@ -49,8 +49,7 @@ mat3 get_shading_space(const vec3& normal) {
     const float s = normal.z >= 0 ? 1.0f : -1.0f;
     const float a = -1.0f / (s + normal.z);
     const float b = normal.x * normal.y * a;
-    return {vec3(1 + s * normal.x * normal.x * a, s * b, -s * normal.x),
-            vec3(b, s + normal.y * normal.y * a, -normal.y), normal};
+    return {vec3(1 + s * normal.x * normal.x * a, s * b, -s * normal.x), vec3(b, s + normal.y * normal.y * a, -normal.y), normal};
 }
 
 struct Ray {
@@ -60,8 +59,7 @@ struct Ray {
 
 Ray get_camera_ray(const Camera& camera, const vec2& image_position) {
     const vec2 position = 2.0f * image_position - 1.0f;
-    return {camera.position,
-            glm::normalize(camera.forward + position.x * camera.right - position.y * camera.up)};
+    return {camera.position, glm::normalize(camera.forward + position.x * camera.right - position.y * camera.up)};
 }
 
 struct ShadingData {
@@ -149,16 +147,14 @@ struct EmbreeTwin::Implementation {
     ShadingData get_shading_data(const RTCHit& hit, const vec3& ray_direction) const {
         const vec3 w(1 - hit.u - hit.v, hit.u, hit.v);
         const uvec3 corners = scene.triangles[hit.primID];
-        const vec3 x_0 = scene.positions[corners.x], x_1 = scene.positions[corners.y],
-                   x_2 = scene.positions[corners.z];
+        const vec3 x_0 = scene.positions[corners.x], x_1 = scene.positions[corners.y], x_2 = scene.positions[corners.z];
         const vec3 position = w.x * x_0 + w.y * x_1 + w.z * x_2;
         const vec3 magnitude = w.x * glm::abs(x_0) + w.y * glm::abs(x_1) + w.z * glm::abs(x_2);
         const vec3 normal = glm::normalize(glm::cross(x_1 - x_0, x_2 - x_0));
         const float offset = 8 * 5.9604645e-8f * (magnitude.x + magnitude.y + magnitude.z);
         const Material& material = scene.materials[scene.triangle_materials[hit.primID]];
         const bool is_front = glm::dot(normal, ray_direction) < 0;
-        return {position, is_front ? normal : -normal, offset, is_front ? material.emission : vec3(0),
-                material.diffuse_albedo};
+        return {position, is_front ? normal : -normal, offset, is_front ? material.emission : vec3(0), material.diffuse_albedo};
     }
 
     vec3 path_trace(Ray ray, uvec2& seed) const {
@@ -174,16 +170,15 @@ struct EmbreeTwin::Implementation {
             vec2 u = get_random_numbers(seed);
             throughput *= s.diffuse_albedo;
             const vec3 to_light = LIGHT_CORNER + u.x * LIGHT_EDGE_1 + u.y * LIGHT_EDGE_2 - s.position;
-            const float cosines = std::max(0.0f, glm::dot(s.normal, to_light)) *
-                                  std::max(0.0f, -glm::dot(LIGHT_NORMAL, to_light));
+            const float cosines =
+                std::max(0.0f, glm::dot(s.normal, to_light)) * std::max(0.0f, -glm::dot(LIGHT_NORMAL, to_light));
             if (cosines > 0 && !is_occluded(get_ray_from_surface(s, to_light), 0.9999f)) {
                 const float squared_distance = glm::dot(to_light, to_light);
                 const float form_factor = cosines * LIGHT_AREA / (pi * squared_distance * squared_distance);
                 radiance += throughput * LIGHT_RADIANCE * form_factor;
             }
 
-            const float survival =
-                std::min(SURVIVAL_CAP, std::max({throughput.r, throughput.g, throughput.b}));
+            const float survival = std::min(SURVIVAL_CAP, std::max({throughput.r, throughput.g, throughput.b}));
             if (get_random_numbers(seed).x >= survival) break;
             throughput /= survival;
             u = get_random_numbers(seed);

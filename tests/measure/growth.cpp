@@ -44,9 +44,7 @@ std::vector<Growth> all_growths(uint32_t size) {
         const auto cells = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(count) / 2)));
         return GrowthStep{2 * uint64_t{cells} * cells, make_box_scene(5, 3, cells), uvec2(size), path_length};
     };
-    const auto instances = [size](uint64_t count) {
-        return GrowthStep{count, spheres(count), uvec2(size), path_length};
-    };
+    const auto instances = [size](uint64_t count) { return GrowthStep{count, spheres(count), uvec2(size), path_length}; };
     const auto pixels = [](uint64_t count) {
         const auto side = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(count))));
         return GrowthStep{count, box_of(40'000), uvec2(side), path_length};
@@ -55,13 +53,12 @@ std::vector<Growth> all_growths(uint32_t size) {
         return GrowthStep{count, empty_room(), uvec2(size), static_cast<uint32_t>(count)};
     };
     const std::vector<uint64_t> lengths{1, 2, 4, 8, 16, 32, 64};
-    return {
-        {"triangles", roulette, {100, 1'000, 10'000, 100'000, 1'000'000, 4'000'000}, triangles},
-        {"emissive triangles", roulette, {2, 10, 100, 1'000, 10'000, 100'000}, lights},
-        {"instances", roulette, {1, 8, 64, 512, 4'096}, instances},
-        {"pixels", roulette, {1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22}, pixels},
-        {"maximal path length without roulette", chapter_named("next_event_estimation"), lengths, bounces},
-        {"maximal path length with roulette", roulette, lengths, bounces}};
+    return {{"triangles", roulette, {100, 1'000, 10'000, 100'000, 1'000'000, 4'000'000}, triangles},
+            {"emissive triangles", roulette, {2, 10, 100, 1'000, 10'000, 100'000}, lights},
+            {"instances", roulette, {1, 8, 64, 512, 4'096}, instances},
+            {"pixels", roulette, {1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22}, pixels},
+            {"maximal path length without roulette", chapter_named("next_event_estimation"), lengths, bounces},
+            {"maximal path length with roulette", roulette, lengths, bounces}};
 }
 
 }  // namespace lab

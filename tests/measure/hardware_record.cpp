@@ -18,11 +18,9 @@ namespace {
 // Index of the path in the order of the film's blocks, as each backend's main program knows it. The n-th rays
 // of neighbouring paths are neighbours in memory.
 std::vector<std::string> path_defines(Backend backend, size_t path_count) {
-    const std::string index = backend == Backend::pipeline
-                                  ? "gl_LaunchIDEXT.x"
-                                  : "gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex";
-    return {"PATH_INDEX (dispatch.first_block * 64u + " + index + ")",
-            "PATH_COUNT " + std::to_string(path_count) + "u"};
+    const std::string index =
+        backend == Backend::pipeline ? "gl_LaunchIDEXT.x" : "gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex";
+    return {"PATH_INDEX (dispatch.first_block * 64u + " + index + ")", "PATH_COUNT " + std::to_string(path_count) + "u"};
 }
 
 // What is measured: a scene, and an estimator whose paths have at most eight bounces.
@@ -36,10 +34,7 @@ struct Subject {
 Subject benchmark_subject(uint32_t size, uint32_t segments, uint32_t rings) {
     Scene scene = make_box_scene(segments, rings);
     const RenderParameters parameters = default_parameters(scene, uvec2(size));
-    return {"box with a sphere",
-            std::move(scene),
-            {project_folder() / "tests/measure/path_trace.glsl"},
-            parameters};
+    return {"box with a sphere", std::move(scene), {project_folder() / "tests/measure/path_trace.glsl"}, parameters};
 }
 
 Subject chapter_subject(uint32_t size, const std::string& scene_name) {
@@ -58,18 +53,13 @@ json measure(const Device& device, const Subject& subject) {
     const auto tests = project_folder() / "tests";
     const uint32_t size = parameters.image_size.x;
     const GpuScene gpu_scene(device, scene);
-    const size_t path_count =
-        size_t{(size + 7) / 8 * 8} * ((size + 7) / 8 * 8);  // blocks at the border are whole
-    const Buffer rays(device, path_count * MAX_RECORDED_RAYS * sizeof(RecordedRay),
-                      vk::BufferUsageFlagBits::eStorageBuffer);
-    device.submit([&](const vk::raii::CommandBuffer& commands) {
-        commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, 0);
-    });
+    const size_t path_count = size_t{(size + 7) / 8 * 8} * ((size + 7) / 8 * 8);  // blocks at the border are whole
+    const Buffer rays(device, path_count * MAX_RECORDED_RAYS * sizeof(RecordedRay), vk::BufferUsageFlagBits::eStorageBuffer);
+    device.submit([&](const vk::raii::CommandBuffer& commands) { commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, 0); });
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
     {
         const auto structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-        Estimator record{tests / "measure/record_rays.glsl", path_defines(Backend::compute, path_count),
-                         estimator.file};
+        Estimator record{tests / "measure/record_rays.glsl", path_defines(Backend::compute, path_count), estimator.file};
         record.defines.insert(record.defines.end(), estimator.defines.begin(), estimator.defines.end());
         Renderer recorder(device, *structure, record, parameters, {&ray_binding, 1});
         while (recorder.advance(1)) {
@@ -91,18 +81,15 @@ json measure(const Device& device, const Subject& subject) {
         json all_runs{{"rays_per_second", json::array()}, {"bare_rays_per_second", json::array()}};
         for (const Rates& run : runs[0]) all_runs["rays_per_second"].push_back(run.rays_per_second);
         for (const Rates& run : runs[1]) all_runs["bare_rays_per_second"].push_back(run.rays_per_second);
-        result["backends"][to_string(backend)] = {{"paths_per_second", rates.paths_per_second},
-                                                  {"rays_per_second", rates.rays_per_second},
-                                                  {"bare_rays_per_second", bare.rays_per_second},
-                                                  {"runs", all_runs},
-                                                  {"structure_bytes", structure->bytes()},
-                                                  {"structure_seconds", structure->build_seconds()}};
+        result["backends"][to_string(backend)] = {
+            {"paths_per_second", rates.paths_per_second},   {"rays_per_second", rates.rays_per_second},
+            {"bare_rays_per_second", bare.rays_per_second}, {"runs", all_runs},
+            {"structure_bytes", structure->bytes()},        {"structure_seconds", structure->build_seconds()}};
         std::printf(
             "%-17s %8zu triangles  %-8s %8.1f million paths/s  %8.1f million rays/s, bare %8.1f (%.2f of "
             "it)\n",
             name.c_str(), scene.triangles.size(), to_string(backend).c_str(), 1e-6 * rates.paths_per_second,
-            1e-6 * rates.rays_per_second, 1e-6 * bare.rays_per_second,
-            rates.rays_per_second / bare.rays_per_second);
+            1e-6 * rates.rays_per_second, 1e-6 * bare.rays_per_second, rates.rays_per_second / bare.rays_per_second);
         std::fflush(stdout);
     }
     return result;
@@ -133,10 +120,7 @@ int main(int argument_count, char** arguments) {
     uint32_t size = 1024;
     std::filesystem::path output = "hardware.json";
     app.add_option("--device", device, "Number or part of the name of a device");
-    app.add_option("--size", size, "Width and height of the image")
-        ->check(CLI::Range(8, 4096))
-        ->capture_default_str();
+    app.add_option("--size", size, "Width and height of the image")->check(CLI::Range(8, 4096))->capture_default_str();
     app.add_option("--output", output, "JSON file to write")->capture_default_str();
-    return lab::run_measurement(app, argument_count, arguments,
-                                [&] { return lab::run(device, size, output); });
+    return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(device, size, output); });
 }

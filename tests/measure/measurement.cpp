@@ -6,13 +6,10 @@ namespace lab {
 
 json record_of(const Device& device) {
     const auto& description = device.description();
-    return {{"device", description.name},
-            {"driver", description.driver},
-            {"api_version", description.api_version}};
+    return {{"device", description.name}, {"driver", description.driver}, {"api_version", description.api_version}};
 }
 
-int run_measurement(CLI::App& app, int argument_count, char** arguments,
-                    const std::function<int()>& measure) {
+int run_measurement(CLI::App& app, int argument_count, char** arguments, const std::function<int()>& measure) {
     CLI11_PARSE(app, argument_count, arguments);
     try {
         return measure();

@@ -10,12 +10,10 @@ static Rates run(Renderer& renderer, double seconds) {
     while (renderer.device_seconds() < start + seconds) renderer.advance(UINT32_MAX);
     const double time = renderer.device_seconds() - start;
     const double pixels = static_cast<double>(renderer.film().width()) * renderer.film().height();
-    return {pixels * (renderer.samples() - first_samples) / time,
-            static_cast<double>(renderer.rays() - first_rays) / time};
+    return {pixels * (renderer.samples() - first_samples) / time, static_cast<double>(renderer.rays() - first_rays) / time};
 }
 
-std::vector<std::vector<Rates>> measure_in_turns(const std::vector<Renderer*>& renderers, double seconds,
-                                                 uint32_t runs) {
+std::vector<std::vector<Rates>> measure_in_turns(const std::vector<Renderer*>& renderers, double seconds, uint32_t runs) {
     std::vector<std::vector<Rates>> rates(renderers.size());
     for (Renderer* renderer : renderers) run(*renderer, seconds);
     for (uint32_t i = 0; i < runs; ++i)

@@ -14,8 +14,7 @@ struct Rates {
 
 // Runs of about `seconds` each, which the renderers do in turns: what else the machine does meanwhile hits
 // all of them alike. For each renderer its runs in order, without a first one that warms up.
-std::vector<std::vector<Rates>> measure_in_turns(const std::vector<Renderer*>& renderers, double seconds,
-                                                 uint32_t runs = 5);
+std::vector<std::vector<Rates>> measure_in_turns(const std::vector<Renderer*>& renderers, double seconds, uint32_t runs = 5);
 
 // Of an odd number of runs.
 Rates median(std::vector<Rates> runs);

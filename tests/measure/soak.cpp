@@ -37,8 +37,7 @@ constexpr uint32_t samples = 2;
 
 // Of the memory in use, and of the resident memory: the allocator keeps some of what was freed. Mesa's CPU
 // driver (25.0) keeps some of each pipeline, too, 0.2 KiB of one for a compute shader, until its device ends.
-constexpr double tolerated_growth_mib = 2, tolerated_growth_per_picture_mib = 1.0 / 1024,
-                 tolerated_resident_growth_mib = 16;
+constexpr double tolerated_growth_mib = 2, tolerated_growth_per_picture_mib = 1.0 / 1024, tolerated_resident_growth_mib = 16;
 
 // A line of /proc/self/status in MiB.
 double status_mib(const std::string& name) {
@@ -55,18 +54,14 @@ struct Memory {
 
 Memory measure_memory() {
     const auto heap = mallinfo2();
-    return {static_cast<double>(heap.uordblks + heap.hblkhd) / (1 << 20) + status_mib("RssShmem"),
-            status_mib("VmRSS")};
+    return {static_cast<double>(heap.uordblks + heap.hblkhd) / (1 << 20) + status_mib("RssShmem"), status_mib("VmRSS")};
 }
 
 uint64_t hash_of(const FilmImage& film) {
-    return hash_text(
-        {reinterpret_cast<const char*>(film.pixels.data()), film.pixels.size() * sizeof(FilmPixel)});
+    return hash_text({reinterpret_cast<const char*>(film.pixels.data()), film.pixels.size() * sizeof(FilmPixel)});
 }
 
-Scene load(const Case& item) {
-    return load_scene(project_folder() / "assets" / "scenes" / (item.scene + ".json"));
-}
+Scene load(const Case& item) { return load_scene(project_folder() / "assets" / "scenes" / (item.scene + ".json")); }
 
 Estimator estimator_of(const Case& item) { return estimator_of(load_chapter(item.chapter)); }
 
@@ -98,8 +93,7 @@ class Soak {
         const auto acceleration_structure = build_acceleration_structure(backend, device_, gpu_scene);
         for (uint32_t camera = 0; camera < camera_count; ++camera) {
             scene.camera.position += 0.1f * (scene.camera.target - scene.camera.position);
-            Renderer renderer(device_, *acceleration_structure, estimator_of(item),
-                              default_parameters(scene, image_size));
+            Renderer renderer(device_, *acceleration_structure, estimator_of(item), default_parameters(scene, image_size));
             render(renderer, samples);
             const std::string name = item.scene + " " + to_string(backend) + " " + std::to_string(camera);
             const uint64_t hash = hash_of(renderer.film().read());
@@ -107,8 +101,7 @@ class Soak {
             ++picture_count_;
             if (first->second == hash) continue;
             ++wrong_picture_count_;
-            std::fprintf(stderr, "round %zu: %s is not what it was at first\n", memory_.size() + 1,
-                         name.c_str());
+            std::fprintf(stderr, "round %zu: %s is not what it was at first\n", memory_.size() + 1, name.c_str());
         }
     }
 
@@ -138,8 +131,7 @@ class PatientFilm {
 
   private:
     Renderer make_renderer() const {
-        return {device_, *acceleration_structure_, estimator_of(cases.front()),
-                default_parameters(scene_, image_size)};
+        return {device_, *acceleration_structure_, estimator_of(cases.front()), default_parameters(scene_, image_size)};
     }
 
     const Device& device_;
@@ -162,8 +154,7 @@ double growth(const std::vector<Memory>& rounds, double Memory::*figure) {
 json chosen(const std::vector<Memory>& rounds, double Memory::*figure) {
     auto list = json::array();
     const size_t count = std::min<size_t>(rounds.size(), 24);
-    for (size_t i = 0; i < count; ++i)
-        list.push_back(std::round(10 * rounds[i * rounds.size() / count].*figure) / 10);
+    for (size_t i = 0; i < count; ++i) list.push_back(std::round(10 * rounds[i * rounds.size() / count].*figure) / 10);
     return list;
 }
 
@@ -184,9 +175,7 @@ int run(double seconds, const std::string& commit, const std::filesystem::path& 
     Soak soak(device);
     PatientFilm film(device);
     const auto start = std::chrono::steady_clock::now();
-    const auto elapsed = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
+    const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
     constexpr size_t min_rounds = 4;  // so that both halves have some
     const auto& rounds = soak.memory_after_rounds();
     while (elapsed() < seconds || rounds.size() < min_rounds) {
@@ -195,8 +184,8 @@ int run(double seconds, const std::string& commit, const std::filesystem::path& 
     }
 
     const double used_growth = growth(rounds, &Memory::used_mib);
-    const double tolerated_used_growth = tolerated_growth_mib + static_cast<double>(soak.picture_count()) /
-                                                                    2 * tolerated_growth_per_picture_mib;
+    const double tolerated_used_growth =
+        tolerated_growth_mib + static_cast<double>(soak.picture_count()) / 2 * tolerated_growth_per_picture_mib;
     const double resident_growth = growth(rounds, &Memory::resident_mib);
     const bool film_is_right = film.is_right();
     const json record = {{"commit", commit},
@@ -214,8 +203,7 @@ int run(double seconds, const std::string& commit, const std::filesystem::path& 
                          {"resident_mib", chosen(rounds, &Memory::resident_mib)}};
     std::printf("%s\n", record.dump(1).c_str());
     if (!record_file.empty()) write_file(record_file, record.dump(1) + "\n");
-    const bool is_flat =
-        used_growth <= tolerated_used_growth && resident_growth <= tolerated_resident_growth_mib;
+    const bool is_flat = used_growth <= tolerated_used_growth && resident_growth <= tolerated_resident_growth_mib;
     return soak.wrong_picture_count() == 0 && film_is_right && is_flat ? 0 : 1;
 }
 
@@ -230,6 +218,5 @@ int main(int argument_count, char** arguments) {
     app.add_option("--seconds", seconds, "How long")->capture_default_str();
     app.add_option("--commit", commit, "For the record: what is tested");
     app.add_option("--record", record, "JSON file to write");
-    return lab::run_measurement(app, argument_count, arguments,
-                                [&] { return lab::run(seconds, commit, record); });
+    return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(seconds, commit, record); });
 }

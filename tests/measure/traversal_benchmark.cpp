@@ -49,15 +49,13 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
     const auto timed = [&](const auto& render) {
         const auto start = std::chrono::steady_clock::now();
         render();
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return 1e-6 * options.size * options.size * options.samples / seconds;
     };
 
     const GpuScene gpu_scene(device, scene);
     const auto acceleration_structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-    Renderer renderer(device, *acceleration_structure, {project_folder() / "tests/measure/path_trace.glsl"},
-                      parameters);
+    Renderer renderer(device, *acceleration_structure, {project_folder() / "tests/measure/path_trace.glsl"}, parameters);
     renderer.set_dispatch_seconds(1);
 #ifdef EMBREE_VERSION
     EmbreeTwin twin(scene, parameters);
@@ -83,8 +81,8 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
     Runs ratios;
     for (size_t i = 0; i < device_runs.size(); ++i) ratios.push_back(device_runs[i] / twin_runs[i]);
     const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
-    std::printf("  device / twin %.3f (%.3f to %.3f); relative difference of the means %.1e %.1e %.1e\n",
-                median(ratios), *least, *most, difference.r, difference.g, difference.b);
+    std::printf("  device / twin %.3f (%.3f to %.3f); relative difference of the means %.1e %.1e %.1e\n", median(ratios), *least,
+                *most, difference.r, difference.g, difference.b);
 #endif
 }
 
@@ -102,14 +100,9 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
     lab::Options options;
-    CLI::App app(
-        "Measures the traversal of the compute backend on boxes of 32, 39,612 and 1,957,212 triangles.");
-    app.add_option("--runs", options.runs, "Measured runs of each")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    app.add_option("--size", options.size, "Image width and height")
-        ->check(CLI::Range(8, 8192))
-        ->capture_default_str();
+    CLI::App app("Measures the traversal of the compute backend on boxes of 32, 39,612 and 1,957,212 triangles.");
+    app.add_option("--runs", options.runs, "Measured runs of each")->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--size", options.size, "Image width and height")->check(CLI::Range(8, 8192))->capture_default_str();
     app.add_option("--samples", options.samples, "Samples per pixel and run")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();

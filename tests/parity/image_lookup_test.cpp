@@ -39,15 +39,12 @@ double decoding_error() { return 2 * test_arithmetic().decoding + 1e-6; }
 TEST_P(Textures, AreFilteredLinearlyAcrossTheirBorders) {
     const Texture texture = colourful_texture();
     // Between two columns, a quarter of the way between two rows, and between the first and the last ones.
-    const auto albedos =
-        albedo_at(texture, {{0.25f, 0.25f}, {0.125f, 0.375f}, {0, 0.25f}, {0.9375f, 0.25f}, {0.125f, 0}});
-    const std::array<dvec3, 5> expected{0.5 * (texel(texture, 0, 0) + texel(texture, 1, 0)),
-                                        0.75 * texel(texture, 0, 0) + 0.25 * texel(texture, 0, 1),
-                                        0.5 * (texel(texture, 3, 0) + texel(texture, 0, 0)),
-                                        0.75 * texel(texture, 3, 0) + 0.25 * texel(texture, 0, 0),
-                                        0.5 * (texel(texture, 0, 1) + texel(texture, 0, 0))};
-    for (size_t i = 0; i < albedos.size(); ++i)
-        EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error()) << i;
+    const auto albedos = albedo_at(texture, {{0.25f, 0.25f}, {0.125f, 0.375f}, {0, 0.25f}, {0.9375f, 0.25f}, {0.125f, 0}});
+    const std::array<dvec3, 5> expected{
+        0.5 * (texel(texture, 0, 0) + texel(texture, 1, 0)), 0.75 * texel(texture, 0, 0) + 0.25 * texel(texture, 0, 1),
+        0.5 * (texel(texture, 3, 0) + texel(texture, 0, 0)), 0.75 * texel(texture, 3, 0) + 0.25 * texel(texture, 0, 0),
+        0.5 * (texel(texture, 0, 1) + texel(texture, 0, 0))};
+    for (size_t i = 0; i < albedos.size(); ++i) EXPECT_LT(glm::distance(dvec3(albedos[i]), expected[i]), decoding_error()) << i;
 }
 
 TEST_P(Textures, AreMultipliedByTheMaterialsColour) {
@@ -63,11 +60,9 @@ TEST_P(Textures, CoordinatesAreInterpolated) {
     scene.textures = {colourful_texture()};
     scene.texture_coordinates = {{0.1f, 0.9f}, {0.7f, 0.9f}, {0.7f, 0.2f}, {0.1f, 0.2f}};
     scene.camera = {{0.25f, 0.75f, 1}, {0.25f, 0.75f, 0}, {0, 1, 0}, 0.01f};
-    const FilmImage film = render(scene, {.width = 1,
-                                          .height = 1,
-                                          .samples = 1,
-                                          .estimator = view_estimator("texture-coordinates"),
-                                          .backend = GetParam()});
+    const FilmImage film = render(
+        scene,
+        {.width = 1, .height = 1, .samples = 1, .estimator = view_estimator("texture-coordinates"), .backend = GetParam()});
     EXPECT_LT(glm::distance(radiance_at(film, 0, 0), vec3(0.25f, 0.375f, 0)), 1e-3f);
 }
 
@@ -76,8 +71,7 @@ class LightProbe : public OnEachBackend {
     // A probe whose texels have different colours, over an empty scene.
     static constexpr uint32_t width = 9, height = 5;
     static vec3 texel_radiance(uint32_t column, uint32_t row) {
-        return {static_cast<float>(column * column), static_cast<float>(row) * 100,
-                static_cast<float>(column + row) + 0.5f};
+        return {static_cast<float>(column * column), static_cast<float>(row) * 100, static_cast<float>(column + row) + 0.5f};
     }
     static Scene probe_scene() {
         Scene scene = make_scene({}, {});
@@ -91,12 +85,8 @@ class LightProbe : public OnEachBackend {
     }
     // Radiance that a camera sees in a direction.
     vec3 radiance(Scene scene, const dvec3& direction) const {
-        scene.camera = {.position = {0, 0, 0},
-                        .target = vec3(direction),
-                        .up = {0.3f, 0.2f, 0.1f},
-                        .vertical_fov = 0.01f};
-        return radiance_at(render(scene, {.width = 1, .height = 1, .samples = 1, .backend = GetParam()}), 0,
-                           0);
+        scene.camera = {.position = {0, 0, 0}, .target = vec3(direction), .up = {0.3f, 0.2f, 0.1f}, .vertical_fov = 0.01f};
+        return radiance_at(render(scene, {.width = 1, .height = 1, .samples = 1, .backend = GetParam()}), 0, 0);
     }
 };
 INSTANTIATE_TEST_SUITE_P(Backends, LightProbe, testing::ValuesIn(all_backends), backend_name);
@@ -110,12 +100,9 @@ TEST_P(LightProbe, ShowsItsCentreTowardsMinusZ) {
             << direction.x << " " << direction.y << " " << direction.z;
     };
     expect({0, 0, -1}, {4, 2});
-    for (const dvec2 centre :
-         {dvec2(6, 2), dvec2(2, 2), dvec2(4, 1), dvec2(5, 3), dvec2(0, 1), dvec2(8, 4)}) {
-        const double azimuth = 2 * pi * (centre.x + 0.5 - 4.5) / width,
-                     inclination = pi * (centre.y + 0.5) / height;
-        expect({std::sin(inclination) * std::sin(azimuth), std::cos(inclination),
-                -std::sin(inclination) * std::cos(azimuth)},
+    for (const dvec2 centre : {dvec2(6, 2), dvec2(2, 2), dvec2(4, 1), dvec2(5, 3), dvec2(0, 1), dvec2(8, 4)}) {
+        const double azimuth = 2 * pi * (centre.x + 0.5 - 4.5) / width, inclination = pi * (centre.y + 0.5) / height;
+        expect({std::sin(inclination) * std::sin(azimuth), std::cos(inclination), -std::sin(inclination) * std::cos(azimuth)},
                centre);
     }
 }

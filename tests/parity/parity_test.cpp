@@ -30,8 +30,7 @@ class BackendScene {
 
     // One sample a pixel.
     TracedImage render(const RenderSettings& settings) const {
-        Renderer renderer(test_device(), *structure_, settings.estimator,
-                          make_parameters(gpu_scene_.scene(), settings));
+        Renderer renderer(test_device(), *structure_, settings.estimator, make_parameters(gpu_scene_.scene(), settings));
         while (renderer.advance(1)) {
         }
         return {renderer.film().read().mean(), renderer.rays()};
@@ -51,8 +50,8 @@ struct Limits {
 };
 
 // The paths are the same within the limits, and the means differ by no more than the different paths explain.
-void expect_parity(const std::string& what, Backend backend, const TracedImage& expected,
-                   const TracedImage& actual, const Limits& limits) {
+void expect_parity(const std::string& what, Backend backend, const TracedImage& expected, const TracedImage& actual,
+                   const Limits& limits) {
     size_t different = 0, pixels = expected.image.pixels.size() / 3;
     double difference_sum = 0, difference_square_sum = 0;
     const double sum = std::accumulate(expected.image.pixels.begin(), expected.image.pixels.end(), 0.0);
@@ -69,12 +68,9 @@ void expect_parity(const std::string& what, Backend backend, const TracedImage& 
         difference_sum += total;
         difference_square_sum += total * total;
     }
-    const double fraction =
-        static_cast<double>(different) / static_cast<double>(std::max<uint64_t>(expected.rays, 1));
-    std::printf(
-        "[  PARITY  ] %-36s %-8s %zu of %zu paths differ, %.1e a segment, mean differs by %.1e relatively\n",
-        what.c_str(), to_string(backend).c_str(), different, pixels, fraction,
-        sum > 0 ? difference_sum / sum : 0.0);
+    const double fraction = static_cast<double>(different) / static_cast<double>(std::max<uint64_t>(expected.rays, 1));
+    std::printf("[  PARITY  ] %-36s %-8s %zu of %zu paths differ, %.1e a segment, mean differs by %.1e relatively\n",
+                what.c_str(), to_string(backend).c_str(), different, pixels, fraction, sum > 0 ? difference_sum / sum : 0.0);
     EXPECT_LE(fraction, limits.fraction) << what;
     // Rays that are counted differently would be traced differently.
     EXPECT_NEAR(static_cast<double>(actual.rays), static_cast<double>(expected.rays),
@@ -111,19 +107,15 @@ using Estimators = std::map<std::string, RenderSettings>;
 Estimators estimators_of(const std::vector<std::string>& chapters) {
     Estimators estimators;
     for (const std::string& chapter : chapters)
-        estimators[chapter] = {
-            .width = 192, .height = 192, .splitting_factor = 2, .estimator = chapter_estimator(chapter)};
+        estimators[chapter] = {.width = 192, .height = 192, .splitting_factor = 2, .estimator = chapter_estimator(chapter)};
     return estimators;
 }
 
 Estimators all_estimators() {
     Estimators all = estimators_of(all_chapters);
     // The paths are short, since they branch at every hit.
-    all["every hit"] = {.width = 192,
-                        .height = 192,
-                        .max_path_length = 3,
-                        .splitting_factor = 2,
-                        .estimator = every_hit_estimator()};
+    all["every hit"] = {
+        .width = 192, .height = 192, .max_path_length = 3, .splitting_factor = 2, .estimator = every_hit_estimator()};
     return all;
 }
 
@@ -148,24 +140,19 @@ class Parity : public testing::TestWithParam<Backend> {
 void Parity::expect_same_on(const std::filesystem::path& file, const Estimators& estimators) {
     const Scene scene = load_scene(file);
     for (const bool with_probe : {false, true}) {
-        const auto samples_so = [&](const auto& e) {
-            return samples_probe(e.second.estimator) == with_probe;
-        };
+        const auto samples_so = [&](const auto& e) { return samples_probe(e.second.estimator) == with_probe; };
         if (std::none_of(estimators.begin(), estimators.end(), samples_so)) continue;
-        const BackendScene expected(Backend::compute, scene, with_probe),
-            actual(GetParam(), scene, with_probe);
+        const BackendScene expected(Backend::compute, scene, with_probe), actual(GetParam(), scene, with_probe);
         for (const auto& [name, settings] : estimators)
             if (samples_so(std::pair(name, settings)))
-                expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings),
-                              actual.render(settings), limits_of(scene));
+                expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings), actual.render(settings),
+                              limits_of(scene));
     }
 }
 
 // Chapters share what traces rays and what scenes bring with them: a default run has all chapters on one
 // scene, and all scenes with the last chapter.
-TEST_P(Parity, EveryChapter) {
-    expect_same_on(project_folder() / "assets" / "scenes" / "cornell_box.json", all_estimators());
-}
+TEST_P(Parity, EveryChapter) { expect_same_on(project_folder() / "assets" / "scenes" / "cornell_box.json", all_estimators()); }
 
 TEST_P(Parity, EveryScene) {
     for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes"))
@@ -173,8 +160,7 @@ TEST_P(Parity, EveryScene) {
 }
 
 TEST_P(Parity, EveryChapterOnEveryScene_all) {
-    for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes"))
-        expect_same_on(file, all_estimators());
+    for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes")) expect_same_on(file, all_estimators());
 }
 
 TEST_P(Parity, TurnedStretchedAndMirroredInstances) {

@@ -18,20 +18,15 @@ using std::numbers::pi;
 class Surface : public OnEachBackend {
   protected:
     FilmImage render_view(const Scene& scene, const std::string& view, uint32_t samples = 1) const {
-        return render(scene, {.width = 16,
-                              .height = 16,
-                              .samples = samples,
-                              .estimator = view_estimator(view),
-                              .backend = GetParam()});
+        return render(scene,
+                      {.width = 16, .height = 16, .samples = samples, .estimator = view_estimator(view), .backend = GetParam()});
     }
     // Radiance of a single pixel, where all camera rays see the same.
     vec3 radiance(const Scene& scene, uint32_t max_path_length, uint32_t samples = 1) const {
-        return radiance_at(render(scene, {.width = 1,
-                                          .height = 1,
-                                          .samples = samples,
-                                          .max_path_length = max_path_length,
-                                          .backend = GetParam()}),
-                           0, 0);
+        return radiance_at(
+            render(scene,
+                   {.width = 1, .height = 1, .samples = samples, .max_path_length = max_path_length, .backend = GetParam()}),
+            0, 0);
     }
 };
 INSTANTIATE_TEST_SUITE_P(Backends, Surface, testing::ValuesIn(all_backends), backend_name);
@@ -49,8 +44,7 @@ dvec2 project(const dvec3& point, const CameraPose& pose, double width, double h
     const dvec3 right = glm::normalize(glm::cross(forward, dvec3(pose.up)));
     const dvec3 up = glm::cross(right, forward);
     const dvec3 offset = point - dvec3(pose.position);
-    const double scale =
-        0.5 * height / std::tan(glm::radians(0.5 * pose.vertical_fov)) / glm::dot(offset, forward);
+    const double scale = 0.5 * height / std::tan(glm::radians(0.5 * pose.vertical_fov)) / glm::dot(offset, forward);
     return {0.5 * width + scale * glm::dot(offset, right), 0.5 * height - scale * glm::dot(offset, up)};
 }
 
@@ -74,11 +68,11 @@ TEST_P(Surface, AppearsWhereTheCameraSeesIt) {
     for (const CameraPose& pose :
          {CameraPose{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 50}, CameraPose{{0, 0, 5}, {0, 0, 0}, {1, 0, 0}, 50},
           CameraPose{{2, -1, 4}, {0.3f, 0.5f, -1}, {0.2f, 1, 0.3f}, 35}}) {
-        Scene scene = make_scene({diffuse_material(vec3(0), vec3(1))},
-                                 {{vec3(lamp) - vec3(0.1f, 0.1f, 0), {0.2f, 0, 0}, {0, 0.2f, 0}}});
+        Scene scene =
+            make_scene({diffuse_material(vec3(0), vec3(1))}, {{vec3(lamp) - vec3(0.1f, 0.1f, 0), {0.2f, 0, 0}, {0, 0.2f, 0}}});
         scene.camera = pose;
-        const FilmImage film = render(
-            scene, {.width = 96, .height = 64, .samples = 64, .max_path_length = 0, .backend = GetParam()});
+        const FilmImage film =
+            render(scene, {.width = 96, .height = 64, .samples = 64, .max_path_length = 0, .backend = GetParam()});
         const dvec2 expected = project(lamp, pose, 96, 64), found = brightest_point(film);
         EXPECT_NEAR(found.x, expected.x, 0.1);
         EXPECT_NEAR(found.y, expected.y, 0.1);
@@ -98,8 +92,7 @@ TEST_P(Surface, ReflectsOnBothSides) {
         const FilmImage film = render(scene, {.samples = 64, .max_path_length = 1, .backend = GetParam()});
         const vec3 albedo = scene.materials.front().diffuse_albedo;
         for (int channel = 0; channel < 3; ++channel)
-            expect_mean(camera_z > 0 ? "front" : "back", estimate_mean(pixel_means(film, channel)),
-                        albedo[channel], 0.01, 6);
+            expect_mean(camera_z > 0 ? "front" : "back", estimate_mean(pixel_means(film, channel)), albedo[channel], 0.01, 6);
     }
 }
 
@@ -123,8 +116,7 @@ TEST_P(Surface, KeepsItsFrontInTransformedInstances) {
             Scene scene = square(diffuse_material(vec3(0), vec3(1)), camera_z);
             set_transform(scene, glm::mat4x3(transform));
             if (camera_z < 0) scene.camera.position.z = -10;  // behind the one that is moved
-            EXPECT_EQ(radiance(scene, 0).r, (camera_z > 0) == is_front_at_positive_z ? 1 : 0)
-                << name << ", camera " << camera_z;
+            EXPECT_EQ(radiance(scene, 0).r, (camera_z > 0) == is_front_at_positive_z ? 1 : 0) << name << ", camera " << camera_z;
         }
 }
 
@@ -139,8 +131,7 @@ TEST_P(Surface, HasTheNormalsOfItsVertices) {
     // The image of a plane's normal is the normal of the plane's image.
     set_transform(scene, mat4x3(2, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0, 0, 0));
     const vec3 transformed = glm::normalize(normal / vec3(2, 1, 0.5f));
-    EXPECT_LT(glm::distance(radiance_at(render_view(scene, "normals"), 3, 5), 0.5f - 0.5f * transformed),
-              1e-6f);
+    EXPECT_LT(glm::distance(radiance_at(render_view(scene, "normals"), 3, 5), 0.5f - 0.5f * transformed), 1e-6f);
 }
 
 TEST_P(Surface, InterpolatesTheNormalsOfItsVertices) {
@@ -159,10 +150,7 @@ TEST_P(Surface, IsHitInTheNearestOfSeveralLayers) {
     std::vector<Quad> quads;
     for (const int depth : {3, 0, 4, 1, 2}) {
         materials.push_back(diffuse_material(vec3(0), vec3(1.0f + static_cast<float>(depth))));
-        quads.push_back({{-1, -1, -static_cast<float>(depth)},
-                         {2, 0, 0},
-                         {0, 2, 0},
-                         static_cast<uint32_t>(quads.size())});
+        quads.push_back({{-1, -1, -static_cast<float>(depth)}, {2, 0, 0}, {0, 2, 0}, static_cast<uint32_t>(quads.size())});
     }
     Scene scene = make_scene(materials, quads);
     scene.camera = square(materials[0]).camera;

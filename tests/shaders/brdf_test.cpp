@@ -28,9 +28,7 @@ struct BrdfResult {
     uint32_t is_above;
 };
 
-std::vector<BrdfResult> evaluate(const std::vector<BrdfInput>& inputs) {
-    return run_shader<BrdfResult>({"brdf.comp"}, inputs);
-}
+std::vector<BrdfResult> evaluate(const std::vector<BrdfInput>& inputs) { return run_shader<BrdfResult>({"brdf.comp"}, inputs); }
 
 Material glossy_material(float exponent) {
     Material material = white_material();
@@ -78,12 +76,10 @@ TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
             const double peak = 0.5 * (inputs[i].material.specular_exponent + 2) / pi;
             const double value = results[i].brdf[channel];
             worst = std::max(worst, std::abs(value - brdf(inputs[i], channel)) / peak);
-            worst_reciprocity =
-                std::max(worst_reciprocity, std::abs(value - results[i ^ 1].brdf[channel]) / peak);
+            worst_reciprocity = std::max(worst_reciprocity, std::abs(value - results[i ^ 1].brdf[channel]) / peak);
         }
     }
-    std::printf("  largest error %.2g, largest difference of exchanged directions %.2g, of the peak\n", worst,
-                worst_reciprocity);
+    std::printf("  largest error %.2g, largest difference of exchanged directions %.2g, of the peak\n", worst, worst_reciprocity);
     // The base's own roundings, about 2^-23, are magnified as well.
     const double tolerance = 2 * test_arithmetic().phong_lobe + 1000 * 3 * 0x1p-24;
     EXPECT_LT(worst, tolerance);
@@ -120,8 +116,7 @@ class BrdfSampling : public testing::TestWithParam<std::string> {
         return {{0, 0, 1}, direction(lobe.degrees * pi / 180, 0.7), material};
     }
 };
-INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_that(weights_lights)),
-                         chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_that(weights_lights)), chapter_name);
 
 TEST_P(BrdfSampling, FollowsTheLobe) {
     // 1 - cos α grows from 0 with the probability 1 - (cos α)^(n+1), and the azimuth about the mirror image
@@ -130,8 +125,7 @@ TEST_P(BrdfSampling, FollowsTheLobe) {
     for (const float exponent : {0.0f, 1.0f, 20.0f, 1e3f, 1e6f, 1e8f}) {
         constexpr size_t rows = 16, columns = 8;
         std::vector<uint64_t> counts(rows * columns);
-        for (const Bounce& bounce :
-             sample_bounces(GetParam(), surface({exponent, 0}, vec3(0), vec3(1)), 1'000'000, ++run)) {
+        for (const Bounce& bounce : sample_bounces(GetParam(), surface({exponent, 0}, vec3(0), vec3(1)), 1'000'000, ++run)) {
             ASSERT_EQ(bounce.ray_count, 2u);
             const dvec3 omega(bounce.direction);
             const double sine_square = omega.x * omega.x + omega.y * omega.y;
@@ -152,12 +146,11 @@ TEST_P(BrdfSampling, ReflectsWhatTheBrdfSays) {
         for (const float share : {0.0f, 0.3f, 0.9f, 1.0f}) {
             std::vector<double> weights;
             const Surface at = surface(lobe, vec3((1 - share) * 0.8f), vec3(share * 0.8f));
-            for (const Bounce& bounce : sample_bounces(GetParam(), at, 800'000, ++run))
-                weights.push_back(bounce.weight);
+            for (const Bounce& bounce : sample_bounces(GetParam(), at, 800'000, ++run)) weights.push_back(bounce.weight);
             const double cosine = std::cos(lobe.degrees * pi / 180);
             char name[80];
-            std::snprintf(name, sizeof name, "exponent %g, %g degrees, specular share %g",
-                          double{lobe.exponent}, lobe.degrees, double{share});
+            std::snprintf(name, sizeof name, "exponent %g, %g degrees, specular share %g", double{lobe.exponent}, lobe.degrees,
+                          double{share});
             expect_mean(name, estimate_mean(weights), 0.8 * (1 - share + share * cosine), 0.01, 20);
         }
 }

@@ -32,9 +32,7 @@ struct TestHit {
 // Triangles with their numbers as ids.
 struct Mesh {
     std::vector<BvhTriangle> triangles;
-    void add(const vec3& a, const vec3& b, const vec3& c) {
-        triangles.push_back(make_triangle(a, b, c, triangles.size()));
-    }
+    void add(const vec3& a, const vec3& b, const vec3& c) { triangles.push_back(make_triangle(a, b, c, triangles.size())); }
     void add_quad(const vec3& corner, const vec3& u, const vec3& v) {
         add(corner, corner + u, corner + u + v);
         add(corner, corner + u + v, corner + v);
@@ -44,9 +42,7 @@ struct Mesh {
 class Random {
   public:
     explicit Random(uint32_t seed) : generator_(seed) {}
-    float uniform(float low, float high) {
-        return std::uniform_real_distribution<float>(low, high)(generator_);
-    }
+    float uniform(float low, float high) { return std::uniform_real_distribution<float>(low, high)(generator_); }
     vec3 point() {
         const float x = uniform(-1, 1), y = uniform(-1, 1);
         return {x, y, uniform(-1, 1)};
@@ -65,9 +61,8 @@ std::vector<TestHit> trace(const Bvh& bvh, const std::vector<TestRay>& rays) {
     const Buffer inputs(device, std::span<const TestRay>(rays), usage);
     std::vector<Binding> bindings = gpu_bvh.bindings();
     bindings.insert(bindings.end(), {storage_binding(0, results), storage_binding(1, inputs)});
-    const ShaderSource source{.file = project_folder() / "tests/shaders/bvh_traversal.comp",
-                              .defines = gpu_bvh.defines(),
-                              .named_includes = {}};
+    const ShaderSource source{
+        .file = project_folder() / "tests/shaders/bvh_traversal.comp", .defines = gpu_bvh.defines(), .named_includes = {}};
     const ComputeKernel kernel(device, source, bindings, 0);
     device.submit([&](const vk::raii::CommandBuffer& commands) {
         kernel.record(commands, nullptr, static_cast<uint32_t>((rays.size() + 127) / 128));
@@ -92,13 +87,12 @@ void expect_same_hits(const Bvh& bvh, const std::vector<TestRay>& rays, double l
     size_t differences = 0, hit_count = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
         hit_count += expected[i].is_hit;
-        const bool is_same = hits[i].is_hit == expected[i].is_hit &&
-                             hits[i].distance == expected[i].distance &&
+        const bool is_same = hits[i].is_hit == expected[i].is_hit && hits[i].distance == expected[i].distance &&
                              hits[i].is_occluded == expected[i].is_hit;
         if (!is_same && differences++ == 0)
-            ADD_FAILURE() << "first difference: ray " << i << " hits " << hits[i].is_hit << " at "
-                          << hits[i].distance << ", occluded " << hits[i].is_occluded << ", brute force hits "
-                          << expected[i].is_hit << " at " << expected[i].distance;
+            ADD_FAILURE() << "first difference: ray " << i << " hits " << hits[i].is_hit << " at " << hits[i].distance
+                          << ", occluded " << hits[i].is_occluded << ", brute force hits " << expected[i].is_hit << " at "
+                          << expected[i].distance;
     }
     EXPECT_EQ(differences, 0u) << "of " << rays.size() << " rays";
     EXPECT_GE(static_cast<double>(hit_count), least_hit_fraction * static_cast<double>(rays.size()))

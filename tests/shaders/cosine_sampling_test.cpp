@@ -28,10 +28,9 @@ TEST(CosineSampling, FollowsItsDensity) {
     for (const dvec3& normal : test_normals()) {
         const auto bounces = sample(cosine_sampling, normal, 4'000'000, ++run);
         for (const auto& [rows, columns] : {std::pair{16u, 32u}, {51u, 102u}})
-            expect_distribution("normal " + std::to_string(run - 50) + ", " + std::to_string(rows) + " x " +
-                                    std::to_string(columns) + " cells",
-                                histogram(bounces, Frame(normal), rows, columns),
-                                cell_probabilities(rows, columns, integral), 0.015);
+            expect_distribution(
+                "normal " + std::to_string(run - 50) + ", " + std::to_string(rows) + " x " + std::to_string(columns) + " cells",
+                histogram(bounces, Frame(normal), rows, columns), cell_probabilities(rows, columns, integral), 0.015);
     }
 }
 

@@ -26,11 +26,9 @@ FilmImage make_film(uint32_t width, uint32_t height) {
     return film;
 }
 
-std::vector<uint8_t> show(Film& film, const std::shared_ptr<StorageImage>& picture,
-                          DisplayTransform transform, float exposure) {
+std::vector<uint8_t> show(Film& film, const std::shared_ptr<StorageImage>& picture, DisplayTransform transform, float exposure) {
     const DisplayPass pass(test_device(), film, picture);
-    test_device().submit(
-        [&](const vk::raii::CommandBuffer& commands) { pass.record(commands, transform, exposure); });
+    test_device().submit([&](const vk::raii::CommandBuffer& commands) { pass.record(commands, transform, exposure); });
     return picture->read();
 }
 
@@ -39,8 +37,7 @@ TEST(Display, AgreesWithTheSavedPictureToOneStepOfEightBits) {
     Film film(test_device(), image.width, image.height);
     film.write(image);
     const auto picture = std::make_shared<StorageImage>(test_device(), image.width, image.height);
-    for (const auto transform :
-         {DisplayTransform::exposure, DisplayTransform::maximum, DisplayTransform::as_is})
+    for (const auto transform : {DisplayTransform::exposure, DisplayTransform::maximum, DisplayTransform::as_is})
         for (const float exposure : {0.0f, -3.5f, 6.0f}) {
             const auto shown = show(film, picture, transform, exposure);
             const Texture expected = to_display(image, transform, exposure);
@@ -50,8 +47,7 @@ TEST(Display, AgreesWithTheSavedPictureToOneStepOfEightBits) {
             EXPECT_LE(largest, 1) << "transform " << static_cast<int>(transform) << ", exposure " << exposure;
         }
     const FilmImage after = film.read();
-    EXPECT_EQ(std::memcmp(after.pixels.data(), image.pixels.data(), image.pixels.size() * sizeof(FilmPixel)),
-              0)
+    EXPECT_EQ(std::memcmp(after.pixels.data(), image.pixels.data(), image.pixels.size() * sizeof(FilmPixel)), 0)
         << "showing a film must not change it";
 }
 
@@ -100,8 +96,7 @@ TEST(Display, EnlargesAReducedFilm) {
     for (size_t y = 0; y < 16; ++y)
         for (size_t x = 0; x < 32; ++x)
             for (size_t channel = 0; channel < 4; ++channel)
-                ASSERT_NEAR(shown[4 * (32 * y + x) + channel],
-                            small.pixels[4 * (8 * (y / 4) + x / 4) + channel], 1)
+                ASSERT_NEAR(shown[4 * (32 * y + x) + channel], small.pixels[4 * (8 * (y / 4) + x / 4) + channel], 1)
                     << x << ", " << y;
 }
 

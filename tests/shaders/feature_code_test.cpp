@@ -40,13 +40,10 @@ const std::map<std::string, Needs>& needs_of_features() {
           .parameter_members = {"background", "probe_rotation"},
           .reads_images = true}},
         {"area lights",
-         {.bindings = {BINDING_LIGHT_TRIANGLES},
-          .functions = {"choose_light_triangle"},
-          .material_members = {"light_density"}}},
+         {.bindings = {BINDING_LIGHT_TRIANGLES}, .functions = {"choose_light_triangle"}, .material_members = {"light_density"}}},
         {"Phong lobe", {.material_members = {"specular_albedo", "specular_exponent"}}},
         {"dielectrics", dielectric},
-        {"absorption",
-         {.functions = dielectric.functions, .material_members = {"refractive_index", "absorption"}}},
+        {"absorption", {.functions = dielectric.functions, .material_members = {"refractive_index", "absorption"}}},
         {"transforms", {.bindings = {BINDING_INSTANCES}}}};
     return needs;
 }
@@ -57,14 +54,12 @@ Scene bare_scene() { return closed_box(diffuse_material(vec3(0.5f))); }
 class FeatureCode : public testing::TestWithParam<std::string> {
   protected:
     Footprint footprint(const Scene& scene, Backend backend) const {
-        const RenderSettings settings{
-            .strategy = samples_lights(GetParam()) ? Strategy::both : Strategy::bounces,
-            .estimator = chapter_estimator(GetParam())};
+        const RenderSettings settings{.strategy = samples_lights(GetParam()) ? Strategy::both : Strategy::bounces,
+                                      .estimator = chapter_estimator(GetParam())};
         const GpuScene gpu_scene = make_gpu_scene(scene, settings);
         const auto structure = build_acceleration_structure(backend, test_device(), gpu_scene);
         std::set<std::string> functions;
-        for (const auto& [name, needs] : needs_of_features())
-            functions.insert(needs.functions.begin(), needs.functions.end());
+        for (const auto& [name, needs] : needs_of_features()) functions.insert(needs.functions.begin(), needs.functions.end());
         Footprint result;
         for (const auto& binding : gpu_scene.bindings()) result.bindings.insert(binding.index);
         for (const auto& shader : structure->shaders(chapter_estimator(GetParam())))
@@ -84,8 +79,7 @@ std::set<T> joined(std::set<T> a, const std::set<T>& b) {
 
 void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
     const Footprint bare = footprint(bare_scene(), backend);
-    const std::set<uint32_t> arrays{BINDING_POSITIONS, BINDING_TRIANGLES, BINDING_TRIANGLE_MATERIALS,
-                                    BINDING_MATERIALS};
+    const std::set<uint32_t> arrays{BINDING_POSITIONS, BINDING_TRIANGLES, BINDING_TRIANGLE_MATERIALS, BINDING_MATERIALS};
     std::set<uint32_t> others{BINDING_RENDER_PARAMETERS, BINDING_FILM, BINDING_RAY_COUNTERS};
     if (backend == Backend::compute)
         others.insert({BINDING_BVH_NODES, BINDING_BVH_TRIANGLES});
@@ -97,8 +91,7 @@ void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
     EXPECT_EQ(bare.code.functions, std::set<std::string>{});
     EXPECT_EQ(bare.code.material_members, (std::set<std::string>{"diffuse_albedo", "emission"}));
     EXPECT_FALSE(bare.code.parameter_members.contains("background"));
-    EXPECT_TRUE(bare.code.parameter_members.contains("max_path_length"))
-        << "too weak: parameters are not found";
+    EXPECT_TRUE(bare.code.parameter_members.contains("max_path_length")) << "too weak: parameters are not found";
     EXPECT_GT(bare.code.instructions, 100u);
 }
 
@@ -107,8 +100,7 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
     for (const SceneFeature& feature : all_scene_features()) {
         SCOPED_TRACE(feature.name);
         Needs needs = needs_of_features().at(feature.name);
-        if (!needs.functions.empty() && needs.functions.contains("sample_dielectric") &&
-            !handles_dielectrics(GetParam()))
+        if (!needs.functions.empty() && needs.functions.contains("sample_dielectric") && !handles_dielectrics(GetParam()))
             continue;
         if (feature.name == "area lights" && !samples_lights(GetParam())) needs = {};
         if (feature.name == "area lights" && !weights_lights(GetParam())) needs.material_members = {};
@@ -123,8 +115,7 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
         EXPECT_EQ(actual.code.bindings, joined(bare.code.bindings, needs.bindings));
         EXPECT_EQ(actual.code.functions, needs.functions);
         EXPECT_EQ(actual.code.material_members, joined(bare.code.material_members, needs.material_members));
-        EXPECT_EQ(actual.code.parameter_members,
-                  joined(bare.code.parameter_members, needs.parameter_members));
+        EXPECT_EQ(actual.code.parameter_members, joined(bare.code.parameter_members, needs.parameter_members));
         EXPECT_EQ(actual.code.reads_images, needs.reads_images);
         EXPECT_FALSE(actual.code.has_samplers);
         if (feature.name != "area lights") {

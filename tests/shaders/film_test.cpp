@@ -42,8 +42,7 @@ TEST(Film, AddsTenMillionSamplesWithoutLosingAny) {
         vec3 plain_sum;
     };
     constexpr uint32_t samples = 10'000'000;
-    const std::vector<Input> inputs{
-        {uniform, samples}, {constant, samples}, {outliers, samples}, {invalid, samples}};
+    const std::vector<Input> inputs{{uniform, samples}, {constant, samples}, {outliers, samples}, {invalid, samples}};
     const auto results = run_shader<Result>({"film.comp"}, inputs);
     double worst_plain = 0, worst_of_all = 0;
     for (size_t i = 0; i < inputs.size(); ++i) {
@@ -55,8 +54,7 @@ TEST(Film, AddsTenMillionSamplesWithoutLosingAny) {
             const double exact = expected[static_cast<size_t>(channel)];
             const double sum = double{pixel.sum[channel]} + double{pixel.compensation[channel]};
             worst = std::max(worst, std::abs(sum / exact - 1));
-            if (kind != invalid)
-                worst_plain = std::max(worst_plain, std::abs(plain_sum[channel] / exact - 1));
+            if (kind != invalid) worst_plain = std::max(worst_plain, std::abs(plain_sum[channel] / exact - 1));
         }
         std::printf("  stream %u: relative error of the sum %.2g\n", inputs[i].kind, worst);
         EXPECT_LE(worst, 1e-6) << "stream " << i;
@@ -73,8 +71,7 @@ TEST(Film, KnowsInvalidNumbersByTheirBits) {
     using Limits = std::numeric_limits<float>;
     std::vector<uint32_t> bits{0x7fc00000u, 0xffc00000u, 0x7f800001u, 0xffffffffu, 0x7f800000u, 0xff800000u};
     const size_t invalid_count = bits.size();
-    for (const float number :
-         {0.0f, -0.0f, 1.0f, -1.0f, Limits::max(), Limits::lowest(), Limits::min(), 65504.0f})
+    for (const float number : {0.0f, -0.0f, 1.0f, -1.0f, Limits::max(), Limits::lowest(), Limits::min(), 65504.0f})
         bits.push_back(std::bit_cast<uint32_t>(number));
     bits.push_back(1);  // the smallest denormal
     const auto results = run_shader<uint32_t>({"film.comp", {"INVALID_BITS"}}, bits);

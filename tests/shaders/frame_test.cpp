@@ -26,11 +26,9 @@ std::vector<vec3> hard_normals() {
     std::mt19937 generator(1);
     std::uniform_real_distribution<double> uniform(0, 1);
     for (int i = 0; i < 1'000'000; ++i) {
-        const double radius = std::pow(10.0, -20 * uniform(generator)),
-                     angle = 6.283185307179586 * uniform(generator);
+        const double radius = std::pow(10.0, -20 * uniform(generator)), angle = 6.283185307179586 * uniform(generator);
         const double z = std::sqrt((1 - radius) * (1 + radius));
-        normals.push_back(
-            unit_vector(radius * std::cos(angle), radius * std::sin(angle), i % 2 == 0 ? z : -z));
+        normals.push_back(unit_vector(radius * std::cos(angle), radius * std::sin(angle), i % 2 == 0 ? z : -z));
     }
     // And those around the xy-plane, where the sign of z changes.
     for (int i = 0; i < 100'000; ++i) {
@@ -51,8 +49,7 @@ TEST(ShadingSpace, IsARotationThatTakesZToTheNormal) {
         const glm::dmat3 product = glm::transpose(frame) * frame;
         double error = std::abs(glm::determinant(frame) - 1);  // -1 if it were left-handed
         for (int column = 0; column < 3; ++column)
-            for (int row = 0; row < 3; ++row)
-                error = std::max(error, std::abs(product[column][row] - (row == column)));
+            for (int row = 0; row < 3; ++row) error = std::max(error, std::abs(product[column][row] - (row == column)));
         ASSERT_LT(error, 1e-6) << "normal " << normals[i].x << " " << normals[i].y << " " << normals[i].z;
         worst = std::max(worst, error);
     }

@@ -41,8 +41,7 @@ std::vector<DielectricResult> evaluate(const std::vector<DielectricInput>& input
 }
 
 // Indices from nearly equal ones to diamond, seen from both sides.
-const std::vector<float> test_etas{1,    1 + 1e-6f, 1 - 1e-6f, 1 + 1e-4f, 1 - 1e-4f,
-                                   1.5f, 1 / 1.5f,  2.4f,      1 / 2.4f};
+const std::vector<float> test_etas{1, 1 + 1e-6f, 1 - 1e-6f, 1 + 1e-4f, 1 - 1e-4f, 1.5f, 1 / 1.5f, 2.4f, 1 / 2.4f};
 
 // Cosines from grazing to normal incidence, evenly spaced in the logarithm.
 std::vector<float> test_cosines() {
@@ -75,16 +74,13 @@ double rounding_effect(double cos_theta, double eta) {
     const long double exact = Textbook(cos_theta, eta).reflectance;
     long double largest = 0;
     for (const long double factor : {1 - 0x1p-22L, 1 + 0x1p-22L})
-        largest = std::max({largest,
-                            std::abs(Textbook(std::min(1.0L, cos_theta * factor), eta).reflectance - exact),
+        largest = std::max({largest, std::abs(Textbook(std::min(1.0L, cos_theta * factor), eta).reflectance - exact),
                             std::abs(Textbook(cos_theta, 1 + (eta - 1.0L) * factor).reflectance - exact)});
     return static_cast<double>(largest);
 }
 
 // Direction in the xz-plane whose cosine to the z-axis is exactly this.
-vec3 direction_of_cosine(float cos_theta) {
-    return {std::sqrt(1 - double{cos_theta} * double{cos_theta}), 0, cos_theta};
-}
+vec3 direction_of_cosine(float cos_theta) { return {std::sqrt(1 - double{cos_theta} * double{cos_theta}), 0, cos_theta}; }
 
 DielectricInput make_input(float cos_theta, float eta, double u = 0) {
     const long double eta_cos_theta_t = eta * Textbook(cos_theta, eta).cos_theta_t;
@@ -145,8 +141,7 @@ TEST(Dielectric, ReflectsIfTheRandomNumberIsBelowTheReflectance) {
             ASSERT_TRUE(is_total[i / 2] || !is_reflected(inputs[i + 1], results[i + 1])) << what;
         }
     }
-    std::printf("  the threshold is that of the textbook up to %.2g, and 1e-6 where it is not critical\n",
-                widest);
+    std::printf("  the threshold is that of the textbook up to %.2g, and 1e-6 where it is not critical\n", widest);
 }
 
 TEST(Dielectric, ReflectsTotallyBelowTheCriticalAngle) {
@@ -191,9 +186,7 @@ TEST(Dielectric, OfIndexOneIsTransparent) {
 std::vector<DielectricInput> random_inputs(double u) {
     std::mt19937 generator(2);
     std::normal_distribution<double> normal;
-    const auto direction = [&] {
-        return glm::normalize(dvec3(normal(generator), normal(generator), normal(generator)));
-    };
+    const auto direction = [&] { return glm::normalize(dvec3(normal(generator), normal(generator), normal(generator))); };
     std::vector<DielectricInput> inputs;
     for (const float eta : test_etas)
         for (int i = 0; i < 20'000; ++i) {
@@ -213,17 +206,15 @@ TEST(Dielectric, RefractsBySnellsLaw) {
     for (size_t i = 0; i < inputs.size(); ++i) {
         if (is_reflected(inputs[i], results[i])) continue;
         ++refracted;
-        const dvec3 n = glm::normalize(dvec3(inputs[i].normal)), out(inputs[i].out_direction),
-                    direction(results[i].direction);
+        const dvec3 n = glm::normalize(dvec3(inputs[i].normal)), out(inputs[i].out_direction), direction(results[i].direction);
         // η sin θ_t = sin θ, in the same plane and on the other side.
         const dvec3 sine = glm::cross(n, out), sine_t = glm::cross(-n, direction);
         worst_snell = std::max(worst_snell, glm::length(double{inputs[i].eta} * sine_t - sine));
         worst_plane = std::max(worst_plane, std::abs(glm::dot(direction, sine)));
         worst_length = std::max(worst_length, std::abs(glm::length(direction) - 1));
     }
-    std::printf(
-        "  %zu directions: residual of Snell's law %.2g, distance to the plane %.2g, length off by %.2g\n",
-        refracted, worst_snell, worst_plane, worst_length);
+    std::printf("  %zu directions: residual of Snell's law %.2g, distance to the plane %.2g, length off by %.2g\n", refracted,
+                worst_snell, worst_plane, worst_length);
     record("residual_of_the_law_of_refraction", "%.1e", worst_snell);
     record("largest_error_of_a_length", "%.1e", worst_length);
     EXPECT_GT(refracted, inputs.size() / 2);

@@ -22,10 +22,8 @@ struct LookAtPoint {
           acceleration_structure(build_acceleration_structure(Backend::compute, test_device(), gpu_scene)),
           parameters(make_parameters(scene, settings)),
           view(test_device(), *acceleration_structure, settings.estimator) {
-        PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator,
-                              parameters.image_size);
-        vertex =
-            recorder.record(parameters, parameters.image_size / 2u + settings.height / 4, 0).vertices.at(0);
+        PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator, parameters.image_size);
+        vertex = recorder.record(parameters, parameters.image_size / 2u + settings.height / 4, 0).vertices.at(0);
     }
     HemisphereView::Pictures look(uint32_t samples) {
         view.look_at(vertex, parameters);
@@ -48,8 +46,7 @@ template <typename Check>
 void for_each_inner_pixel(const Check& check) {
     for (uint32_t y = 0; y < extent; ++y)
         for (uint32_t x = 0; x < extent; ++x) {
-            const double s = (2 * x + 1.0) / extent - 1, t = (2 * y + 1.0) / extent - 1,
-                         square = s * s + t * t;
+            const double s = (2 * x + 1.0) / extent - 1, t = (2 * y + 1.0) / extent - 1, square = s * s + t * t;
             if (square < 0.95) check(3 * (size_t{y} * extent + x), 1 - square);
         }
 }
@@ -77,18 +74,15 @@ TEST(HemisphereView, ShowsKnownFactorsInAFurnace) {
 
 TEST(HemisphereView, ShowsTheSkyUpwards) {
     // A floor under a sky and a bright wall behind it, seen by a camera that looks along -z.
-    Scene scene =
-        make_scene({diffuse_material(vec3(0.5f)), diffuse_material(vec3(0), vec3(5))},
-                   {{{-9, 0, 9}, {18, 0, 0}, {0, 0, -18}, 0}, {{-9, 0, -9}, {18, 0, 0}, {0, 9, 0}, 1}});
+    Scene scene = make_scene({diffuse_material(vec3(0.5f)), diffuse_material(vec3(0), vec3(5))},
+                             {{{-9, 0, 9}, {18, 0, 0}, {0, 0, -18}, 0}, {{-9, 0, -9}, {18, 0, 0}, {0, 9, 0}, 1}});
     scene.camera = {.position = {0, 2, 4}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 40};
     scene.background = vec3(1);
     RenderSettings settings{.max_path_length = 3};
     LookAtPoint setup(std::move(scene), settings);
     EXPECT_NEAR(setup.vertex.normal.y, 1, 1e-6f);
     const auto pictures = setup.look(1);
-    const auto at = [&](uint32_t x, uint32_t y) {
-        return pictures.incoming_radiance.pixels[3 * (size_t{y} * extent + x)];
-    };
+    const auto at = [&](uint32_t x, uint32_t y) { return pictures.incoming_radiance.pixels[3 * (size_t{y} * extent + x)]; };
     EXPECT_EQ(at(extent / 2, extent / 2), 1);   // straight up
     EXPECT_EQ(at(extent / 2, extent / 16), 5);  // far away is upwards
     EXPECT_EQ(at(extent / 2, 15 * extent / 16), 1);
@@ -98,8 +92,7 @@ TEST(HemisphereView, ShowsTheSkyUpwards) {
 
 class HemisphereOf : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(, HemisphereOf,
-                         testing::Values(chapter_named("cosine_sampling"),
-                                         chapter_named("next_event_estimation"),
+                         testing::Values(chapter_named("cosine_sampling"), chapter_named("next_event_estimation"),
                                          chapter_named("russian_roulette")),
                          chapter_name);
 
@@ -124,8 +117,7 @@ TEST_P(HemisphereOf, IntegratesToWhatTheChapterReflects) {
         }
         estimates.push_back(renderer.film().read().mean_radiance()[1]);
     }
-    const Difference difference =
-        difference_of(integrals, estimates).relative_to(estimate_mean(estimates).mean);
+    const Difference difference = difference_of(integrals, estimates).relative_to(estimate_mean(estimates).mean);
     expect_no_difference("reflected radiance", std::span(&difference, 1), 0.05);
 }
 

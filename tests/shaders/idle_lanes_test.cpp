@@ -30,20 +30,16 @@ double idle_part(const Scene& scene, const std::string& chapter, RenderSettings 
 TEST(IdleLanes, AreNoneWherePathsAreEquallyLong) {
     const Scene scene = closed_box(diffuse_material(vec3(1)));
     for (const std::string& chapter : {without_regeneration, with_regeneration})
-        EXPECT_LT(idle_part(scene, chapter, {.max_path_length = 5, .roulette_start = no_roulette}), 1e-3)
-            << chapter;
+        EXPECT_LT(idle_part(scene, chapter, {.max_path_length = 5, .roulette_start = no_roulette}), 1e-3) << chapter;
 }
 
 TEST(IdleLanes, AreFewWhereThreadsStartTheirNextPathAtOnce) {
     const auto properties =
-        test_device()
-            .physical()
-            .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>();
+        test_device().physical().getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>();
     if (properties.get<vk::PhysicalDeviceSubgroupProperties>().subgroupSize == 1)
         GTEST_SKIP() << "the groups of this device have a single thread each: nobody waits";
     const Scene scene = load_shipped_scene("cornell_box.json");
-    const double before = idle_part(scene, without_regeneration, {}),
-                 now = idle_part(scene, with_regeneration, {});
+    const double before = idle_part(scene, without_regeneration, {}), now = idle_part(scene, with_regeneration, {});
     std::printf("  idle: %.3f without path regeneration, %.3f with it\n", before, now);
     EXPECT_GT(before, 0.2);
     EXPECT_LT(now, 0.5 * before);

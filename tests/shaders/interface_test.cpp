@@ -12,9 +12,7 @@ namespace {
 class Expectation {
   public:
     void expect(const char* field, uint value) { EXPECT_EQ(value, ++counter_) << field; }
-    void expect(const char* field, int value) {
-        EXPECT_EQ(std::abs(value), static_cast<int>(++counter_)) << field;
-    }
+    void expect(const char* field, int value) { EXPECT_EQ(std::abs(value), static_cast<int>(++counter_)) << field; }
     void expect(const char* field, float value) { EXPECT_EQ(value, static_cast<float>(++counter_)) << field; }
     void expect(const char* field, const vec3& value) {
         for (int i = 0; i < 3; ++i) expect(field, value[i]);
@@ -23,8 +21,7 @@ class Expectation {
         for (int i = 0; i < 2; ++i) expect(field, value[i]);
     }
     void expect(const char* field, const Camera& camera) {
-        for (const vec3& value : {camera.position, camera.forward, camera.right, camera.up})
-            expect(field, value);
+        for (const vec3& value : {camera.position, camera.forward, camera.right, camera.up}) expect(field, value);
     }
 
   private:

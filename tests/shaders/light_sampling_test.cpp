@@ -47,8 +47,8 @@ struct Choice {
 
 // The choices of the device: first after the given random states (at least one), then with the numbers of
 // different samples.
-std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::vector<RandomState>& states,
-                           size_t count, uint32_t run, std::vector<std::string> defines = {}) {
+std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::vector<RandomState>& states, size_t count,
+                           uint32_t run, std::vector<std::string> defines = {}) {
     std::vector<std::byte> inputs;
     const uvec2 key = seed_key(test_seed(run));
     append_bytes(inputs, std::span(&key, 1));
@@ -64,8 +64,7 @@ std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::
 std::vector<double> unequal_weights(size_t count) {
     std::mt19937_64 random(count);
     std::vector<double> weights;
-    for (size_t i = 0; i < count; ++i)
-        weights.push_back(i % 10 == 5 ? 0 : std::exp(std::normal_distribution<>(0, 1.5)(random)));
+    for (size_t i = 0; i < count; ++i) weights.push_back(i % 10 == 5 ? 0 : std::exp(std::normal_distribution<>(0, 1.5)(random)));
     return weights;
 }
 
@@ -86,8 +85,7 @@ TEST(LightChoice, FollowsTheTableWordByWord) {
                 }
         }
         const auto chosen = choose(lights, states, states.size(), 0);
-        for (size_t i = 0; i < states.size(); ++i)
-            ASSERT_EQ(chosen[i].triangle, expected[i]) << n << " lights, state " << i;
+        for (size_t i = 0; i < states.size(); ++i) ASSERT_EQ(chosen[i].triangle, expected[i]) << n << " lights, state " << i;
     }
 }
 
@@ -101,8 +99,7 @@ TEST(LightChoice, HasTheProbabilitiesOfTheWeights) {
         std::vector<uint64_t> counts(n);
         const auto lights = make_table(weights);
         for (const uint32_t run : {1u, 2u})
-            for (const Choice& choice : choose(lights, {{1, 2}}, 8'000'000, run))
-                ++counts.at(choice.triangle);
+            for (const Choice& choice : choose(lights, {{1, 2}}, 8'000'000, run)) ++counts.at(choice.triangle);
         expect_distribution(std::to_string(n) + " lights", counts, probabilities, 0.02);
         EXPECT_GT(counts.front(), 0u);
         EXPECT_GT(counts.back(), 0u);
@@ -118,8 +115,7 @@ TEST(LightChoice, ByOnePairOfWordsHasTheProbabilitiesOfDimLights) {
         double sum = 0;
         for (const double weight : weights) sum += weight;
         const auto choices = choose(make_table(weights), {{1, 2}}, 8'000'000, 3, {"ONE_PAIR"});
-        const auto dim =
-            std::ranges::count_if(choices, [](const Choice& c) { return c.triangle % 4096 != 0; });
+        const auto dim = std::ranges::count_if(choices, [](const Choice& c) { return c.triangle % 4096 != 0; });
         const double bright = std::ceil(static_cast<double>(n) / 4096) * 4096 / sum;
         const std::vector<uint64_t> counts{static_cast<uint64_t>(dim), choices.size() - dim};
         expect_distribution(std::to_string(n) + " lights", counts, std::vector{1 - bright, bright}, 0.01);
@@ -155,8 +151,7 @@ TEST(LightChoice, LeavesANumberWhereOnlyTheLargestDigitsGiveWay) {
 
 // A triangle above a surface at the origin, with its front towards it: no symmetry, nothing below the
 // horizon.
-const std::array<vec3, 3> light_corners{vec3(-0.7f, 0.4f, 1.1f), vec3(0.3f, 0.9f, 0.8f),
-                                        vec3(0.5f, -0.6f, 1.4f)};
+const std::array<vec3, 3> light_corners{vec3(-0.7f, 0.4f, 1.1f), vec3(0.3f, 0.9f, 0.8f), vec3(0.5f, -0.6f, 1.4f)};
 constexpr vec3 surface_normal{0, 0, 1};
 constexpr float emission = 2.5f, inverse_density = 3.5f, albedo = 0.6f;
 
@@ -166,8 +161,8 @@ struct LightAnswer {
     uint32_t shadow_rays;
 };
 
-std::vector<LightAnswer> sample_light(const std::string& chapter, const std::array<vec3, 3>& corners,
-                                      size_t count, bool only_light_samples = false) {
+std::vector<LightAnswer> sample_light(const std::string& chapter, const std::array<vec3, 3>& corners, size_t count,
+                                      bool only_light_samples = false) {
     struct Inputs {
         Surface surface;
         uint32_t max_path_length;
@@ -184,31 +179,26 @@ std::vector<LightAnswer> sample_light(const std::string& chapter, const std::arr
     inputs.light_material = white_material();
     inputs.light_material.emission = vec3(emission);
     inputs.light_material.light_density = 1 / inverse_density;
-    inputs.light = {
-        .instance = 0, .triangle = 1, .threshold = 0, .alias = 0, .inverse_density = inverse_density};
+    inputs.light = {.instance = 0, .triangle = 1, .threshold = 0, .alias = 0, .inverse_density = inverse_density};
     Estimator estimator = chapter_estimator(chapter);
     if (only_light_samples) estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
-    const TestShader shader{.name = "direct_light.comp",
-                            .defines = estimator.defines,
-                            .named_includes = named_includes(estimator)};
+    const TestShader shader{
+        .name = "direct_light.comp", .defines = estimator.defines, .named_includes = named_includes(estimator)};
     std::vector<LightAnswer> samples(count);
-    run_shader(shader, count, std::as_writable_bytes(std::span(samples)),
-               std::as_bytes(std::span(&inputs, 1)));
+    run_shader(shader, count, std::as_writable_bytes(std::span(samples)), std::as_bytes(std::span(&inputs, 1)));
     return samples;
 }
 
 // Barycentric coordinates w_1 and w_2 of a point in the plane of the light.
 dvec2 barycentrics_of(const dvec3& point) {
-    const dvec3 origin(light_corners[0]), u = dvec3(light_corners[1]) - origin,
-                                          v = dvec3(light_corners[2]) - origin, normal = glm::cross(u, v);
+    const dvec3 origin(light_corners[0]), u = dvec3(light_corners[1]) - origin, v = dvec3(light_corners[2]) - origin,
+                                          normal = glm::cross(u, v);
     const double area = glm::dot(normal, normal);
-    return {glm::dot(normal, glm::cross(point - origin, v)) / area,
-            glm::dot(normal, glm::cross(u, point - origin)) / area};
+    return {glm::dot(normal, glm::cross(point - origin, v)) / area, glm::dot(normal, glm::cross(u, point - origin)) / area};
 }
 
 class LightPoints : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Chapters, LightPoints, testing::ValuesIn(chapters_that(samples_lights)),
-                         chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, LightPoints, testing::ValuesIn(chapters_that(samples_lights)), chapter_name);
 
 TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
     // Cells of equal area: rows between the lines of equal w_0, in each the two kinds of triangles of a
@@ -247,18 +237,16 @@ TEST_P(LightPoints, WeightIsThatOfTheArea) {
     // p_b), the balance heuristic with the densities p_l = r² / cos θ' P/A of this sample and p_b = cos θ / π
     // of the bounce; with --strategy light there is no such bounce.
     const bool has_strategies = load_chapter(GetParam()).strategies.front() == Strategy::both;
-    const dvec3 normal = glm::normalize(glm::cross(dvec3(light_corners[1]) - dvec3(light_corners[0]),
-                                                   dvec3(light_corners[2]) - dvec3(light_corners[0])));
+    const dvec3 normal = glm::normalize(
+        glm::cross(dvec3(light_corners[1]) - dvec3(light_corners[0]), dvec3(light_corners[2]) - dvec3(light_corners[0])));
     for (const bool only_light_samples : {false, true}) {
         if (only_light_samples && !has_strategies) continue;
         const bool is_weighted = has_strategies && !only_light_samples;
         double worst = 0;
-        for (const LightAnswer& sample :
-             sample_light(GetParam(), light_corners, 100'000, only_light_samples)) {
+        for (const LightAnswer& sample : sample_light(GetParam(), light_corners, 100'000, only_light_samples)) {
             const dvec3 to_light(sample.to_light), omega = glm::normalize(to_light);
             const double cos_theta = glm::dot(dvec3(surface_normal), omega);
-            const double inverse_light_density =
-                glm::dot(normal, -omega) / glm::dot(to_light, to_light) * inverse_density;
+            const double inverse_light_density = glm::dot(normal, -omega) / glm::dot(to_light, to_light) * inverse_density;
             const double weight = is_weighted ? 1 / (1 + cos_theta / pi * inverse_light_density) : 1.0;
             const double expected = emission * albedo / pi * cos_theta * inverse_light_density * weight;
             worst = std::max(worst, std::abs(sample.radiance / expected - 1));

@@ -22,9 +22,7 @@ struct Words {
 
 std::vector<Words> words_of(const std::vector<SampleId>& samples) {
     const Estimator estimator = chapter_estimator(chapter_named("low_discrepancy_points"));
-    TestShader shader{.name = "low_discrepancy.comp",
-                      .defines = estimator.defines,
-                      .named_includes = named_includes(estimator)};
+    TestShader shader{.name = "low_discrepancy.comp", .defines = estimator.defines, .named_includes = named_includes(estimator)};
     shader.defines.push_back("PAIRS " + std::to_string(pairs));
     return run_shader<Words>(shader, samples);
 }
@@ -43,9 +41,7 @@ class Points {
         return words_[size_t{pixel} * count_ + i].pair[pair][axis];
     }
     // The same as number, uniform in [0,1).
-    double number(uint32_t pixel, uint32_t i, uint32_t pair, int axis) const {
-        return word(pixel, i, pair, axis) * 0x1p-32;
-    }
+    double number(uint32_t pixel, uint32_t i, uint32_t pair, int axis) const { return word(pixel, i, pair, axis) * 0x1p-32; }
 
   private:
     uint32_t count_;
@@ -74,8 +70,7 @@ TEST(LowDiscrepancyPoints, FillEveryElementaryIntervalOnceWheneverSamplesDouble)
         for (uint32_t pixel = 0; pixel < pixels; ++pixel)
             for (uint32_t pair = 0; pair < pairs; ++pair)
                 ASSERT_EQ(count_uneven(points, pixel, pair, k), 0u)
-                    << "samples " << (1u << k) << " to " << (2u << k) - 1 << " of pixel " << pixel
-                    << ", pair " << pair;
+                    << "samples " << (1u << k) << " to " << (2u << k) - 1 << " of pixel " << pixel << ", pair " << pair;
     }
 }
 
@@ -84,16 +79,14 @@ TEST(LowDiscrepancyPoints, AreUniformEachAlone) {
     constexpr uint32_t pixels = 1 << 20, cells = 16;
     for (const uint32_t sample : {0u, 1u, 37u, 1u << 20, 0xffffffffu}) {
         std::vector<SampleId> samples;
-        for (uint32_t pixel = 0; pixel < pixels; ++pixel)
-            samples.push_back({pixel, sample, seed_key(test_seed(120))});
+        for (uint32_t pixel = 0; pixel < pixels; ++pixel) samples.push_back({pixel, sample, seed_key(test_seed(120))});
         const auto words = words_of(samples);
         for (const uint32_t pair : {0u, 3u})
             for (const uint32_t shift : {28u, 20u, 8u}) {
                 std::vector<uint64_t> counts(cells * cells);
-                for (const Words& w : words)
-                    ++counts[(w.pair[pair].x >> shift & 15) * cells + (w.pair[pair].y >> shift & 15)];
-                expect_distribution("sample " + std::to_string(sample) + ", pair " + std::to_string(pair) +
-                                        ", bits from " + std::to_string(shift),
+                for (const Words& w : words) ++counts[(w.pair[pair].x >> shift & 15) * cells + (w.pair[pair].y >> shift & 15)];
+                expect_distribution("sample " + std::to_string(sample) + ", pair " + std::to_string(pair) + ", bits from " +
+                                        std::to_string(shift),
                                     counts, std::vector<double>(counts.size(), 1.0 / (cells * cells)), 0.03);
             }
     }
@@ -152,15 +145,11 @@ TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndScramblesAreIndependent) {
                                    [&](uint32_t p, uint32_t i) { return points.number(p, i, pair, axis); }));
     // The same number of a path of neighbouring pixels, of other seeds and of the next scramble.
     const auto own = [&](uint32_t p, uint32_t i) { return points.number(p, i, 1, 1); };
-    expect_independent("neighbours", shared_order(pixels, own, [&](uint32_t p, uint32_t i) {
-                           return points.number(p + 1, i, 1, 1);
-                       }));
-    expect_independent("seeds", shared_order(pixels, own, [&](uint32_t p, uint32_t i) {
-                           return other_seed.number(p, i, 1, 1);
-                       }));
-    expect_independent("the next scramble", shared_order(pixels, own, [&](uint32_t p, uint32_t i) {
-                           return later.number(p, i, 1, 1);
-                       }));
+    expect_independent("neighbours",
+                       shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return points.number(p + 1, i, 1, 1); }));
+    expect_independent("seeds", shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return other_seed.number(p, i, 1, 1); }));
+    expect_independent("the next scramble",
+                       shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return later.number(p, i, 1, 1); }));
 }
 
 }  // namespace

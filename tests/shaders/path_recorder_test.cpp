@@ -27,10 +27,8 @@ struct Recorded {
 // Paths of `count` pixels all over the image, of varying sample indices.
 std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
     const GpuScene gpu_scene(test_device(), scene, settings.strategy);
-    const auto acceleration_structure =
-        build_acceleration_structure(settings.backend, test_device(), gpu_scene);
-    PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator,
-                          {settings.width, settings.height});
+    const auto acceleration_structure = build_acceleration_structure(settings.backend, test_device(), gpu_scene);
+    PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator, {settings.width, settings.height});
     std::vector<Recorded> paths;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t index = i * 7919 % (settings.width * settings.height);
@@ -91,9 +89,7 @@ TEST_P(PathRecorderOf, FollowsRaysFromSurfaceToSurface) {
             if (i > 0) {
                 ASSERT_GE(vertex.parent, 0);
                 ASSERT_LT(vertex.parent, static_cast<int>(i));
-                EXPECT_LT(
-                    glm::length(path.vertices[static_cast<size_t>(vertex.parent)].position - vertex.origin),
-                    1e-4f);
+                EXPECT_LT(glm::length(path.vertices[static_cast<size_t>(vertex.parent)].position - vertex.origin), 1e-4f);
                 splits += ++children[static_cast<size_t>(vertex.parent)] == 2;
             }
             if (!vertex.is_hit) continue;
@@ -133,8 +129,7 @@ TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
     const bool is_weighted_alike = weighs_by_albedo(GetParam());
     const bool may_end = has_roulette(GetParam());
     uint32_t survived = 0, lost = 0;
-    for (const auto& [pixel, sample, path] :
-         record_paths(closed_box(diffuse_material(albedo)), settings_for(GetParam()), 30)) {
+    for (const auto& [pixel, sample, path] : record_paths(closed_box(diffuse_material(albedo)), settings_for(GetParam()), 30)) {
         for (const PathVertex& vertex : path.vertices) {
             lost += static_cast<uint32_t>(vertex.lost_roulettes.size());
             if (vertex.parent < 0) {
@@ -164,13 +159,11 @@ TEST(PathRecorder, SaysWhetherThereIsAThroughputToFollow) {
     for (const auto& recorded : record_paths(scene, settings, 4)) EXPECT_TRUE(recorded.path.has_throughput);
     const TemporaryFolder folder;
     const auto copy = folder.path() / "chapter";  // with the technique that it includes
-    std::filesystem::copy(settings.estimator.file.parent_path(), copy,
-                          std::filesystem::copy_options::recursive);
+    std::filesystem::copy(settings.estimator.file.parent_path(), copy, std::filesystem::copy_options::recursive);
     std::ifstream original(settings.estimator.file);
     const std::string text{std::istreambuf_iterator<char>(original), {}};
     settings.estimator.file = copy / "path_trace.glsl";
-    std::ofstream(settings.estimator.file)
-        << std::regex_replace(text, std::regex("\\bthroughput\\b"), "weight");
+    std::ofstream(settings.estimator.file) << std::regex_replace(text, std::regex("\\bthroughput\\b"), "weight");
     for (const auto& recorded : record_paths(scene, settings, 4)) {
         EXPECT_GT(recorded.path.vertices.size(), 1u);
         EXPECT_FALSE(recorded.path.has_throughput);

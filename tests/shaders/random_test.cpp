@@ -24,8 +24,7 @@ RandomState key_of_seed(uint32_t seed) {
 
 // States at the limits of 8, 16, 24 and 32 bits, and a million spread over the range.
 std::vector<RandomState> hard_states() {
-    const uint32_t hard[] = {0,       1,          2,          0xff,       0x100,     0xffff,
-                             0x10000, 0x7fffffff, 0x80000000, 0xffffff00, 0xffffffff};
+    const uint32_t hard[] = {0, 1, 2, 0xff, 0x100, 0xffff, 0x10000, 0x7fffffff, 0x80000000, 0xffffff00, 0xffffffff};
     std::vector<RandomState> states;
     for (const uint32_t x : hard)
         for (const uint32_t y : hard) states.push_back({x, y});
@@ -72,8 +71,8 @@ TEST(RandomNumbers, LetHappenWhatIsAsProbableAsItSays) {
     // whole number of them.
     std::vector<Event> events;
     std::vector<uint32_t> expected;
-    for (const float probability : {1.0f, 1 - 0x1p-24f, 0.95f, 0.5f, 0.3f, 0.001f, 1e-6f, 0x1p-24f, 1e-9f,
-                                    0x1p-32f, 1e-12f, 1e-18f, 0x1p-64f}) {
+    for (const float probability :
+         {1.0f, 1 - 0x1p-24f, 0.95f, 0.5f, 0.3f, 0.001f, 1e-6f, 0x1p-24f, 1e-9f, 0x1p-32f, 1e-12f, 1e-18f, 0x1p-64f}) {
         const auto count = static_cast<uint64_t>(std::min(probability * 0x1p64, 0x1p64 - 2048));
         for (const uint64_t bits : {uint64_t{0}, count - 1, count, count + 1, ~uint64_t{0}}) {
             events.push_back({state_before(bits), probability});
@@ -125,8 +124,7 @@ class Streams {
         for (uint32_t seed = 0; seed < seeds; ++seed)
             for (uint32_t sample = 0; sample < samples; ++sample) {
                 std::vector<StreamId> streams;
-                for (uint32_t pixel = 0; pixel < pixels; ++pixel)
-                    streams.push_back({pixel, sample, key_of_seed(1 + seed)});
+                for (uint32_t pixel = 0; pixel < pixels; ++pixel) streams.push_back({pixel, sample, key_of_seed(1 + seed)});
                 const auto numbers = run_shader<Numbers>({"random.comp", {"NUMBERS 4"}}, streams);
                 for (uint32_t dimension = 0; dimension < dimensions; ++dimension)
                     for (uint32_t pixel = 0; pixel < pixels; ++pixel)
@@ -175,8 +173,7 @@ TEST(RandomNumbers, AreNotCorrelated) {
         for (uint32_t i = 0; i < Streams::dimensions; ++i)
             for (uint32_t j = 0; j < Streams::dimensions; ++j) {
                 if (&lag == Streams::lags && i == j) continue;
-                correlations.push_back(
-                    difference_of_correlation(streams.first(lag, i), streams.second(lag, j)));
+                correlations.push_back(difference_of_correlation(streams.first(lag, i), streams.second(lag, j)));
                 largest = std::max(largest, std::abs(correlations.back().value));
             }
         expect_no_difference(std::string("correlation, ") + lag.name, correlations, 0.025);
@@ -195,9 +192,8 @@ TEST(RandomNumbers, FillTheSquareEvenly) {
             const auto x = streams.first(lag, i), y = streams.second(lag, j);
             for (size_t k = 0; k < x.size(); ++k)
                 ++counts[static_cast<size_t>(x[k] * cells) * cells + static_cast<size_t>(y[k] * cells)];
-            expect_distribution(
-                std::string(lag.name) + ", dimensions " + std::to_string(i) + " and " + std::to_string(j),
-                counts, even, 0.08);
+            expect_distribution(std::string(lag.name) + ", dimensions " + std::to_string(i) + " and " + std::to_string(j), counts,
+                                even, 0.08);
         }
 }
 
@@ -221,13 +217,11 @@ TEST(RandomNumbers, OfPixelsMakeIndependentImages) {
     const double expected_variance = estimate_mean(pixel_variances).mean / pixels;
     for (const double image_mean : image_means)
         ratio_terms.push_back((image_mean - mean.mean) * (image_mean - mean.mean) / expected_variance);
-    expect_mean("variance of the image mean / that of independent pixels", estimate_mean(ratio_terms), 1,
-                0.05);
+    expect_mean("variance of the image mean / that of independent pixels", estimate_mean(ratio_terms), 1, 0.05);
     // Sums of successive images, which use successive samples, are independent as well.
     const std::vector<float> means(image_means.begin(), image_means.end());
     expect_no_difference("correlation of successive images",
-                         std::vector{difference_of_correlation(std::span(means).first(images - 1),
-                                                               std::span(means).subspan(1))},
+                         std::vector{difference_of_correlation(std::span(means).first(images - 1), std::span(means).subspan(1))},
                          0.03);
 }
 

@@ -6,8 +6,7 @@ namespace lab {
 namespace {
 
 class RouletteOf : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Chapters, RouletteOf,
-                         testing::ValuesIn(chapters_that(has_roulette, is_pseudorandom)), chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, RouletteOf, testing::ValuesIn(chapters_that(has_roulette, is_pseudorandom)), chapter_name);
 
 TEST_P(RouletteOf, WeightsPathsByTheProbabilityWithWhichTheySurvive) {
     for (const float probability : {0.5f, 0.001f, 1e-6f, 1e-9f}) {

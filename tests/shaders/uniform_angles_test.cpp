@@ -28,13 +28,11 @@ TEST(UniformAngles, FollowTheirDensity) {
     uint32_t run = 0;
     for (const dvec3& normal : test_normals()) {
         const auto bounces = sample(normal, 4'000'000, ++run);
-        expect_distribution("normal " + std::to_string(run) + ", 16 x 32 cells",
-                            histogram(bounces, Frame(normal), 16, 32), cell_probabilities(16, 32, integral),
-                            0.01);
+        expect_distribution("normal " + std::to_string(run) + ", 16 x 32 cells", histogram(bounces, Frame(normal), 16, 32),
+                            cell_probabilities(16, 32, integral), 0.01);
         // Odd numbers: the middle of the range lies within a cell.
-        expect_distribution("normal " + std::to_string(run) + ", 51 x 102 cells",
-                            histogram(bounces, Frame(normal), 51, 102), cell_probabilities(51, 102, integral),
-                            0.015);
+        expect_distribution("normal " + std::to_string(run) + ", 51 x 102 cells", histogram(bounces, Frame(normal), 51, 102),
+                            cell_probabilities(51, 102, integral), 0.015);
     }
 }
 
@@ -95,8 +93,7 @@ TEST(UniformAngles, HaveTheKnownMeansAndVariance) {
     }
     expect_mean("radiance of a white surface under a white sky", estimate_mean(weights), 1, 0.001);
     expect_mean("variance of one sample, π²/8 - 1", estimate_mean(squared_deviations), pi * pi / 8 - 1, 0.01);
-    expect_mean("mean of 1 / density, the solid angle of the hemisphere", estimate_mean(solid_angles), 2 * pi,
-                0.001);
+    expect_mean("mean of 1 / density, the solid angle of the hemisphere", estimate_mean(solid_angles), 2 * pi, 0.001);
 }
 
 }  // namespace

@@ -17,14 +17,12 @@ std::vector<Bounce> run_bounces(const std::string& chapter, const Surface& surfa
         uvec2 key;
     };
     const Header header{surface, 1, key};
-    const auto header_bytes = std::as_bytes(std::span(&header, 1)),
-               seed_bytes = std::as_bytes(std::span(seeds));
+    const auto header_bytes = std::as_bytes(std::span(&header, 1)), seed_bytes = std::as_bytes(std::span(seeds));
     std::vector<std::byte> inputs(header_bytes.begin(), header_bytes.end());
     inputs.insert(inputs.end(), seed_bytes.begin(), seed_bytes.end());
     const Estimator estimator = chapter_estimator(chapter);
     defines.insert(defines.end(), estimator.defines.begin(), estimator.defines.end());
-    TestShader shader{
-        .name = "bounce.comp", .defines = std::move(defines), .named_includes = named_includes(estimator)};
+    TestShader shader{.name = "bounce.comp", .defines = std::move(defines), .named_includes = named_includes(estimator)};
     if (surface.material.specular_albedo != vec3(0)) shader.defines.emplace_back("FEATURE_SPECULAR");
     std::vector<Bounce> bounces(count);
     run_shader(shader, count, std::as_writable_bytes(std::span(bounces)), inputs, device);
@@ -40,8 +38,7 @@ Material white_material() {
     return material;
 }
 
-std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& surface, size_t count,
-                                   uint32_t run) {
+std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& surface, size_t count, uint32_t run) {
     return run_bounces(chapter, surface, seed_key(test_seed(run)), {}, count, test_device());
 }
 
@@ -56,8 +53,7 @@ std::vector<Bounce> bounces_with_roulette(const std::string& chapter, float surv
                                           const std::vector<RandomState>& seeds) {
     char define[40];
     std::snprintf(define, sizeof define, "SURVIVAL_CAP %.9g", survival_probability);
-    return run_bounces(chapter, {.material = white_material()}, {0, 0}, seeds, seeds.size(), test_device(),
-                       {define});
+    return run_bounces(chapter, {.material = white_material()}, {0, 0}, seeds, seeds.size(), test_device(), {define});
 }
 
 }  // namespace lab

@@ -38,12 +38,8 @@ bool has_option(const std::string& chapter, const std::string& option) {
 bool splits_paths(const std::string& chapter) { return has_option(chapter, "--splitting-factor"); }
 bool has_roulette(const std::string& chapter) { return has_option(chapter, "--survival-cap"); }
 bool is_pseudorandom(const std::string& chapter) { return !load_chapter(chapter).low_discrepancy; }
-bool weighs_by_albedo(const std::string& chapter) {
-    return expectations(chapter).value("weighs_by_albedo", false);
-}
-bool repeats_another(const std::string& chapter) {
-    return expectations(chapter).value("repeats_another", false);
-}
+bool weighs_by_albedo(const std::string& chapter) { return expectations(chapter).value("weighs_by_albedo", false); }
+bool repeats_another(const std::string& chapter) { return expectations(chapter).value("repeats_another", false); }
 
 uint32_t chapter_seed(const std::string& chapter) {
     const auto place = std::ranges::find(all_chapters, chapter) - all_chapters.begin();
@@ -70,8 +66,7 @@ std::vector<Repetition> repetitions() {
     std::vector<Repetition> all;
     for (const std::string& chapter : all_chapters)
         if (const auto said = expectations(chapter); said.contains("repeats"))
-            all.push_back(
-                {chapter, chapter_named(said["repeats"].at("chapter")), said["repeats"].at("without")});
+            all.push_back({chapter, chapter_named(said["repeats"].at("chapter")), said["repeats"].at("without")});
     return all;
 }
 

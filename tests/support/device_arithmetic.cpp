@@ -53,38 +53,32 @@ double pow_allowed(double x, double y, double exact) {
 }
 
 const Function functions[] = {
-    {"sin(x)", "sin(x)", "x in [-pi, pi]", "2^-11 = 4.9e-4 absolute",
-     [](double x, double) { return std::sin(x); }, angle, sine_allowed},
-    {"cos(x)", "cos(x)", "x in [-pi, pi]", "2^-11 = 4.9e-4 absolute",
-     [](double x, double) { return std::cos(x); }, angle, sine_allowed},
+    {"sin(x)", "sin(x)", "x in [-pi, pi]", "2^-11 = 4.9e-4 absolute", [](double x, double) { return std::sin(x); }, angle,
+     sine_allowed},
+    {"cos(x)", "cos(x)", "x in [-pi, pi]", "2^-11 = 4.9e-4 absolute", [](double x, double) { return std::cos(x); }, angle,
+     sine_allowed},
     {"sqrt(x)", "sqrt(x)", "x in [1e-12, 1e12]", "that of 1 / inversesqrt: 6.5 ulp",
-     [](double x, double) { return std::sqrt(x); },
-     [](double u, double) { return vec2(log_uniform(u, 1e-12, 1e12), 0); },
+     [](double x, double) { return std::sqrt(x); }, [](double u, double) { return vec2(log_uniform(u, 1e-12, 1e12), 0); },
      [](double, double, double exact) { return 6.5 * ulp_of(exact); }, true},
-    {"inversesqrt(x)", "inversesqrt(x)", "x in [1e-12, 1e12]", "2 ulp",
-     [](double x, double) { return 1 / std::sqrt(x); },
+    {"inversesqrt(x)", "inversesqrt(x)", "x in [1e-12, 1e12]", "2 ulp", [](double x, double) { return 1 / std::sqrt(x); },
      [](double u, double) { return vec2(log_uniform(u, 1e-12, 1e12), 0); },
      [](double, double, double exact) { return 2 * ulp_of(exact); }, true},
     {"x / y", "((x) / (y))", "x, y in [1e-12, 1e12]", "2.5 ulp", [](double x, double y) { return x / y; },
      [](double u, double v) { return vec2(log_uniform(u, 1e-12, 1e12), log_uniform(v, 1e-12, 1e12)); },
      [](double, double, double exact) { return 2.5 * ulp_of(exact); }, true},
-    {"atan(x, y)", "atan(x, y)", "all directions (light probe)", "4096 ulp",
-     [](double x, double y) { return std::atan2(x, y); },
+    {"atan(x, y)", "atan(x, y)", "all directions (light probe)", "4096 ulp", [](double x, double y) { return std::atan2(x, y); },
      [](double u, double v) {
          const double length = log_uniform(v, 1e-6, 1), phi = (2 * u - 1) * pi;
          return vec2(length * std::sin(phi), length * std::cos(phi));
      },
      [](double, double, double exact) { return 4096 * ulp_of(exact); }},
     {"acos(x)", "acos(x)", "x in [-1, 1] (light probe)", "-", [](double x, double) { return std::acos(x); },
-     [](double u, double v) { return vec2(v < 0.5 ? 2 * u - 1 : 1 - log_uniform(u, 1e-7, 1), 0); },
-     nothing_allowed},
-    {"exp(x)", "exp(x)", "x in [-80, -1e-6] (absorption)", "3 + 2 |x| ulp",
-     [](double x, double) { return std::exp(x); },
+     [](double u, double v) { return vec2(v < 0.5 ? 2 * u - 1 : 1 - log_uniform(u, 1e-7, 1), 0); }, nothing_allowed},
+    {"exp(x)", "exp(x)", "x in [-80, -1e-6] (absorption)", "3 + 2 |x| ulp", [](double x, double) { return std::exp(x); },
      [](double u, double) { return vec2(-log_uniform(u, 1e-6, 80), 0); },
      [](double x, double, double exact) { return (3 + 2 * std::abs(x)) * ulp_of(exact); }},
     {"pow(x, 2.4)", "pow(x, 2.4)", "x in [0.09, 1] (textures)", "that of exp2(y log2(x))",
-     [](double x, double) { return std::pow(x, double{2.4f}); },
-     [](double u, double) { return vec2(0.09 + 0.91 * u, 0); },
+     [](double x, double) { return std::pow(x, double{2.4f}); }, [](double u, double) { return vec2(0.09 + 0.91 * u, 0); },
      [](double x, double, double exact) { return pow_allowed(x, double{2.4f}, exact); }},
     {"pow(x, y)", "pow(x, y)", "y in [1, 1000], x^y in [1e-12, 1] (Phong lobe)", "that of exp2(y log2(x))",
      [](double x, double y) { return std::pow(x, y); },
@@ -95,8 +89,7 @@ const Function functions[] = {
      pow_allowed},
     {"normalize(x, y, 1).x", "normalize(vec3(x, y, 1.0))[0]", "|x|, |y| in [1e-3, 1e3]", "-",
      [](double x, double y) { return x / std::sqrt(x * x + y * y + 1); },
-     [](double u, double v) { return vec2(log_uniform(u, 1e-3, 1e3), log_uniform(v, 1e-3, 1e3)); },
-     nothing_allowed},
+     [](double u, double v) { return vec2(log_uniform(u, 1e-3, 1e3), log_uniform(v, 1e-3, 1e3)); }, nothing_allowed},
 };
 
 FunctionError measure(const Device& device, const Function& function, size_t count) {
@@ -105,10 +98,8 @@ FunctionError measure(const Device& device, const Function& function, size_t cou
     std::vector<vec2> arguments;
     for (const double u : {0.0, 0.5, 1.0})
         for (const double v : {0.0, 0.25, 1.0}) arguments.push_back(function.arguments(u, v));
-    while (arguments.size() < count)
-        arguments.push_back(function.arguments(uniform(generator), uniform(generator)));
-    const TestShader shader{.name = "device_arithmetic.comp",
-                            .defines = {std::string("FUNCTION(x, y) ") + function.glsl}};
+    while (arguments.size() < count) arguments.push_back(function.arguments(uniform(generator), uniform(generator)));
+    const TestShader shader{.name = "device_arithmetic.comp", .defines = {std::string("FUNCTION(x, y) ") + function.glsl}};
     const auto results = run_shader<float>(shader, arguments, device);
     FunctionError worst{function.name, function.range, function.guaranteed};
     double largest = 0;
@@ -129,8 +120,7 @@ std::vector<std::array<double, 2>> random_numbers() {
     constexpr double below_one = 1 - 0x1p-24;
     std::vector<std::array<double, 2>> numbers;
     for (const double x : {0.0, 0x1p-24, 0.25, 0.5, 0.75, below_one})
-        for (const double y : {0.0, 0x1p-24, 0x1p-12, 0.5, 1 - 0x1p-12, 1 - 0x1p-23})
-            numbers.push_back({x, y});
+        for (const double y : {0.0, 0x1p-24, 0x1p-12, 0.5, 1 - 0x1p-12, 1 - 0x1p-23}) numbers.push_back({x, y});
     for (int x = 0; x < 512; ++x)
         for (int y = 0; y < 512; ++y) numbers.push_back({(x + 0.5) / 512, (y + 0.5) / 512});
     return numbers;
@@ -142,14 +132,12 @@ dvec3 direction(double cos_theta, double sin_theta, double phi) {
 
 double uniform_angles_error(const Device& device) {
     const auto numbers = random_numbers();
-    const auto bounces = bounces_at(chapter_named("uniform_sampling"),
-                                    {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers, device);
+    const auto bounces = bounces_at(chapter_named("uniform_sampling"), {{0, 0, 1}, {0, 0, 1}, white_material()}, numbers, device);
     double worst = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const double phi = 2 * pi * numbers[i][0] - pi, theta = 0.5 * pi * numbers[i][1];
         if (bounces[i].ray_count != 2) continue;  // dropped, as it lies along the surface
-        worst = std::max(worst, glm::distance(dvec3(bounces[i].direction),
-                                              direction(std::cos(theta), std::sin(theta), phi)));
+        worst = std::max(worst, glm::distance(dvec3(bounces[i].direction), direction(std::cos(theta), std::sin(theta), phi)));
     }
     return worst;
 }
@@ -161,8 +149,7 @@ double cosine_sampling_error(const Device& device) {
     double worst = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const double phi = 2 * pi * numbers[i].x - pi, y = numbers[i].y;
-        worst = std::max(worst,
-                         glm::distance(dvec3(directions[i]), direction(std::sqrt(1 - y), std::sqrt(y), phi)));
+        worst = std::max(worst, glm::distance(dvec3(directions[i]), direction(std::sqrt(1 - y), std::sqrt(y), phi)));
     }
     return worst;
 }
@@ -171,9 +158,7 @@ double light_point_error(const Device& device) {
     const LightTriangle light{.instance = 0, .triangle = 1, .threshold = 0, .alias = 0, .inverse_density = 1};
     const auto numbers = random_numbers();
     std::vector<std::byte> inputs;
-    const auto append = [&](std::span<const std::byte> bytes) {
-        inputs.insert(inputs.end(), bytes.begin(), bytes.end());
-    };
+    const auto append = [&](std::span<const std::byte> bytes) { inputs.insert(inputs.end(), bytes.begin(), bytes.end()); };
     append(std::as_bytes(std::span(&light, 1)));
     // The choice of the light takes a step of the generator.
     for (const auto& u : numbers) {
@@ -181,8 +166,7 @@ double light_point_error(const Device& device) {
         append(std::as_bytes(std::span(state)));
     }
     TestShader shader{.name = "light_point.comp"};
-    shader.named_includes = {
-        {"path_trace.glsl", project_folder() / "chapters/03_next_event_estimation/path_trace.glsl"}};
+    shader.named_includes = {{"path_trace.glsl", project_folder() / "chapters/03_next_event_estimation/path_trace.glsl"}};
     std::vector<vec2> points(numbers.size());
     run_shader(shader, points.size(), std::as_writable_bytes(std::span(points)), inputs, device);
     double worst = 0;
@@ -207,8 +191,7 @@ HitPoints trace(const Device& device, const Scene& scene, Backend backend) {
     for (uint32_t which = 0; which < std::size(results); ++which) {
         RenderParameters parameters = default_parameters(scene, uvec2(256));
         parameters.max_path_length = which;
-        Renderer renderer(device, *structure, {project_folder() / "tests/shaders/hit_point.glsl"},
-                          parameters);
+        Renderer renderer(device, *structure, {project_folder() / "tests/shaders/hit_point.glsl"}, parameters);
         while (renderer.advance(1)) {
         }
         for (const FilmPixel& pixel : renderer.film().read().pixels) results[which]->push_back(pixel.sum);
@@ -216,8 +199,7 @@ HitPoints trace(const Device& device, const Scene& scene, Backend backend) {
     return points;
 }
 
-HitPointError hit_point_error(const Device& device, const std::string& name, const Scene& scene,
-                              Backend backend) {
+HitPointError hit_point_error(const Device& device, const std::string& name, const Scene& scene, Backend backend) {
     const HitPoints points = trace(device, scene, backend);
     HitPointError worst{backend, name};
     const dvec3 origin(scene.camera.position);
@@ -267,13 +249,11 @@ std::vector<HitPointError> measure_hit_points(const Device& device) {
     const Scene box = load_shipped_scene("cornell_box.json");
     const mat3 turn{{0.36f, 0.48f, -0.8f}, {-0.8f, 0.6f, 0}, {0.48f, 0.64f, 0.6f}};
     const std::pair<const char*, Scene> scenes[] = {
-        {"Cornell box", box},
-        {"turned, three times as large, 30 away", placed(box, 3.0f * turn, {10, -20, 20})}};
+        {"Cornell box", box}, {"turned, three times as large, 30 away", placed(box, 3.0f * turn, {10, -20, 20})}};
     std::vector<HitPointError> errors;
     for (const Backend backend : all_backends)
         for (const auto& [name, scene] : scenes)
-            if (device.description().supports(backend))
-                errors.push_back(hit_point_error(device, name, scene, backend));
+            if (device.description().supports(backend)) errors.push_back(hit_point_error(device, name, scene, backend));
     return errors;
 }
 
@@ -282,15 +262,13 @@ const Arithmetic& test_arithmetic() {
         // Every test program pays for this; tolerances are multiples of these errors.
         constexpr size_t count = 1 << 15;
         const auto error_of = [errors = measure_functions(test_device(), count)](const std::string& name) {
-            return *std::find_if(errors.begin(), errors.end(),
-                                 [&](const FunctionError& error) { return error.name == name; });
+            return *std::find_if(errors.begin(), errors.end(), [&](const FunctionError& error) { return error.name == name; });
         };
-        return Arithmetic{.sine = std::max(*error_of("sin(x)").absolute, *error_of("cos(x)").absolute),
-                          .decoding = error_of("pow(x, 2.4)").ulps * 0x1p-23,
-                          .phong_lobe = error_of("pow(x, y)").ulps * 0x1p-23,
-                          .division = std::max({error_of("x / y").ulps, error_of("sqrt(x)").ulps,
-                                                error_of("inversesqrt(x)").ulps}) *
-                                      0x1p-23};
+        return Arithmetic{
+            .sine = std::max(*error_of("sin(x)").absolute, *error_of("cos(x)").absolute),
+            .decoding = error_of("pow(x, 2.4)").ulps * 0x1p-23,
+            .phong_lobe = error_of("pow(x, y)").ulps * 0x1p-23,
+            .division = std::max({error_of("x / y").ulps, error_of("sqrt(x)").ulps, error_of("inversesqrt(x)").ulps}) * 0x1p-23};
     }();
     return measured;
 }

@@ -12,8 +12,8 @@ namespace lab {
 // The largest errors of a function.
 struct FunctionError {
     std::string name;
-    std::string range;       // of the arguments
-    std::string guaranteed;  // by Vulkan, "Precision and Operation of SPIR-V Instructions"; "-": nothing
+    std::string range;                              // of the arguments
+    std::string guaranteed;                         // by Vulkan, "Precision and Operation of SPIR-V Instructions"; "-": nothing
     std::optional<double> absolute = std::nullopt;  // not where results of all sizes occur
     double ulps = 0;                                // in units in the last place of the exact value
     double share_of_guarantee = 0;                  // above 1 the device breaks it; 0 where there is none
@@ -33,9 +33,8 @@ std::vector<SamplerError> measure_samplers(const Device& device);
 struct HitPointError {
     Backend backend;
     std::string scene;
-    double off_plane =
-        0;               // distance to the triangle's plane, in units of the offset of rays that start there
-    double off_ray = 0;  // distance to the ray, relative to its length
+    double off_plane = 0;  // distance to the triangle's plane, in units of the offset of rays that start there
+    double off_ray = 0;    // distance to the ray, relative to its length
 };
 std::vector<HitPointError> measure_hit_points(const Device& device);
 

@@ -12,10 +12,8 @@ using glm::dvec3;
 using std::numbers::pi;
 
 const std::vector<dvec3>& test_normals() {
-    static const std::vector<dvec3> normals{{0, 0, 1},
-                                            {0, 0, -1},
-                                            glm::normalize(dvec3(0.3, -0.8, 0.52)),
-                                            glm::normalize(dvec3(-0.00019813581, -0.00008946839, -1))};
+    static const std::vector<dvec3> normals{
+        {0, 0, 1}, {0, 0, -1}, glm::normalize(dvec3(0.3, -0.8, 0.52)), glm::normalize(dvec3(-0.00019813581, -0.00008946839, -1))};
     return normals;
 }
 
@@ -30,8 +28,7 @@ Angles Frame::angles(const vec3& direction) const {
     return {glm::dot(d, normal_), std::hypot(x, y), std::atan2(y, x)};
 }
 
-std::vector<uint64_t> histogram(const std::vector<Bounce>& bounces, const Frame& frame, size_t rows,
-                                size_t columns) {
+std::vector<uint64_t> histogram(const std::vector<Bounce>& bounces, const Frame& frame, size_t rows, size_t columns) {
     std::vector<uint64_t> counts(rows * columns);
     size_t dropped = 0;
     for (const Bounce& bounce : bounces) {

@@ -27,8 +27,7 @@ class Frame {
 // Histogram over rows of equal size in cos θ, each with columns of equal size in φ. Of a million directions
 // at most ten may be dropped: those whose cosine is so small that rounding errors bring them below the
 // horizon.
-std::vector<uint64_t> histogram(const std::vector<Bounce>& bounces, const Frame& frame, size_t rows,
-                                size_t columns);
+std::vector<uint64_t> histogram(const std::vector<Bounce>& bounces, const Frame& frame, size_t rows, size_t columns);
 
 // Probability of each cell of such a histogram: `integral(c)` is the probability of cos θ < c.
 std::vector<double> cell_probabilities(size_t rows, size_t columns, double (*integral)(double cos_theta));

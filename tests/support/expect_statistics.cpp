@@ -14,8 +14,8 @@ static void record_p_value(const std::string& what, double p_value) {
     const char* file = std::getenv("LAB_TEST_P_VALUES");
     if (!file) return;
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::ofstream(file, std::ios::app)
-        << test->test_suite_name() << '.' << test->name() << '\t' << what << '\t' << p_value << '\n';
+    std::ofstream(file, std::ios::app) << test->test_suite_name() << '.' << test->name() << '\t' << what << '\t' << p_value
+                                       << '\n';
 }
 
 // Makes the largest error that may go unnoticed part of the test's report.
@@ -31,8 +31,8 @@ static void record_smallest_error(double error) {
 // Numbers that fit better than all but this share of independent ones do are not independent.
 static constexpr double too_good = 1 - 1e-9;
 
-void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences,
-                          double largest_difference, size_t comparisons) {
+void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences, double largest_difference,
+                          size_t comparisons) {
     const double level = sidak(significance, relative_differences.size() * comparisons);
     Difference worst;
     double smallest_p_value = 1, weakest = 0;
@@ -53,23 +53,23 @@ void expect_no_difference(const std::string& what, std::span<const Difference> r
     EXPECT_LT(weakest, largest_difference) << what << ": the test is too weak, take more samples";
 }
 
-void expect_mean(const std::string& what, const MeanEstimate& estimate, double expected,
-                 double largest_relative_bias, size_t comparisons) {
+void expect_mean(const std::string& what, const MeanEstimate& estimate, double expected, double largest_relative_bias,
+                 size_t comparisons) {
     const double level = sidak(significance, comparisons);
     const double bias = smallest_detectable_bias(estimate.standard_error, level, power) / std::abs(expected);
     const double rounding = rounding_error * std::abs(expected);
     const double z = (estimate.mean - expected) / std::max(estimate.standard_error, rounding);
     const double p_value = normal_p_value(z);
     if (estimate.standard_error > 2 * rounding) record_p_value(what, p_value);
-    std::printf("  %s: %.6f, expected %.6f, p = %.2g; finds a bias of %.3f %%\n", what.c_str(), estimate.mean,
-                expected, p_value, 100 * bias);
+    std::printf("  %s: %.6f, expected %.6f, p = %.2g; finds a bias of %.3f %%\n", what.c_str(), estimate.mean, expected, p_value,
+                100 * bias);
     record_smallest_error(bias);
     EXPECT_GT(p_value, level) << what << " is biased by " << 100 * (estimate.mean / expected - 1) << " %";
     EXPECT_LT(bias, largest_relative_bias) << what << ": the test is too weak, take more samples";
 }
 
-void expect_distribution(const std::string& what, std::span<const uint64_t> counts,
-                         std::span<const double> probabilities, double largest_error) {
+void expect_distribution(const std::string& what, std::span<const uint64_t> counts, std::span<const double> probabilities,
+                         double largest_error) {
     const ChiSquareTest test = chi_square_test(counts, probabilities);
     const double error = test.smallest_detectable_error(significance, power);
     record_p_value(what, test.p_value);
@@ -87,8 +87,8 @@ void expect_uniform(const std::string& what, const std::vector<double>& numbers,
     const double p_value = kolmogorov_smirnov_p_value(numbers);
     record_p_value(what, p_value);
     const double distance = kolmogorov_smirnov_detectable_distance(numbers.size(), significance, power);
-    std::printf("  %s: Kolmogorov-Smirnov p = %.2g; finds a distribution that is off by %.3f %%\n",
-                what.c_str(), p_value, 100 * distance);
+    std::printf("  %s: Kolmogorov-Smirnov p = %.2g; finds a distribution that is off by %.3f %%\n", what.c_str(), p_value,
+                100 * distance);
     record_smallest_error(distance);
     EXPECT_GT(p_value, significance) << what << " is not uniform";
     EXPECT_LT(distance, largest_distance) << what << ": the test is too weak, take more of them";

@@ -18,18 +18,18 @@ inline constexpr double power = 0.99;
 
 // The mean is `expected`, and a bias of `largest_relative_bias` times `expected` would have been found.
 // `comparisons` of one test share its significance.
-void expect_mean(const std::string& what, const MeanEstimate& estimate, double expected,
-                 double largest_relative_bias, size_t comparisons = 1);
+void expect_mean(const std::string& what, const MeanEstimate& estimate, double expected, double largest_relative_bias,
+                 size_t comparisons = 1);
 
 // All relative differences are 0, and in each of them `largest_difference` would have been found. They share
 // the significance of this test, and with `comparisons` tests like it.
-void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences,
-                          double largest_difference, size_t comparisons = 1);
+void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences, double largest_difference,
+                          size_t comparisons = 1);
 
 // The counts follow the probabilities, and a relative error of the density by `largest_error` (root mean
 // square) would have been found.
-void expect_distribution(const std::string& what, std::span<const uint64_t> counts,
-                         std::span<const double> probabilities, double largest_error);
+void expect_distribution(const std::string& what, std::span<const uint64_t> counts, std::span<const double> probabilities,
+                         double largest_error);
 
 // The numbers are uniform in [0,1), and a distribution function that is off by `largest_distance` would have
 // been found.

@@ -12,8 +12,7 @@ namespace lab {
 
 void write_failure(const std::string& what, const Image& image, const Image& reference, const ZMap& map) {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    std::string name =
-        std::string(test.test_suite_name()) + "." + test.name() + (what.empty() ? "" : "." + what);
+    std::string name = std::string(test.test_suite_name()) + "." + test.name() + (what.empty() ? "" : "." + what);
     for (char& c : name)
         if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.') c = '_';
     const auto folder = project_folder() / "output" / "failed" / name;
@@ -32,8 +31,6 @@ void write_failure(const std::string& what, const Image& image, const Image& ref
     std::printf("  see %s\n", folder.string().c_str());
 }
 
-int failed_expectations() {
-    return testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count();
-}
+int failed_expectations() { return testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count(); }
 
 }  // namespace lab

@@ -18,12 +18,10 @@ uint32_t test_seed(uint32_t seed) {
     return seed + (text ? 1000003 * static_cast<uint32_t>(std::strtoul(text, nullptr, 10)) : 0);
 }
 
-std::string instance_name(const std::string& name, Run run) {
-    return name + (run == Run::with_all ? "_all" : "");
-}
+std::string instance_name(const std::string& name, Run run) { return name + (run == Run::with_all ? "_all" : ""); }
 
-void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
-                std::span<const std::byte> inputs, const Device& device) {
+void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results, std::span<const std::byte> inputs,
+                const Device& device) {
     Buffer result_buffer(device, results.size(), vk::BufferUsageFlagBits::eStorageBuffer);
     const Buffer input_buffer(device, inputs, vk::BufferUsageFlagBits::eStorageBuffer);
     const std::vector<Binding> bindings{storage_binding(0, result_buffer), storage_binding(1, input_buffer)};

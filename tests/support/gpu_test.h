@@ -33,17 +33,15 @@ struct TestShader {
 
 // Runs at least `invocations` invocations in groups of 128. `results` (binding 0) and `inputs` (binding 1)
 // are storage buffers; invocations beyond the results have to end at once.
-void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results,
-                std::span<const std::byte> inputs, const Device& device = test_device());
+void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results, std::span<const std::byte> inputs,
+                const Device& device = test_device());
 
 // The results of an invocation for each input. The shader declares, in scalar layout, arrays `results` and
 // `inputs` of types that match.
 template <typename Result, typename Input>
-std::vector<Result> run_shader(const TestShader& shader, const std::vector<Input>& inputs,
-                               const Device& device = test_device()) {
+std::vector<Result> run_shader(const TestShader& shader, const std::vector<Input>& inputs, const Device& device = test_device()) {
     std::vector<Result> results(inputs.size());
-    run_shader(shader, inputs.size(), std::as_writable_bytes(std::span(results)),
-               std::as_bytes(std::span(inputs)), device);
+    run_shader(shader, inputs.size(), std::as_writable_bytes(std::span(results)), std::as_bytes(std::span(inputs)), device);
     return results;
 }
 

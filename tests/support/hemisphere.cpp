@@ -4,10 +4,8 @@
 
 namespace lab {
 
-std::vector<vec3> sample_hemisphere(const std::string& chapter, const std::vector<vec2>& numbers,
-                                    const Device& device) {
-    const TestShader shader{.name = "hemisphere.comp",
-                            .named_includes = named_includes(chapter_estimator(chapter))};
+std::vector<vec3> sample_hemisphere(const std::string& chapter, const std::vector<vec2>& numbers, const Device& device) {
+    const TestShader shader{.name = "hemisphere.comp", .named_includes = named_includes(chapter_estimator(chapter))};
     return run_shader<vec3>(shader, numbers, device);
 }
 

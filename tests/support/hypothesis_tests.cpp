@@ -78,9 +78,7 @@ double smallest_detectable_bias(double standard_error, double significance, doub
     return (-normal_quantile(0.5 * significance) + normal_quantile(power)) * standard_error;
 }
 
-double chi_square_p_value(double x, double degrees_of_freedom) {
-    return upper_gamma(0.5 * degrees_of_freedom, 0.5 * x);
-}
+double chi_square_p_value(double x, double degrees_of_freedom) { return upper_gamma(0.5 * degrees_of_freedom, 0.5 * x); }
 
 ChiSquareTest chi_square_test(std::span<const uint64_t> counts, std::span<const double> probabilities) {
     ChiSquareTest test;
@@ -92,8 +90,7 @@ ChiSquareTest chi_square_test(std::span<const uint64_t> counts, std::span<const 
         ++cells;
     };
     for (size_t i = 0; i < counts.size(); ++i) {
-        const double count = static_cast<double>(counts[i]),
-                     expectation = test.sample_count * probabilities[i];
+        const double count = static_cast<double>(counts[i]), expectation = test.sample_count * probabilities[i];
         if (expectation >= smallest_expectation) {
             add_cell(count, expectation);
         } else {
@@ -104,17 +101,14 @@ ChiSquareTest chi_square_test(std::span<const uint64_t> counts, std::span<const 
     }
     if (pooled_expectation > 0) add_cell(pooled_count, pooled_expectation);
     test.degrees_of_freedom = cells - 1;
-    test.p_value =
-        std::isfinite(test.statistic) ? chi_square_p_value(test.statistic, test.degrees_of_freedom) : 0;
+    test.p_value = std::isfinite(test.statistic) ? chi_square_p_value(test.statistic, test.degrees_of_freedom) : 0;
     return test;
 }
 
 double ChiSquareTest::smallest_detectable_error(double significance, double power) const {
-    const double critical =
-        smallest_with([&](double x) { return chi_square_p_value(x, degrees_of_freedom) <= significance; });
-    const double noncentrality = smallest_with([&](double lambda) {
-        return noncentral_chi_square_p_value(critical, degrees_of_freedom, lambda) >= power;
-    });
+    const double critical = smallest_with([&](double x) { return chi_square_p_value(x, degrees_of_freedom) <= significance; });
+    const double noncentrality = smallest_with(
+        [&](double lambda) { return noncentral_chi_square_p_value(critical, degrees_of_freedom, lambda) >= power; });
     return std::sqrt(noncentrality / sample_count);
 }
 

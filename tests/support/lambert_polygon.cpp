@@ -13,8 +13,7 @@ static std::vector<dvec3> clip_at_horizon(const std::vector<dvec3>& corners, con
         const dvec3 a = corners[i], b = corners[(i + 1) % corners.size()];
         const double height_a = glm::dot(normal, a), height_b = glm::dot(normal, b);
         if (height_a > 0) clipped.push_back(a);
-        if ((height_a > 0) != (height_b > 0))
-            clipped.push_back(a + height_a / (height_a - height_b) * (b - a));
+        if ((height_a > 0) != (height_b > 0)) clipped.push_back(a + height_a / (height_a - height_b) * (b - a));
     }
     return clipped;
 }

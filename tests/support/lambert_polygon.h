@@ -9,7 +9,6 @@ namespace lab {
 // the radiance 1 from its front, where the corners run counter-clockwise, and nothing from its back. What
 // lies below the horizon is cut off. Relative error about 1e-10, also for polygons of 10^-6 times their
 // distance. Lambert, "Photometria", 1760.
-double polygon_irradiance(const std::vector<glm::dvec3>& corners, const glm::dvec3& point,
-                          const glm::dvec3& normal);
+double polygon_irradiance(const std::vector<glm::dvec3>& corners, const glm::dvec3& point, const glm::dvec3& normal);
 
 }  // namespace lab

@@ -52,13 +52,10 @@ RandomState pixel_and_sample(RandomState start_state, RandomState key) {
     return previous_state({state[0] ^ key[0], state[1] ^ key[1]});
 }
 
-std::array<double, 2> numbers_of_state(RandomState state) {
-    return {(state[0] >> 8) / resolution, (state[1] >> 8) / resolution};
-}
+std::array<double, 2> numbers_of_state(RandomState state) { return {(state[0] >> 8) / resolution, (state[1] >> 8) / resolution}; }
 
 RandomState state_before(std::array<double, 2> u) {
-    return previous_state(
-        {static_cast<uint32_t>(u[0] * resolution) << 8, static_cast<uint32_t>(u[1] * resolution) << 8});
+    return previous_state({static_cast<uint32_t>(u[0] * resolution) << 8, static_cast<uint32_t>(u[1] * resolution) << 8});
 }
 
 RandomState state_before(uint64_t bits) {

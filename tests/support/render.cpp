@@ -9,9 +9,7 @@
 #include "support/gpu_test.h"
 
 namespace lab {
-Scene load_shipped_scene(const std::string& file) {
-    return load_scene(project_folder() / "assets" / "scenes" / file);
-}
+Scene load_shipped_scene(const std::string& file) { return load_scene(project_folder() / "assets" / "scenes" / file); }
 
 Estimator chapter_estimator(const std::string& chapter) {
     const Chapter own = load_chapter(chapter);
@@ -20,14 +18,11 @@ Estimator chapter_estimator(const std::string& chapter) {
     return estimator_of(tested.title == own.title ? tested : own);
 }
 
-Estimator every_hit_estimator() {
-    return {project_folder() / "chapters/04_splitting/solutions/split_every_hit.glsl"};
-}
+Estimator every_hit_estimator() { return {project_folder() / "chapters/04_splitting/solutions/split_every_hit.glsl"}; }
 
 Estimator view_estimator(const std::string& view, const std::string& chapter) {
     Options options;
-    options.image.view =
-        &*std::find_if(views().begin(), views().end(), [&](const View& v) { return v.name == view; });
+    options.image.view = &*std::find_if(views().begin(), views().end(), [&](const View& v) { return v.name == view; });
     return make_estimator(load_chapter(chapter), options);
 }
 
@@ -46,8 +41,7 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
 
 bool samples_probe(const Estimator& estimator) {
     const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
-    return std::filesystem::exists(folder / "chapter.json") &&
-           load_chapter(folder.filename().string()).light_probe_sampling;
+    return std::filesystem::exists(folder / "chapter.json") && load_chapter(folder.filename().string()).light_probe_sampling;
 }
 
 GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings) {
@@ -57,8 +51,8 @@ GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings) {
 SceneRenderer::SceneRenderer(const Scene& scene, const RenderSettings& settings)
     : gpu_scene_(make_gpu_scene(scene, settings)),
       acceleration_structure_(build_acceleration_structure(settings.backend, test_device(), gpu_scene_)),
-      renderer_(test_device(), *acceleration_structure_, settings.estimator, make_parameters(scene, settings),
-                {}, settings.max_film_window) {}
+      renderer_(test_device(), *acceleration_structure_, settings.estimator, make_parameters(scene, settings), {},
+                settings.max_film_window) {}
 
 Rendering SceneRenderer::render(const RenderSettings& settings) {
     renderer_.set_dispatch_seconds(settings.dispatch_seconds);
@@ -84,10 +78,8 @@ Batches render_batches(const Scene& scene, const RenderSettings& settings, uint3
         const auto [film, rays] = renderer.render(batch);
         auto& image = batches.images.emplace_back();
         for (const FilmPixel& pixel : film.pixels)
-            image.push_back((glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation)) /
-                            static_cast<double>(settings.samples));
-        batches.rays.push_back(static_cast<double>(rays) / settings.samples /
-                               static_cast<double>(image.size()));
+            image.push_back((glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation)) / static_cast<double>(settings.samples));
+        batches.rays.push_back(static_cast<double>(rays) / settings.samples / static_cast<double>(image.size()));
     }
     return batches;
 }
@@ -108,8 +100,7 @@ std::vector<double> Batches::means(int channel, uvec2 corner, uvec2 size) const 
     for (const auto& image : images) {
         double sum = 0;
         for (uint32_t y = corner.y; y < corner.y + size.y; ++y)
-            for (uint32_t x = corner.x; x < corner.x + size.x; ++x)
-                sum += image[size_t{y} * width + x][channel];
+            for (uint32_t x = corner.x; x < corner.x + size.x; ++x) sum += image[size_t{y} * width + x][channel];
         means.push_back(sum / size.x / size.y);
     }
     return means;
@@ -123,8 +114,7 @@ vec3 radiance_at(const FilmImage& film, uint32_t x, uint32_t y) {
 std::vector<double> pixel_means(const FilmImage& film, int channel) {
     std::vector<double> means;
     for (const FilmPixel& pixel : film.pixels)
-        means.push_back((double{pixel.sum[channel]} + double{pixel.compensation[channel]}) /
-                        pixel.sample_count);
+        means.push_back((double{pixel.sum[channel]} + double{pixel.compensation[channel]}) / pixel.sample_count);
     return means;
 }
 

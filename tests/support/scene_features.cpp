@@ -6,8 +6,7 @@ namespace {
 void add_vertex_normals(Scene& scene) {
     scene.normals.assign(scene.positions.size(), vec3(0));
     for (const uvec3& corners : scene.triangles) {
-        const vec3 a = scene.positions[corners.x], b = scene.positions[corners.y],
-                   c = scene.positions[corners.z];
+        const vec3 a = scene.positions[corners.x], b = scene.positions[corners.y], c = scene.positions[corners.z];
         for (int i = 0; i < 3; ++i) scene.normals[corners[i]] += glm::cross(b - a, c - a);
     }
     for (vec3& normal : scene.normals) normal = normal == vec3(0) ? vec3(0, 1, 0) : glm::normalize(normal);
@@ -17,8 +16,7 @@ void add_vertex_normals(Scene& scene) {
 void add_texture(Scene& scene) {
     constexpr uint32_t size = 64;
     scene.textures = {{size, size, std::vector<uint8_t>(4 * size * size, 255)}};
-    for (const vec3& position : scene.positions)
-        scene.texture_coordinates.emplace_back(position.x, position.y + position.z);
+    for (const vec3& position : scene.positions) scene.texture_coordinates.emplace_back(position.x, position.y + position.z);
     for (Material& material : scene.materials) material.albedo_texture = 0;
 }
 
@@ -57,15 +55,10 @@ void add_transform(Scene& scene) { scene.instances.front().object_to_world[3] +=
 }  // namespace
 
 const std::vector<SceneFeature>& all_scene_features() {
-    static const std::vector<SceneFeature> features{{"vertex normals", add_vertex_normals},
-                                                    {"textures", add_texture},
-                                                    {"sky", add_sky},
-                                                    {"light probe", add_light_probe},
-                                                    {"area lights", add_area_light},
-                                                    {"Phong lobe", add_phong_lobe},
-                                                    {"dielectrics", add_dielectric},
-                                                    {"absorption", add_absorption},
-                                                    {"transforms", add_transform}};
+    static const std::vector<SceneFeature> features{
+        {"vertex normals", add_vertex_normals}, {"textures", add_texture},       {"sky", add_sky},
+        {"light probe", add_light_probe},       {"area lights", add_area_light}, {"Phong lobe", add_phong_lobe},
+        {"dielectrics", add_dielectric},        {"absorption", add_absorption},  {"transforms", add_transform}};
     return features;
 }
 

@@ -15,8 +15,7 @@ void finish(Scene& scene) {
     const auto dielectric_count =
         std::count_if(scene.triangle_materials.begin(), scene.triangle_materials.end(),
                       [&](uint32_t material) { return scene.materials[material].refractive_index > 0; });
-    scene.meshes = {{"test mesh", 0, static_cast<uint32_t>(scene.triangles.size()),
-                     static_cast<uint32_t>(dielectric_count)}};
+    scene.meshes = {{"test mesh", 0, static_cast<uint32_t>(scene.triangles.size()), static_cast<uint32_t>(dielectric_count)}};
     set_transform(scene, mat4x3(1));
 }
 
@@ -35,9 +34,8 @@ Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>
     scene.materials = materials;
     for (const Quad& quad : quads) {
         const auto first = static_cast<uint32_t>(scene.positions.size());
-        scene.positions.insert(scene.positions.end(),
-                               {quad.corner, quad.corner + quad.edge_u,
-                                quad.corner + quad.edge_u + quad.edge_v, quad.corner + quad.edge_v});
+        scene.positions.insert(scene.positions.end(), {quad.corner, quad.corner + quad.edge_u,
+                                                       quad.corner + quad.edge_u + quad.edge_v, quad.corner + quad.edge_v});
         scene.triangles.emplace_back(first, first + 1, first + 2);
         scene.triangles.emplace_back(first, first + 2, first + 3);
         scene.triangle_materials.insert(scene.triangle_materials.end(), 2, quad.material);
@@ -62,8 +60,7 @@ std::vector<Quad> box_sides(const vec3& low, const vec3& high, uint32_t material
 
 Scene closed_box(const Material& material) {
     Scene scene = make_scene({material}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
-    scene.camera = {
-        .position = {0.3f, -0.2f, 0.5f}, .target = {-0.4f, 0.1f, -1}, .up = {0, 1, 0}, .vertical_fov = 70};
+    scene.camera = {.position = {0.3f, -0.2f, 0.5f}, .target = {-0.4f, 0.1f, -1}, .up = {0, 1, 0}, .vertical_fov = 70};
     return scene;
 }
 
@@ -89,9 +86,7 @@ Scene make_sphere(const Material& material, Facing facing) {
         scene.triangles.emplace_back(first, first + 1, first + 2);
     };
     // Three corners at a distance of one edge, 2, from each other are a face.
-    const auto are_neighbours = [&](size_t i, size_t j) {
-        return glm::distance(corners[i], corners[j]) < 2.1f;
-    };
+    const auto are_neighbours = [&](size_t i, size_t j) { return glm::distance(corners[i], corners[j]) < 2.1f; };
     for (size_t i = 0; i < corners.size(); ++i)
         for (size_t j = 0; j < i; ++j)
             for (size_t k = 0; k < j; ++k) {
@@ -120,8 +115,7 @@ TriangleMesh bumpy_sphere(uint32_t rings) {
             const double radius = 1 + 0.1 * std::sin(7 * theta) * std::sin(5 * phi);
             // All vertices of a pole in exactly the same place, else there is a hole of 10^-16 between them.
             const double sine = ring % rings == 0 ? 0 : std::sin(theta);
-            mesh.positions.emplace_back(radius * sine * std::cos(phi), radius * std::cos(theta),
-                                        radius * sine * std::sin(phi));
+            mesh.positions.emplace_back(radius * sine * std::cos(phi), radius * std::cos(theta), radius * sine * std::sin(phi));
         }
     for (uint32_t ring = 0; ring < rings; ++ring)
         for (uint32_t segment = 0; segment < rings; ++segment) {

@@ -63,15 +63,13 @@ Words optimise(const Words& words) {
 
 // The members that are read of a struct in the block at `binding`: through pointers that reach `depth`
 // indices deep, or of a copy of the whole struct.
-std::set<std::string> members_read(const std::string& text, const std::string& name, uint32_t binding,
-                                   int depth) {
+std::set<std::string> members_read(const std::string& text, const std::string& name, uint32_t binding, int depth) {
     std::map<std::string, std::string> members, constants;
     std::set<std::string> read;
     for (const auto& type : find_all(text, R"re(OpName (%\d+) ")re" + name + "\""))
         for (const auto& match : find_all(text, "OpMemberName " + type[0] + R"re( (\d+) "(\w+)")re"))
             members[match[0]] = match[1];
-    for (const auto& match : find_all(text, R"re((%\d+) = OpConstant %\d+ (\d+)\n)re"))
-        constants[match[0]] = match[1];
+    for (const auto& match : find_all(text, R"re((%\d+) = OpConstant %\d+ (\d+)\n)re")) constants[match[0]] = match[1];
     const std::string index = R"re( (%\d+))re";
     std::string indices;
     for (int i = 0; i < depth; ++i) indices += R"re( %\d+)re";

@@ -37,8 +37,7 @@ class ValidationListener : public testing::EmptyTestEventListener {
 class StoppingListener : public testing::EmptyTestEventListener {
     void OnTestPartResult(const testing::TestPartResult& result) override {
         const std::string message = result.message();
-        const bool is_verdict =
-            message.find("too weak") == message.npos && message.find("validation") == message.npos;
+        const bool is_verdict = message.find("too weak") == message.npos && message.find("validation") == message.npos;
         if (result.failed() && is_verdict) throw testing::AssertionException(result);
     }
 };
@@ -50,7 +49,6 @@ int main(int argument_count, char** arguments) {
     testing::InitGoogleTest(&argument_count, arguments);
     auto& listeners = testing::UnitTest::GetInstance()->listeners();
     listeners.Append(new lab::ValidationListener);
-    if (std::getenv("LAB_TEST_STOP_AT_VERDICT"))
-        listeners.Append(new lab::StoppingListener);  // has to be the last
+    if (std::getenv("LAB_TEST_STOP_AT_VERDICT")) listeners.Append(new lab::StoppingListener);  // has to be the last
     return RUN_ALL_TESTS();
 }

@@ -11,8 +11,8 @@ std::vector<vec3> albedo_at(Backend backend, const Texture& texture, const std::
                             const vec3& factor = vec3(1));
 
 // The same, taking the textures in turn from quad to quad.
-std::vector<vec3> albedo_at(Backend backend, const std::vector<Texture>& textures,
-                            const std::vector<vec2>& coordinates, const vec3& factor = vec3(1));
+std::vector<vec3> albedo_at(Backend backend, const std::vector<Texture>& textures, const std::vector<vec2>& coordinates,
+                            const vec3& factor = vec3(1));
 
 // Linear value of an encoded byte (IEC 61966-2-1), in double, and linear colour of a texel.
 double decode_srgb(uint8_t value);

@@ -26,8 +26,7 @@ template <typename Entry>
 std::vector<long double> probabilities_of(const std::vector<Entry>& entries) {
     std::vector<long double> probabilities(entries.size());
     for (uint64_t i = 0; i < entries.size(); ++i) {
-        const auto words =
-            static_cast<long double>(first_word_of(i + 1, entries.size()) - first_word_of(i, entries.size()));
+        const auto words = static_cast<long double>(first_word_of(i + 1, entries.size()) - first_word_of(i, entries.size()));
         const auto threshold = static_cast<long double>(entries[i].threshold);
         probabilities[i] += words * quantum * (threshold * quantum);
         probabilities[entries[i].alias] += words * quantum * (1 - threshold * quantum);
@@ -50,9 +49,7 @@ struct WeightKind {
     const char* name;
     double (*weight)(size_t i, size_t n, std::mt19937_64& random);
 };
-double log_uniform(std::mt19937_64& random) {
-    return std::pow(10, std::uniform_real_distribution<>(-12, 12)(random));
-}
+double log_uniform(std::mt19937_64& random) { return std::pow(10, std::uniform_real_distribution<>(-12, 12)(random)); }
 const WeightKind weight_kinds[] = {
     {"equal", [](size_t, size_t, std::mt19937_64&) { return 0.1; }},
     {"random", [](size_t, size_t, std::mt19937_64& random) { return log_uniform(random); }},
@@ -61,13 +58,11 @@ const WeightKind weight_kinds[] = {
          const double weight = log_uniform(random);
          return i % 3 == 1 ? 0.0 : weight;
      }},
-    {"only the last is positive",
-     [](size_t i, size_t n, std::mt19937_64&) { return i + 1 == n ? 1e-12 : 0.0; }},
+    {"only the last is positive", [](size_t i, size_t n, std::mt19937_64&) { return i + 1 == n ? 1e-12 : 0.0; }},
     {"the first is heavy", [](size_t i, size_t, std::mt19937_64&) { return i == 0 ? 1e12 : 1e-12; }},
     {"rising", [](size_t i, size_t, std::mt19937_64&) { return static_cast<double>(i); }},
     {"close to equal", [](size_t i, size_t, std::mt19937_64&) { return i % 2 == 0 ? 1.0 : 1 + 1e-9; }},
-    {"whose sum exceeds the range of double",
-     [](size_t i, size_t, std::mt19937_64&) { return i % 2 == 0 ? 1.5e308 : 1e308; }},
+    {"whose sum exceeds the range of double", [](size_t i, size_t, std::mt19937_64&) { return i % 2 == 0 ? 1.5e308 : 1e308; }},
 };
 
 TEST(AliasTable, HasTheProbabilitiesOfItsWeights) {
@@ -111,8 +106,7 @@ Scene make_lights(const std::vector<float>& sizes, const std::vector<vec3>& emis
     Scene scene;
     for (uint32_t i = 0; i < sizes.size(); ++i) {
         const vec3 corner(10.0f * static_cast<float>(i), 0, 0);
-        scene.positions.insert(scene.positions.end(),
-                               {corner, corner + vec3(sizes[i], 0, 0), corner + vec3(0, 2, 0)});
+        scene.positions.insert(scene.positions.end(), {corner, corner + vec3(sizes[i], 0, 0), corner + vec3(0, 2, 0)});
         scene.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
         scene.triangle_materials.push_back(i);
         scene.materials.emplace_back().emission = emissions[i];
@@ -132,15 +126,13 @@ double area_in_table(const std::vector<LightTriangle>& lights, size_t i) {
 }
 
 TEST(LightTable, ChoosesByAreaTimesLuminance) {
-    const Scene lights_of_one_mesh =
-        make_lights({1, 3, 1, 2, 0.5f}, {{1, 1, 1}, {0, 0, 0}, {0, 2, 0}, {4, 0, 1}, {0, 0, 1e-6f}});
+    const Scene lights_of_one_mesh = make_lights({1, 3, 1, 2, 0.5f}, {{1, 1, 1}, {0, 0, 0}, {0, 2, 0}, {4, 0, 1}, {0, 0, 1e-6f}});
     Scene scene = lights_of_one_mesh;
     add_instance(scene, mat4x3(1));
     const auto lights = build_light_table(scene).triangles;
     ASSERT_EQ(lights.size(), 4u);  // without the one that does not emit
     const std::vector<uint32_t> triangles{0, 2, 3, 4};
-    const std::vector<double> areas{1, 1, 2, 0.5},
-        powers{1, 0.7152 * 2, 2 * (0.2126 * 4 + 0.0722), 0.5 * 0.0722 * double{1e-6f}};
+    const std::vector<double> areas{1, 1, 2, 0.5}, powers{1, 0.7152 * 2, 2 * (0.2126 * 4 + 0.0722), 0.5 * 0.0722 * double{1e-6f}};
     const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
     const auto probabilities = probabilities_of(lights);
     for (size_t i = 0; i < lights.size(); ++i) {
@@ -168,8 +160,7 @@ TEST(LightTable, HasTheAreasOfInstancesInTheWorld) {
         EXPECT_EQ(lights[i].instance, i / 2);
         EXPECT_EQ(lights[i].triangle, i % 2);
         EXPECT_NEAR(area_in_table(lights, i) / area, 1, 1e-5) << "light " << i;
-        EXPECT_NEAR(static_cast<double>(probabilities[i]), area * (1 + i % 2) / (7 * (1 + 9 + 1 + 1e-12)),
-                    1e-6);
+        EXPECT_NEAR(static_cast<double>(probabilities[i]), area * (1 + i % 2) / (7 * (1 + 9 + 1 + 1e-12)), 1e-6);
     }
 }
 
@@ -178,8 +169,7 @@ TEST(LightTable, NeverChoosesDegenerateTriangles) {
     add_instance(scene, mat4x3(1));
     const auto lights = build_light_table(scene).triangles;
     const auto probabilities = probabilities_of(lights);
-    for (size_t i = 0; i < lights.size(); ++i)
-        EXPECT_EQ(probabilities[i], lights[i].triangle == 1 ? 1 : 0) << "light " << i;
+    for (size_t i = 0; i < lights.size(); ++i) EXPECT_EQ(probabilities[i], lights[i].triangle == 1 ? 1 : 0) << "light " << i;
 }
 
 TEST(LightTable, IsEmptyWithoutLights) {

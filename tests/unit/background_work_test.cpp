@@ -42,8 +42,7 @@ TEST(BackgroundWork, EveryErrorIsAMessageButTheLossOfTheDevice) {
     EXPECT_EQ(message_of(DeviceError("lacks it")), "lacks it");
     EXPECT_EQ(message_of(DeviceFailure("too large")), "too large");
     EXPECT_EQ(message_of(std::bad_alloc()), "out of memory: use a smaller scene or image");
-    EXPECT_NE(message_of(vk::OutOfHostMemoryError("vkCreateImage")).find("the device failed: vkCreateImage"),
-              std::string::npos);
+    EXPECT_NE(message_of(vk::OutOfHostMemoryError("vkCreateImage")).find("the device failed: vkCreateImage"), std::string::npos);
     EXPECT_THROW(message_of(vk::DeviceLostError("vkQueueSubmit")), vk::DeviceLostError);
 }
 

@@ -150,8 +150,7 @@ TEST(BvhBuilder, BoundsTheDepth) {
     for (size_t i = 0; i < 2400; ++i) {
         const float size = std::ldexp(1.0f, static_cast<int>(i % 240) - 120);
         const vec3 corner(size, size, size);
-        triangles.push_back(
-            make_triangle(corner, corner + vec3(size, 0, 0), corner + vec3(0, size, size), triangles.size()));
+        triangles.push_back(make_triangle(corner, corner + vec3(size, 0, 0), corner + vec3(0, size, size), triangles.size()));
     }
     const Bvh bvh = build_bvh(triangles);
     expect_valid(triangles, bvh);

@@ -26,8 +26,7 @@ inline std::vector<BvhTriangle> random_triangles(size_t count, float extent, flo
     std::vector<BvhTriangle> triangles;
     for (size_t i = 0; i < count; ++i) {
         const vec3 centre = point();
-        const vec3 a = centre + extent * point(), b = centre + extent * point(),
-                   c = centre + extent * point();
+        const vec3 a = centre + extent * point(), b = centre + extent * point(), c = centre + extent * point();
         triangles.push_back(make_triangle(scale * a, scale * b, scale * c, i));
     }
     return triangles;
@@ -43,10 +42,8 @@ inline std::vector<BvhTriangle> height_field(size_t width) {
     std::vector<BvhTriangle> triangles;
     for (size_t i = 0; i < width; ++i)
         for (size_t j = 0; j < width; ++j) {
-            triangles.push_back(
-                make_triangle(vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1), triangles.size()));
-            triangles.push_back(
-                make_triangle(vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j), triangles.size()));
+            triangles.push_back(make_triangle(vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1), triangles.size()));
+            triangles.push_back(make_triangle(vertex(i, j), vertex(i + 1, j + 1), vertex(i + 1, j), triangles.size()));
         }
     return triangles;
 }

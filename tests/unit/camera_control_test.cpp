@@ -86,14 +86,11 @@ TEST(CameraControl, TheCameraNeverReachesItsTarget) {
 }
 
 TEST(CameraControl, TheTextsAreExact) {
-    const CameraPose pose{.position = {1.0f / 3, -2e-7f, 12345.678f},
-                          .target = {0.1f, 0.2f, 0.3f},
-                          .up = {0, 0, 1},
-                          .vertical_fov = 37.7f};
-    EXPECT_EQ(
-        camera_flags(pose, '='),
-        "--camera-position=0.333333343,-2.00000002e-07,12345.6777 --camera-target=0.100000001,0.200000003,"
-        "0.300000012 --camera-up=0,0,1 --vertical-fov=37.7000008");
+    const CameraPose pose{
+        .position = {1.0f / 3, -2e-7f, 12345.678f}, .target = {0.1f, 0.2f, 0.3f}, .up = {0, 0, 1}, .vertical_fov = 37.7f};
+    EXPECT_EQ(camera_flags(pose, '='),
+              "--camera-position=0.333333343,-2.00000002e-07,12345.6777 --camera-target=0.100000001,0.200000003,"
+              "0.300000012 --camera-up=0,0,1 --vertical-fov=37.7000008");
     const auto json = nlohmann::json::parse("{" + camera_json(pose) + "}").at("camera");
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_EQ(json.at("position").at(static_cast<size_t>(axis)).get<float>(), pose.position[axis]);
@@ -104,8 +101,7 @@ TEST(CameraControl, TheTextsAreExact) {
 }
 
 TEST(FramePacing, AFastDeviceHoldsTheRateOfItsDisplay) {
-    for (const double period : {1 / 60.0, 1 / 144.0})
-        EXPECT_NEAR(rendering_seconds(period, 0.001) + 0.001, period, 1e-12);
+    for (const double period : {1 / 60.0, 1 / 144.0}) EXPECT_NEAR(rendering_seconds(period, 0.001) + 0.001, period, 1e-12);
 }
 
 TEST(FramePacing, ASlowInterfaceLeavesMostOfTheTimeButKeepsFiveFramesASecond) {

@@ -28,9 +28,7 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
         const Chapter chapter = load_chapter(name);
         const std::string text = shader_text(chapter);
         const auto mentions = [&](const std::string& word) { return text.find(word) != std::string::npos; };
-        const auto has_strategy = [&](Strategy strategy) {
-            return std::ranges::count(chapter.strategies, strategy) > 0;
-        };
+        const auto has_strategy = [&](Strategy strategy) { return std::ranges::count(chapter.strategies, strategy) > 0; };
         EXPECT_EQ(has_strategy(Strategy::light), mentions("STRATEGY_BOUNCES")) << name;
         EXPECT_EQ(has_strategy(Strategy::both), mentions("STRATEGY_LIGHT")) << name;
         EXPECT_EQ(chapter.light_probe_sampling, mentions("choose_probe_cell")) << name;

@@ -22,26 +22,23 @@ class CoincidentLights : public testing::Test {
     }
 
     // Meshes placed side by side in one scene.
-    Scene load(const std::string& entries) const {
-        return load_scene(folder.write("a.json", "{\"meshes\": [" + entries + "]}"));
-    }
+    Scene load(const std::string& entries) const { return load_scene(folder.write("a.json", "{\"meshes\": [" + entries + "]}")); }
 
     TestFolder folder;
 };
 
 TEST_F(CoincidentLights, ThatFaceTheSameWayAreTheFirst) {
-    const Scene scene = load_scene(
-        mesh("a.obj", "usemtl wall\nf 1 2 3\nusemtl lamp\nf 2 3 4\nusemtl bright\nf 3 1 2\nf 1 2 3\n"));
+    const Scene scene =
+        load_scene(mesh("a.obj", "usemtl wall\nf 1 2 3\nusemtl lamp\nf 2 3 4\nusemtl bright\nf 3 1 2\nf 1 2 3\n"));
     ASSERT_EQ(scene.triangles.size(), 1u);
     EXPECT_EQ(scene.materials.at(scene.triangle_materials.at(0)).emission, vec3(1));
     EXPECT_EQ(scene.meshes.at(0).triangle_count, 1u);
     EXPECT_TRUE(scene.double_sided.empty());
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_PRED_FORMAT2(
-        testing::IsSubstring,
-        "a.obj:7: lies in the same place as line 9, faces the same way, and one of them emits: "
-        "left out, as 2 others",
-        scene.warnings[0]);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring,
+                        "a.obj:7: lies in the same place as line 9, faces the same way, and one of them emits: "
+                        "left out, as 2 others",
+                        scene.warnings[0]);
 }
 
 TEST_F(CoincidentLights, ThatFaceOppositeWaysAreTwoSides) {
@@ -54,8 +51,7 @@ TEST_F(CoincidentLights, ThatFaceOppositeWaysAreTwoSides) {
     const uvec2 sides = scene.double_sided[0];
     EXPECT_EQ(sides.x + sides.y, 3u);
     const uvec3 a = scene.triangles[sides.x], b = scene.triangles[sides.y];
-    for (const auto& [i, k] : {std::pair{0, 0}, {1, 2}, {2, 1}})
-        EXPECT_EQ(scene.positions[a[i]], scene.positions[b[k]]);
+    for (const auto& [i, k] : {std::pair{0, 0}, {1, 2}, {2, 1}}) EXPECT_EQ(scene.positions[a[i]], scene.positions[b[k]]);
     EXPECT_EQ(build_light_table(scene).triangles.size(), 2u);
 }
 
@@ -73,21 +69,18 @@ TEST_F(CoincidentLights, OfDifferentInstancesAreNamed) {
     mesh("bright.obj", "usemtl bright\nf 1 2 3\n");
     mesh("wall.obj", "usemtl wall\nf 1 2 3\n");
     mesh("glass.obj", "usemtl lamp\nf 1 2 3\nusemtl glass\nf 3 2 1\n");
-    const std::string lamp = R"({"file": "lamp.obj"})", bright = R"({"file": "bright.obj"})",
-                      wall = R"({"file": "wall.obj"})", glass = R"({"file": "glass.obj"})",
-                      mirrored = R"({"file": "lamp.obj", "scale": [1, 1, -1]})",
+    const std::string lamp = R"({"file": "lamp.obj"})", bright = R"({"file": "bright.obj"})", wall = R"({"file": "wall.obj"})",
+                      glass = R"({"file": "glass.obj"})", mirrored = R"({"file": "lamp.obj", "scale": [1, 1, -1]})",
                       elsewhere = R"({"file": "bright.obj", "translation": [0, 0, 1]})";
     EXPECT_TRUE(load(lamp + "," + elsewhere + "," + lamp).warnings.empty()) << "two copies are the same";
     for (const std::string& other : {bright, wall, mirrored}) {
         const auto warnings = load(lamp + "," + elsewhere + "," + other).warnings;
         ASSERT_EQ(warnings.size(), 1u) << other;
-        EXPECT_PRED_FORMAT2(testing::IsSubstring, ".obj:7: emits, and lies in the same place as",
-                            warnings[0]);
+        EXPECT_PRED_FORMAT2(testing::IsSubstring, ".obj:7: emits, and lies in the same place as", warnings[0]);
         EXPECT_PRED_FORMAT2(testing::IsSubstring, "lamp.obj:7", warnings[0]);
         EXPECT_PRED_FORMAT2(testing::IsSubstring, ".obj:7, of another instance", warnings[0]);
     }
-    EXPECT_EQ(build_light_table(load(lamp + "," + mirrored)).triangles.size(), 2u)
-        << "they face opposite ways";
+    EXPECT_EQ(build_light_table(load(lamp + "," + mirrored)).triangles.size(), 2u) << "they face opposite ways";
     EXPECT_EQ(build_light_table(load(lamp + "," + lamp)).triangles.size(), 1u);
     const auto warnings = load(glass).warnings;
     ASSERT_EQ(warnings.size(), 2u) << "the other is that a sheet is no closed glass";

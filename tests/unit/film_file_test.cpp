@@ -65,8 +65,7 @@ TEST(FilmFile, KeepsAndShowsInvalidSamples) {
     EXPECT_EQ(film.pixels[0].invalid_count, 0u);
     EXPECT_EQ(film.pixels[1].invalid_count, 1u);
     EXPECT_EQ(film.pixels[1].sample_count, 10u);
-    for (const auto transform :
-         {DisplayTransform::exposure, DisplayTransform::maximum, DisplayTransform::as_is}) {
+    for (const auto transform : {DisplayTransform::exposure, DisplayTransform::maximum, DisplayTransform::as_is}) {
         const auto shown = to_display(film, transform, 0).pixels;
         const std::vector<uint8_t> magenta{255, 0, 255};
         EXPECT_NE(std::vector(shown.begin(), shown.begin() + 3), magenta);

@@ -26,24 +26,20 @@ TEST(HostileImages, AllocateNoMoreThanTheirSizeExplains) {
     const TestFolder folder;
     // Runs make a file small: 17 MB are enough for 16384 x 16384 pixels, which take 3 GiB.
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n";
-    EXPECT_USER_ERROR(read_radiance(folder.write("a.hdr", header + std::string(17 << 20, '\0'))),
-                      "its pixels need 3072 MiB");
+    EXPECT_USER_ERROR(read_radiance(folder.write("a.hdr", header + std::string(17 << 20, '\0'))), "its pixels need 3072 MiB");
 
     write_exr(folder / "small.exr", {{1, 1, {1, 1, 1}}, {}, {}});
     std::string exr = file_bytes(folder / "small.exr");
     const std::string name("dataWindow\0box2i\0\x10\0\0\0", 21);
     const uint32_t window[] = {0, 0, 16383, 16383};
-    exr.replace(exr.find(name) + name.size(), sizeof window, reinterpret_cast<const char*>(window),
-                sizeof window);
-    EXPECT_USER_ERROR(read_exr(folder.write("a.exr", exr + std::string(4 << 20, '\0'))),
-                      "its pixels need 3072 MiB");
+    exr.replace(exr.find(name) + name.size(), sizeof window, reinterpret_cast<const char*>(window), sizeof window);
+    EXPECT_USER_ERROR(read_exr(folder.write("a.exr", exr + std::string(4 << 20, '\0'))), "its pixels need 3072 MiB");
 
     // 16 bits a channel are 2 GiB before they become 8.
     write_png(folder / "small.png", picture(1, 1, 0));
     std::string png = file_bytes(folder / "small.png");
     png.replace(16, 9, std::string("\0\0\x40\0\0\0\x40\0\x10", 9));
-    EXPECT_USER_ERROR(read_texture(folder.write("a.png", png + std::string(40 << 10, '\0'))),
-                      "far more memory");
+    EXPECT_USER_ERROR(read_texture(folder.write("a.png", png + std::string(40 << 10, '\0'))), "far more memory");
 }
 
 TEST(HostileImages, MayNotBePassedOverManyTimes) {
@@ -57,9 +53,7 @@ TEST(HostileImages, MayNotBePassedOverManyTimes) {
 TEST(HostileMeshes, ReadAMaterialFileOnce) {
     const TestFolder folder;
     folder.write("a.mtl", "newmtl m\nunknown 1\n");
-    const auto load = [&](const std::string& text) {
-        return load_scene(folder.write("a.obj", text + triangle));
-    };
+    const auto load = [&](const std::string& text) { return load_scene(folder.write("a.obj", text + triangle)); };
     EXPECT_EQ(load(repeated("mtllib a.mtl\nmtllib ./a.mtl\n", 100)).warnings.size(),
               3u);  // grey faces and white sky, too
     std::string names, lines;
@@ -74,9 +68,8 @@ TEST(HostileMeshes, ReadAMaterialFileOnce) {
 // Needs 1.5 GB.
 TEST(HostileMeshes, AllocateNoMoreThanTheirSizeExplains_all) {
     const TestFolder folder;
-    EXPECT_USER_ERROR(
-        load_scene(folder.write("a.obj", triangle + repeated("f" + repeated(" 1", 256) + "\n", 135000))),
-        "far more memory");
+    EXPECT_USER_ERROR(load_scene(folder.write("a.obj", triangle + repeated("f" + repeated(" 1", 256) + "\n", 135000))),
+                      "far more memory");
 }
 
 // A scene may refer to files anywhere, as those in assets/scenes do, but only to regular files.
@@ -98,13 +91,10 @@ TEST(HostileNames, LeadToAnyRegularFile) {
         EXPECT_EQ(load_scene(scene).textures.at(0).pixels[0], 7) << "meshes " << path;
     }
     for (const std::string name : {".", "/"}) {
-        EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib " + name + "\n" + triangle)),
-                          "not a regular file");
+        EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib " + name + "\n" + triangle)), "not a regular file");
         folder.write("a.mtl", "newmtl m\nmap_Kd " + name + "\n");
-        EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib a.mtl\nusemtl m\n" + triangle)),
-                          "not a regular file");
-        EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\":[{\"file\":\"" + name + "\"}]}")),
-                          "not a regular file");
+        EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib a.mtl\nusemtl m\n" + triangle)), "not a regular file");
+        EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\":[{\"file\":\"" + name + "\"}]}")), "not a regular file");
     }
 }
 
@@ -118,8 +108,7 @@ TEST(HostileNames, AreSafeToPrint) {
     folder.write("a.mtl", "newmtl m\nmap_Kd " + name + "\n");
     EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib a.mtl\nusemtl m\n" + triangle)), "a?[2J");
     EXPECT_USER_ERROR(load_scene(folder.write("a.json", R"({"meshes":[{"file":"a\nb.obj"}]})")), "a?b.obj");
-    EXPECT_USER_ERROR(
-        load_scene(folder.write("a.json", R"({"meshes":[],"background":{"light_probe":"a\nb"}})")), "a?b");
+    EXPECT_USER_ERROR(load_scene(folder.write("a.json", R"({"meshes":[],"background":{"light_probe":"a\nb"}})")), "a?b");
     EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\": \x7f\x01}")), "not valid JSON");
 }
 
@@ -130,8 +119,7 @@ TEST(HostileNames, MayBeLongerThanTheFileSystemAllows) {
                         load_scene(folder.write("a.obj", "mtllib " + name + "\n" + triangle)).warnings.at(0));
     folder.write("a.mtl", "newmtl m\nmap_Kd " + name + "\n");
     EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib a.mtl\nusemtl m\n" + triangle)), "xxx");
-    EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\":[{\"file\":\"" + name + "\"}]}")),
-                      "xxx");
+    EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\":[{\"file\":\"" + name + "\"}]}")), "xxx");
 }
 
 }  // namespace

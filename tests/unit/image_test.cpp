@@ -27,8 +27,7 @@ Texture gradient_texture(uint32_t width, uint32_t height) {
     Texture texture{width, height, {}};
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
-            for (const uint32_t value : {2 * x, 3 * y, x + y, 255u})
-                texture.pixels.push_back(static_cast<uint8_t>(value));
+            for (const uint32_t value : {2 * x, 3 * y, x + y, 255u}) texture.pixels.push_back(static_cast<uint8_t>(value));
     return texture;
 }
 
@@ -55,8 +54,7 @@ std::string bmp_bytes() {
 
 std::string tga_bytes() {
     const char header[] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0x20};  // rows from the top
-    return std::string(header, sizeof header) +
-           std::string("\x00\x00\xff\xff\xff\xff\xff\x00\x00\x00\xff\x00", 12);
+    return std::string(header, sizeof header) + std::string("\x00\x00\xff\xff\xff\xff\xff\x00\x00\x00\xff\x00", 12);
 }
 
 TEST(Srgb, KnownValues) {
@@ -92,8 +90,7 @@ TEST(Exr, RoundTripIsExact) {
     EXPECT_EQ(read.image.height, 49u);
     ASSERT_EQ(read.image.pixels.size(), written.image.pixels.size());
     for (size_t i = 0; i < read.image.pixels.size(); ++i)
-        EXPECT_EQ(std::bit_cast<uint32_t>(read.image.pixels[i]),
-                  std::bit_cast<uint32_t>(written.image.pixels[i]));
+        EXPECT_EQ(std::bit_cast<uint32_t>(read.image.pixels[i]), std::bit_cast<uint32_t>(written.image.pixels[i]));
     EXPECT_EQ(read.channels, written.channels);
     EXPECT_EQ(read.attributes, written.attributes);
     EXPECT_EQ(folder.file_count(), 1u) << "a temporary file was left behind";
@@ -124,8 +121,7 @@ TEST(Exr, NanAndInfinityAreKeptButAreNoRadiance) {
 
 TEST(Exr, RefusesTrapsOfTheLibrary) {
     const TestFolder folder;
-    write_exr(folder / "a.exr",
-              {random_image(40, 40), {}, {{"typo", "scanlineimages"}, {"chunkCoun_", "lots"}}});
+    write_exr(folder / "a.exr", {random_image(40, 40), {}, {{"typo", "scanlineimages"}, {"chunkCoun_", "lots"}}});
     const std::string valid = file_bytes(folder / "a.exr");
     const auto read = [&](const std::string& bytes) { read_exr(folder.write("b.exr", bytes)); };
     EXPECT_USER_ERROR(read("v/1 no such thing"), "not an OpenEXR file");
@@ -135,11 +131,9 @@ TEST(Exr, RefusesTrapsOfTheLibrary) {
     EXPECT_NO_THROW(read(patched(valid, valid.find("chunkCoun_"), "chunkCount")));
     // 16384 x 16384 pixels cannot be in these few bytes; 40 x 16385 and negative sizes are never allowed.
     const size_t window = valid.find("box2i") + 6 + 4;
-    EXPECT_USER_ERROR(read(patched(valid, window + 8, std::string("\xff\x3f\0\0\xff\x3f\0\0", 8))),
-                      "ends too early");
+    EXPECT_USER_ERROR(read(patched(valid, window + 8, std::string("\xff\x3f\0\0\xff\x3f\0\0", 8))), "ends too early");
     EXPECT_USER_ERROR(read(patched(valid, window + 12, std::string("\x00\x40\0\0", 4))), "40 x 16385");
-    EXPECT_USER_ERROR(read(patched(valid, window + 8, std::string("\xf0\xff\xff\xff", 4))),
-                      "width and height");
+    EXPECT_USER_ERROR(read(patched(valid, window + 8, std::string("\xf0\xff\xff\xff", 4))), "width and height");
     // Channels for every second pixel only.
     const size_t channel = valid.find("chlist") + 7 + 4 + 2;
     EXPECT_USER_ERROR(read(patched(valid, channel + 8, "\x02")), "a value for every pixel");
@@ -168,8 +162,7 @@ TEST(Hdr, ExactValuesAndUnrepresentableOnes) {
     const TestFolder folder;
     write_hdr(folder / "a.hdr", {2, 1, {1, 0.5f, 0, -3, std::nanf(""), infinity}});
     const Image read = read_radiance(folder / "a.hdr");
-    EXPECT_EQ(std::vector<float>(read.pixels.begin(), read.pixels.begin() + 5),
-              (std::vector<float>{1, 0.5f, 0, 0, 0}));
+    EXPECT_EQ(std::vector<float>(read.pixels.begin(), read.pixels.begin() + 5), (std::vector<float>{1, 0.5f, 0, 0, 0}));
     EXPECT_GT(read.pixels[5], 9e37f);
     EXPECT_LT(read.pixels[5], infinity);
 }
@@ -185,7 +178,7 @@ TEST(Hdr, RefusesWhatItCannotRead) {
     EXPECT_USER_ERROR(read("#?RADIANCE\n\n-Y 0 +X 4\n"), "4 x 0");
     EXPECT_USER_ERROR(read("#?RADIANCE\n\n-Y 16384 +X 16384\nxxxx"), "ends too early");
     const std::string head = "#?RADIANCE\n\n-Y 1 +X 8\n";
-    EXPECT_USER_ERROR(read(head + std::string("\x02\x02\0\x08\0\0\0\0", 8)), "run-length");  // no progress
+    EXPECT_USER_ERROR(read(head + std::string("\x02\x02\0\x08\0\0\0\0", 8)), "run-length");      // no progress
     EXPECT_USER_ERROR(read(head + std::string("\x02\x02\0\x08\xff\x01\0\0", 8)), "run-length");  // 127 of 8
 }
 
@@ -211,15 +204,13 @@ TEST(Textures, JpgIsClose) {
     const Texture read = read_texture(folder / "a.jpg");
     ASSERT_EQ(read.pixels.size(), written.pixels.size());
     double difference = 0;
-    for (size_t i = 0; i < read.pixels.size(); ++i)
-        difference += std::abs(read.pixels[i] - written.pixels[i]);
+    for (size_t i = 0; i < read.pixels.size(); ++i) difference += std::abs(read.pixels[i] - written.pixels[i]);
     EXPECT_LT(difference / static_cast<double>(read.pixels.size()), 3);
 }
 
 TEST(Textures, BmpAndTgaStartWithTheTopRow) {
     const TestFolder folder;
-    const std::vector<uint8_t> red_white_blue_green = {255, 0, 0,   255, 255, 255, 255, 255,
-                                                       0,   0, 255, 255, 0,   255, 0,   255};
+    const std::vector<uint8_t> red_white_blue_green = {255, 0, 0, 255, 255, 255, 255, 255, 0, 0, 255, 255, 0, 255, 0, 255};
     EXPECT_EQ(read_texture(folder.write("a.bmp", bmp_bytes())).pixels, red_white_blue_green);
     EXPECT_EQ(read_texture(folder.write("a.tga", tga_bytes())).pixels, red_white_blue_green);
 }
@@ -254,8 +245,7 @@ TEST(ImageFiles, PathsThatCannotBeRead) {
 
 TEST(ImageFiles, DamagedFilesAreRefusedOrRead) {
     const TestFolder folder;
-    write_exr(folder / "valid.exr",
-              {random_image(30, 40), {{"samples", random_image(10, 40).pixels}}, {{"a", "b"}}});
+    write_exr(folder / "valid.exr", {random_image(30, 40), {{"samples", random_image(10, 40).pixels}}, {{"a", "b"}}});
     write_hdr(folder / "valid.hdr", random_image(30, 40));
     write_png(folder / "valid.png", gradient_texture(40, 30));
     write_jpg(folder / "valid.jpg", gradient_texture(40, 30));

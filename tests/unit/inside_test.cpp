@@ -10,8 +10,7 @@
 namespace lab {
 namespace {
 
-const Camera camera =
-    make_camera({.position = {1, 2, 5}, .target = {1, 2, 0}, .up = {0, 1, 0}, .vertical_fov = 90}, 200, 100);
+const Camera camera = make_camera({.position = {1, 2, 5}, .target = {1, 2, 0}, .up = {0, 1, 0}, .vertical_fov = 90}, 200, 100);
 
 void expect_at(const std::optional<vec2>& position, float x, float y) {
     ASSERT_TRUE(position);
@@ -59,13 +58,11 @@ TEST(RecordingCalls, FollowAssignmentsAndDeclarations) {
     expect_edit("if (b) throughput /= q;\nelse throughput = c;",
                 "if (b) { throughput /= q; record_throughput(EVENT_THROUGHPUT, throughput); }\n"
                 "else { throughput = c; record_throughput(EVENT_THROUGHPUT, throughput); }");
-    expect_edit(
-        "throughput.r *= /* ; */ a *  // ;\n b;",
-        "{ throughput.r *= /* ; */ a *  // ;\n b; record_throughput(EVENT_THROUGHPUT, throughput); }");
+    expect_edit("throughput.r *= /* ; */ a *  // ;\n b;",
+                "{ throughput.r *= /* ; */ a *  // ;\n b; record_throughput(EVENT_THROUGHPUT, throughput); }");
     expect_edit("vec3 throughput = vec3(1.0);",
                 "vec3 throughput = vec3(1.0); record_throughput(EVENT_THROUGHPUT_STARTS, throughput);");
-    expect_edit("float survival_probability = 0.5;",
-                "float survival_probability = 0.5; record_survival(survival_probability);");
+    expect_edit("float survival_probability = 0.5;", "float survival_probability = 0.5; record_survival(survival_probability);");
 }
 
 TEST(RecordingCalls, TellTheVariablesNamedRadianceApart) {
@@ -77,8 +74,7 @@ TEST(RecordingCalls, TellTheVariablesNamedRadianceApart) {
 }
 
 TEST(RecordingCalls, FollowMembers) {
-    expect_edit("path.throughput *= a;",
-                "{ path.throughput *= a; record_throughput(EVENT_THROUGHPUT, path.throughput); }");
+    expect_edit("path.throughput *= a;", "{ path.throughput *= a; record_throughput(EVENT_THROUGHPUT, path.throughput); }");
     expect_edit("if (b) path.radiance.r += c;",
                 "if (b) { path.radiance.r += c; record_radiance(EVENT_RADIANCE, path.radiance, 0u); }");
     expect_edit("vec3 radiance = path.radiance;\npath.radiance = radiance;",
@@ -88,16 +84,15 @@ TEST(RecordingCalls, FollowMembers) {
 
 TEST(RecordingCalls, LeaveEverythingElseAlone) {
     expect_no_edit("// throughput *= a;\n/* throughput *= a; */\n#define X throughput *= a;");
-    expect_no_edit(
-        "x = throughput * a; stack[0].throughput = b; f(throughput); throughputs *= 2; my_throughput = c;");
+    expect_no_edit("x = throughput * a; stack[0].throughput = b; f(throughput); throughputs *= 2; my_throughput = c;");
     expect_no_edit("for (uint i = 0u; throughput.x > 0.1; throughput *= 0.5) ++i;");
     expect_no_edit("radiance += somebody_elses;");
     expect_no_edit("path.radiance_scale /= a; path.survival_probability = b; f.throughput_of(c);");
     expect_no_edit("return b ? throughput : radiance;");
     const std::string at_file_scope = "vec3 throughput = vec3(1.0);\nstruct S { vec3 throughput; };\n";
     EXPECT_EQ(add_recording_calls(at_file_scope), at_file_scope);
-    for (const std::string broken : {"void f() { throughput *= a", "void f() { throughput",
-                                     "void f() { path.", "/*", "void f() { /*", "("})
+    for (const std::string broken :
+         {"void f() { throughput *= a", "void f() { throughput", "void f() { path.", "/*", "void f() { /*", "("})
         EXPECT_EQ(add_recording_calls(broken), broken);
 }
 

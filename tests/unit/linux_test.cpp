@@ -49,9 +49,7 @@ TEST(WriteFile, FullDiskKeepsTheOlderFile) {
     EXPECT_EQ(folder.file_count(), 1u) << "a temporary file was left behind";
 }
 
-TEST(CheckWritable, RefusesAFolderOfTheSystem) {
-    EXPECT_USER_ERROR(check_writable("/proc/a.png"), "cannot be written");
-}
+TEST(CheckWritable, RefusesAFolderOfTheSystem) { EXPECT_USER_ERROR(check_writable("/proc/a.png"), "cannot be written"); }
 
 // Reading one would block forever.
 TEST(ReadFile, RefusesPipesAndDevices) {
@@ -59,13 +57,10 @@ TEST(ReadFile, RefusesPipesAndDevices) {
     mkfifo((folder / "pipe").c_str(), 0600);
     const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     for (const std::string name : {"/dev/zero", "/dev/stdin", "pipe"}) {
-        EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib " + name + "\n" + triangle)),
-                          "not a regular file");
+        EXPECT_USER_ERROR(load_scene(folder.write("a.obj", "mtllib " + name + "\n" + triangle)), "not a regular file");
         folder.write("a.mtl", "newmtl m\nmap_Kd " + name + "\n");
-        EXPECT_USER_ERROR(load_scene(folder.write("b.obj", "mtllib a.mtl\nusemtl m\n" + triangle)),
-                          "not a regular file");
-        EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\":[{\"file\":\"" + name + "\"}]}")),
-                          "not a regular file");
+        EXPECT_USER_ERROR(load_scene(folder.write("b.obj", "mtllib a.mtl\nusemtl m\n" + triangle)), "not a regular file");
+        EXPECT_USER_ERROR(load_scene(folder.write("a.json", "{\"meshes\":[{\"file\":\"" + name + "\"}]}")), "not a regular file");
         EXPECT_USER_ERROR(read_exr(folder / name), "not a regular file");
         EXPECT_USER_ERROR(read_texture(folder / name), "not a regular file");
     }

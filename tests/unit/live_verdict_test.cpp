@@ -37,8 +37,7 @@ class FakeRender {
             FilmPixel& pixel = film_.pixels[i];
             std::binomial_distribution<uint32_t> hits(samples - pixel.sample_count,
                                                       probability_(i % film_.width, i / film_.width));
-            for (int channel = 0; channel < 3; ++channel)
-                pixel.sum[channel] += static_cast<float>(hits(generator_));
+            for (int channel = 0; channel < 3; ++channel) pixel.sum[channel] += static_cast<float>(hits(generator_));
             pixel.sample_count = samples;
         }
         return film_;
@@ -67,8 +66,7 @@ TEST(LiveVerdict, RaisesFalseAlarmsAsRarelyAsDesigned) {
         watch(verdict, {seed, unbiased}, 2048);
         alarms += verdict.verdict()->is_biased;
     }
-    std::printf("  %u of %u renders without bias called biased, at most %.0f %% designed\n", alarms, renders,
-                100 * false_alarms);
+    std::printf("  %u of %u renders without bias called biased, at most %.0f %% designed\n", alarms, renders, 100 * false_alarms);
     EXPECT_LT(alarms, 30 + 20u) << "four standard deviations above the 30 that are designed";
     EXPECT_GT(alarms, 3u) << "it hardly ever dares to say anything";
 }
@@ -81,8 +79,7 @@ TEST(LiveVerdict, FindsTheBiasThatItSaysItWouldFind) {
     const double smallest = honest.verdict()->smallest_detectable[1];
     // The mean of n hits of probability p is known to √((1-p)/(np)); a test of this level and power finds 6.4
     // times that.
-    const double standard_error =
-        std::sqrt((1 - hit_probability) / (hit_probability * 1024 * extent * extent));
+    const double standard_error = std::sqrt((1 - hit_probability) / (hit_probability * 1024 * extent * extent));
     EXPECT_NEAR(honest.verdict()->differences[1].standard_error / standard_error, 1, 0.4);
     EXPECT_GT(smallest, 5 * standard_error);
     EXPECT_LT(smallest, 11 * standard_error);
@@ -98,9 +95,7 @@ TEST(LiveVerdict, FindsTheBiasThatItSaysItWouldFind) {
 
 TEST(LiveVerdict, SaysHowLargeTheBiasIsAndWhere) {
     // The left half is 30 % too dark, so that the image is by 15 %.
-    const auto left_too_dark = [](uint32_t x, uint32_t) {
-        return (x < extent / 2 ? 0.7 : 1) * hit_probability;
-    };
+    const auto left_too_dark = [](uint32_t x, uint32_t) { return (x < extent / 2 ? 0.7 : 1) * hit_probability; };
     LiveVerdict verdict(flat_reference(), glm::uvec2(extent));
     watch(verdict, {1, left_too_dark}, 2048);
     ASSERT_TRUE(verdict.verdict()->is_biased);
@@ -131,16 +126,13 @@ TEST(LiveVerdict, SaysItInOneLine) {
     verdict.tile_size = 32;
     verdict.tiles = 256;
     verdict.dark_tiles = 31;
-    EXPECT_EQ(
-        to_text(verdict),
-        "biased: red -14 % ± 1 %, green +1.20 % ± 0.08 %, blue +0 % ± 10 %; too bright in 0 (red), too dark "
-        "in 31 (blue) of 256 tiles of 32 pixels");
+    EXPECT_EQ(to_text(verdict),
+              "biased: red -14 % ± 1 %, green +1.20 % ± 0.08 %, blue +0 % ± 10 %; too bright in 0 (red), too dark "
+              "in 31 (blue) of 256 tiles of 32 pixels");
 }
 
 TEST(LiveVerdict, SeesTilesThatCancelEachOther) {
-    const auto chequered = [](uint32_t x, uint32_t) {
-        return (x < extent / 2 ? 0.8 : 1.2) * hit_probability;
-    };
+    const auto chequered = [](uint32_t x, uint32_t) { return (x < extent / 2 ? 0.8 : 1.2) * hit_probability; };
     LiveVerdict verdict(flat_reference(), glm::uvec2(extent));
     watch(verdict, {1, chequered}, 2048);
     EXPECT_TRUE(verdict.verdict()->is_biased);

@@ -56,16 +56,14 @@ TEST_F(MeshFile, NoMaterialReflectsMoreThanItReceives) {
     EXPECT_NEAR(diffuse.materials.at(0).diffuse_albedo.x, 1, 1e-6f);
     EXPECT_NEAR(diffuse.materials.at(0).diffuse_albedo.z, 0.25, 1e-6f);
 
-    for (const char* lines :
-         {"Kd 0.9 0.1 0.3\nKs 0.3 0.1 0.8", "Kd 1 1 1\nKs 1e-3 1 1", "Kd 1e38 0 0\nKs 3e38 1 1"}) {
+    for (const char* lines : {"Kd 0.9 0.1 0.3\nKs 0.3 0.1 0.8", "Kd 1 1 1\nKs 1e-3 1 1", "Kd 1e38 0 0\nKs 3e38 1 1"}) {
         const Scene both = load_material(lines, true);
         EXPECT_EQ(count_warnings(both, "Kd and Ks"), 1u) << lines;
         const vec3 sum = both.materials.at(0).diffuse_albedo + both.materials.at(0).specular_albedo;
         EXPECT_LE(std::max({sum.x, sum.y, sum.z}), 1) << lines;
         EXPECT_NEAR(std::max({sum.x, sum.y, sum.z}), 1, 1e-6f) << lines;
     }
-    EXPECT_EQ(load_material("Kd 0.5 0.5 0.5\nKs 0.5 0.5 0.5", true).warnings.size(), 1u)
-        << "the white sky alone";
+    EXPECT_EQ(load_material("Kd 0.5 0.5 0.5\nKs 0.5 0.5 0.5", true).warnings.size(), 1u) << "the white sky alone";
 }
 
 TEST_F(MeshFile, Dielectrics) {
@@ -86,11 +84,10 @@ TEST_F(MeshFile, Dielectrics) {
 
 TEST_F(MeshFile, DielectricTrianglesComeLast) {
     folder.write("a.mtl", "newmtl glass\nd 0\nNi 1.5\nnewmtl wall\nKd 1 1 1\n");
-    const Scene scene = load("mtllib a.mtl\n" + corners_of_a_square +
-                             "usemtl glass\nf 1 2 3\nusemtl wall\nf 1 2 4\nusemtl glass\nf 1 3 4\n");
+    const Scene scene =
+        load("mtllib a.mtl\n" + corners_of_a_square + "usemtl glass\nf 1 2 3\nusemtl wall\nf 1 2 4\nusemtl glass\nf 1 3 4\n");
     std::vector<float> indices;
-    for (const uint32_t m : scene.triangle_materials)
-        indices.push_back(scene.materials.at(m).refractive_index);
+    for (const uint32_t m : scene.triangle_materials) indices.push_back(scene.materials.at(m).refractive_index);
     EXPECT_EQ(indices, (std::vector<float>{0, 1.5f, 1.5f}));
     EXPECT_EQ(scene.meshes.at(0).dielectric_count, 2u);
     const std::vector<MaterialClassRange> ranges = material_class_ranges({"", 10, 7, 2});
@@ -111,14 +108,12 @@ TEST_F(MeshFile, KeywordsWithoutEffectAreNamed) {
 TEST_F(MeshFile, MaterialFileNamesMayHaveSpaces) {
     folder.write("two words.mtl", "newmtl light grey\nKd 0.75 0.75 0.75\n");
     for (const char* name : {"two words.mtl", "two\\ words.mtl", "  two words.mtl "})
-        EXPECT_EQ(
-            load("mtllib " + std::string(name) + "\nusemtl light grey \n" + corners_of_a_square + "f 1 2 3\n")
-                .materials.at(0)
-                .diffuse_albedo,
-            vec3(0.75f));
+        EXPECT_EQ(load("mtllib " + std::string(name) + "\nusemtl light grey \n" + corners_of_a_square + "f 1 2 3\n")
+                      .materials.at(0)
+                      .diffuse_albedo,
+                  vec3(0.75f));
     folder.write("words.mtl", "newmtl light grey\nKd 0.75 0.75 0.75\n");
-    EXPECT_NO_THROW(
-        load("mtllib missing.mtl words.mtl\nusemtl light grey\n" + corners_of_a_square + "f 1 2 3\n"));
+    EXPECT_NO_THROW(load("mtllib missing.mtl words.mtl\nusemtl light grey\n" + corners_of_a_square + "f 1 2 3\n"));
 }
 
 TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
@@ -146,8 +141,7 @@ TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
         {"map_Kd a.obj", "not a texture"},
     };
     for (const auto& [lines, part] : cases)
-        EXPECT_PRED_FORMAT2(IsSubstring, part, user_error([&, line = lines] { load_material(line); }))
-            << lines;
+        EXPECT_PRED_FORMAT2(IsSubstring, part, user_error([&, line = lines] { load_material(line); })) << lines;
 
     const std::string obj = "mtllib a.mtl\nusemtl m\n" + corners_of_a_square + "f 1 2 3\n";
     folder.write("a.mtl", "Kd 1 1 1\n");
@@ -162,14 +156,11 @@ TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
 
 TEST_F(MeshFile, MaterialsThatAreNowhereAreGrey) {
     const std::string grey = ": 2 faces without a material are drawn in grey";
-    const std::string named = "\nusemtl m\n" + corners_of_a_square + "f 1 2 3\n",
-                      unnamed = "usemtl m n\nf 1 3 4\n";
+    const std::string named = "\nusemtl m\n" + corners_of_a_square + "f 1 2 3\n", unnamed = "usemtl m n\nf 1 3 4\n";
     folder.write("a.mtl", "newmtl m\nKd 1 1 1\n");
     for (const auto& [text, what] :
-         {std::pair{"mtllib none.mtl" + named + "f 1 3 4\n",
-                    "a.obj:1: there is no material file \"none.mtl\""},
-          {"mtllib  none.mtl no.mtl " + named + unnamed,
-           "a.obj:1: there is no material file \"none.mtl no.mtl\""},
+         {std::pair{"mtllib none.mtl" + named + "f 1 3 4\n", "a.obj:1: there is no material file \"none.mtl\""},
+          {"mtllib  none.mtl no.mtl " + named + unnamed, "a.obj:1: there is no material file \"none.mtl no.mtl\""},
           {"mtllib a.mtl\n" + corners_of_a_square + "usemtl x\nf 1 2 3\nusemtl y\nf 1 3 4\n",
            "a.obj:6: there is no material \"x\""}}) {
         const Scene scene = load(text);
@@ -188,8 +179,7 @@ TEST_F(MeshFile, MaterialsThatAreNowhereAreGrey) {
 TEST_F(MeshFile, NamesMayHaveSpacesAroundThem) {
     folder.write("a.mtl", "newmtl \t Material #25 \t\nKd 1 1 1\nmap_Kd  \ta b.png \t\n");
     write_png(folder / "a b.png", {1, 1, {9, 9, 9, 255}});
-    const Scene scene =
-        load("mtllib \t a.mtl \t\nusemtl  \tMaterial #25 \n" + corners_of_a_square + "f 1 2 3\n");
+    const Scene scene = load("mtllib \t a.mtl \t\nusemtl  \tMaterial #25 \n" + corners_of_a_square + "f 1 2 3\n");
     EXPECT_EQ(count_warnings(scene, "material"), 0u);
     EXPECT_EQ(scene.textures.size(), 1u);
 }

@@ -11,9 +11,7 @@ inline const std::string corners_of_a_square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1
 
 class MeshFile : public testing::Test {
   protected:
-    Scene load(const std::string& obj, bool specular = false) const {
-        return load_scene(folder.write("a.obj", obj), specular);
-    }
+    Scene load(const std::string& obj, bool specular = false) const { return load_scene(folder.write("a.obj", obj), specular); }
 
     // A triangle of the material that the lines describe.
     Scene load_material(const std::string& lines, bool specular = false) const {
@@ -29,9 +27,9 @@ class MeshFile : public testing::Test {
 };
 
 inline size_t count_warnings(const Scene& scene, const std::string& part) {
-    return static_cast<size_t>(
-        std::count_if(scene.warnings.begin(), scene.warnings.end(),
-                      [&](const std::string& warning) { return warning.find(part) != std::string::npos; }));
+    return static_cast<size_t>(std::count_if(scene.warnings.begin(), scene.warnings.end(), [&](const std::string& warning) {
+        return warning.find(part) != std::string::npos;
+    }));
 }
 
 }  // namespace lab

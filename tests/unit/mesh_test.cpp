@@ -14,8 +14,7 @@ using testing::IsSubstring;
 vec3 face_normal(const Scene& scene, size_t triangle) {
     const uvec3 corners = scene.triangles.at(triangle);
     const vec3 origin = scene.positions.at(corners.x);
-    return glm::normalize(
-        glm::cross(scene.positions.at(corners.y) - origin, scene.positions.at(corners.z) - origin));
+    return glm::normalize(glm::cross(scene.positions.at(corners.y) - origin, scene.positions.at(corners.z) - origin));
 }
 
 double total_area(const std::vector<vec3>& polygon) {
@@ -66,15 +65,13 @@ TEST_F(MeshFile, EqualCornersShareAVertex) {
 }
 
 TEST_F(MeshFile, TextMayComeFromAnySystem) {
-    const Scene scene =
-        load("# comment\r\n\tv 0 0 0\r\nv  1\t0 0 # corner\r\nv 0 +1e0 0\r\n\r\ng x\r\ns off\r\nf 1 2 3");
+    const Scene scene = load("# comment\r\n\tv 0 0 0\r\nv  1\t0 0 # corner\r\nv 0 +1e0 0\r\n\r\ng x\r\ns off\r\nf 1 2 3");
     EXPECT_EQ(scene.triangles.size(), 1u);
     EXPECT_EQ(scene.positions.at(2), vec3(0, 1, 0));
 }
 
 TEST_F(MeshFile, VerticesAreSplitWhereNormalsDiffer) {
-    const Scene scene =
-        load(corners_of_a_square + "vn 0 0 2\nvn 1 0 1\nf 1//1 2//1 3//1\nf 1//1 3//2 4//1\n");
+    const Scene scene = load(corners_of_a_square + "vn 0 0 2\nvn 1 0 1\nf 1//1 2//1 3//1\nf 1//1 3//2 4//1\n");
     EXPECT_EQ(scene.positions.size(), 5u);
     ASSERT_EQ(scene.normals.size(), 5u);
     for (const vec3& normal : scene.normals) EXPECT_NEAR(glm::length(normal), 1, 1e-6f);
@@ -85,25 +82,22 @@ TEST_F(MeshFile, VerticesAreSplitWhereNormalsDiffer) {
 
 TEST_F(MeshFile, CornersWithoutANormalGetTheGeometricOne) {
     // The second triangle has no normals, the third one a zero normal; both stand on the edge of the first.
-    const Scene scene = load(corners_of_a_square + "v 0 0 1\nvn 0 0 1\nvn 0 0 0\n" +
-                             "f 1//1 2//1 3//1\nf 1 2 5\nf 1//2 5//2 4//2\n");
+    const Scene scene =
+        load(corners_of_a_square + "v 0 0 1\nvn 0 0 1\nvn 0 0 0\n" + "f 1//1 2//1 3//1\nf 1 2 5\nf 1//2 5//2 4//2\n");
     ASSERT_EQ(scene.triangles.size(), 3u);
     ASSERT_EQ(scene.normals.size(), scene.positions.size());
     const vec3 expected[] = {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}};
     for (size_t i = 0; i < 3; ++i)
-        for (int corner = 0; corner < 3; ++corner)
-            EXPECT_EQ(scene.normals.at(scene.triangles[i][corner]), expected[i]) << i;
+        for (int corner = 0; corner < 3; ++corner) EXPECT_EQ(scene.normals.at(scene.triangles[i][corner]), expected[i]) << i;
 }
 
 TEST_F(MeshFile, AMeshWithoutNormalsStaysFlatBesideASmoothOne) {
     folder.write("flat.obj", corners_of_a_square + "v 0 0 1\nf 1 2 3 4\nf 1 2 5\n");
     folder.write("smooth.obj", corners_of_a_square + "vn 0 1 1\nf 1//1 2//1 3//1\n");
-    const Scene scene =
-        load_scene(folder.write("a.json", R"({"meshes": [{"file": "flat.obj"}, {"file": "smooth.obj"}]})"));
+    const Scene scene = load_scene(folder.write("a.json", R"({"meshes": [{"file": "flat.obj"}, {"file": "smooth.obj"}]})"));
     ASSERT_EQ(scene.normals.size(), scene.positions.size());
     for (size_t i = 0; i < 3; ++i)
-        for (int corner = 0; corner < 3; ++corner)
-            EXPECT_EQ(scene.normals.at(scene.triangles[i][corner]), face_normal(scene, i));
+        for (int corner = 0; corner < 3; ++corner) EXPECT_EQ(scene.normals.at(scene.triangles[i][corner]), face_normal(scene, i));
     EXPECT_NEAR(scene.normals.at(scene.triangles.at(3).x).y, std::sqrt(0.5f), 1e-6f);
 }
 
@@ -120,11 +114,10 @@ TEST_F(MeshFile, TheFrontIsTheSideOfTheVertexNormals) {
 TEST_F(MeshFile, TurningATriangleKeepsItsVerticesAttributes) {
     folder.write("a.mtl", "newmtl m\nmap_Kd a.png\n");
     write_png(folder / "a.png", {1, 1, {255, 255, 255, 255}});
-    const Scene scene = load("mtllib a.mtl\nusemtl m\n" + corners_of_a_square +
-                             "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 -1\nf 1/1/1 2/2/1 3/3/1\n");
+    const Scene scene =
+        load("mtllib a.mtl\nusemtl m\n" + corners_of_a_square + "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 -1\nf 1/1/1 2/2/1 3/3/1\n");
     ASSERT_EQ(scene.texture_coordinates.size(), 3u);
-    for (size_t i = 0; i < 3; ++i)
-        EXPECT_EQ(scene.texture_coordinates[i], vec2(scene.positions[i].x, 1 - scene.positions[i].y));
+    for (size_t i = 0; i < 3; ++i) EXPECT_EQ(scene.texture_coordinates[i], vec2(scene.positions[i].x, 1 - scene.positions[i].y));
 }
 
 TEST_F(MeshFile, TextureCoordinatesPointDownAndAreKeptOnlyForTextures) {
@@ -149,12 +142,8 @@ TEST_F(MeshFile, TextureCoordinatesTooCoarseForTheirTextureAreNamed) {
     folder.write("a.mtl", "newmtl m\nmap_Kd a.png\n");
     write_png(folder / "a.png", {64, 1, std::vector<uint8_t>(size_t{4} * 64, 200)});
     const auto warnings = [&](const std::string& coordinates) {
-        auto all =
-            load("mtllib a.mtl\nusemtl m\n" + corners_of_a_square + "vt " + coordinates + "\nf 1/1 2/1 3/1\n")
-                .warnings;
-        std::erase_if(all, [](const std::string& line) {
-            return line.find("texture coordinates") == std::string::npos;
-        });
+        auto all = load("mtllib a.mtl\nusemtl m\n" + corners_of_a_square + "vt " + coordinates + "\nf 1/1 2/1 3/1\n").warnings;
+        std::erase_if(all, [](const std::string& line) { return line.find("texture coordinates") == std::string::npos; });
         return all;
     };
     // Floats between 2^16 and 2^17 are 2^-7 apart, between 2^17 and 2^18 2^-6: a texel of 64.
@@ -169,8 +158,7 @@ TEST_F(MeshFile, TextureCoordinatesTooCoarseForTheirTextureAreNamed) {
 TEST_F(MeshFile, TexturesAreLoadedOnce) {
     folder.write("a.mtl", "newmtl m\nKd 1 0 1\nmap_Kd a.png\nnewmtl n\nmap_Kd ./a.png\nKd 0 1 0\n");
     write_png(folder / "a.png", {1, 1, {9, 9, 9, 255}});
-    const Scene scene =
-        load("mtllib a.mtl\n" + corners_of_a_square + "usemtl n\nf 1 2 3\nusemtl m\nf 1 3 4\n");
+    const Scene scene = load("mtllib a.mtl\n" + corners_of_a_square + "usemtl n\nf 1 2 3\nusemtl m\nf 1 3 4\n");
     EXPECT_EQ(scene.textures.size(), 1u);
     ASSERT_EQ(scene.materials.size(), 2u);
     EXPECT_EQ(scene.materials.at(scene.triangle_materials.at(0)).diffuse_albedo, vec3(0, 1, 0));
@@ -217,8 +205,7 @@ TEST_F(MeshFile, DamagedMeshesNameFileAndLine) {
         {std::string("f 1 2 3\0", 8), "binary"},
     };
     for (const auto& [lines, part] : cases)
-        EXPECT_PRED_FORMAT2(IsSubstring, part,
-                            user_error([&, line = lines] { load(corners_of_a_square + line + "\n"); }))
+        EXPECT_PRED_FORMAT2(IsSubstring, part, user_error([&, line = lines] { load(corners_of_a_square + line + "\n"); }))
             << lines;
     EXPECT_USER_ERROR(load("\x89PNG\r\n\x1a\n"), "no faces");
     EXPECT_USER_ERROR(load(std::string(100000, 'f')), "no faces");
@@ -232,8 +219,7 @@ TEST_F(MeshFile, DamagedFilesAreRefusedOrRead) {
     damage(folder, "damaged.obj", obj, false, [](const auto& file) { load_scene(file); });
 
     folder.write("b.obj", "mtllib damaged.mtl\nusemtl m\n" + corners_of_a_square + "f 1 2 3\n");
-    damage(folder, "damaged.mtl",
-           "newmtl m\nKd 0.5 0.5 0.5\nKe 1 2 3\nKs 0.1 0.2 0.3\nNs 7\nd 0.5\nNi 1.5\nTf 0.5 1 1\n", false,
+    damage(folder, "damaged.mtl", "newmtl m\nKd 0.5 0.5 0.5\nKe 1 2 3\nKs 0.1 0.2 0.3\nNs 7\nd 0.5\nNi 1.5\nTf 0.5 1 1\n", false,
            [&](const auto&) { load_scene(folder / "b.obj", true); });
 }
 

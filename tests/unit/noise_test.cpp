@@ -17,8 +17,7 @@ TEST(Noise, IsThatOfTheMean) {
         earlier = film;
         for (FilmPixel& pixel : film.pixels) {
             std::binomial_distribution<uint32_t> hits(samples - pixel.sample_count, 0.25);
-            for (int channel = 0; channel < 3; ++channel)
-                pixel.sum[channel] += static_cast<float>(hits(generator));
+            for (int channel = 0; channel < 3; ++channel) pixel.sum[channel] += static_cast<float>(hits(generator));
             pixel.sample_count = samples;
         }
     }
@@ -39,8 +38,7 @@ TEST(ErrorMetrics, DoNotContainTheVarianceOfTheReference) {
     const Image image{2, 1, {1.5f, 1.5f, 1.5f, 2.5f, 2.5f, 2.5f}}, mean{2, 1, {1, 1, 1, 2, 2, 2}},
         variance{2, 1, std::vector<float>(6, 0.09f)};
     const double weight = 0.5 / (1 + 0.01 * 2.25) + 0.5 / (4 + 0.01 * 2.25);
-    const ErrorMetrics without = compare(image, {mean, std::nullopt, {}}),
-                       with = compare(image, {mean, variance, {}});
+    const ErrorMetrics without = compare(image, {mean, std::nullopt, {}}), with = compare(image, {mean, variance, {}});
     EXPECT_NEAR(without.mse, 0.25, 1e-9);
     EXPECT_NEAR(without.rel_mse, 0.25 * weight, 1e-9);
     EXPECT_NEAR(with.mse, 0.16, 1e-7);

@@ -21,8 +21,7 @@ Image make_probe(uint32_t width, uint32_t height, float radiance) {
 }
 
 void set_texel(Image& probe, uint32_t x, uint32_t y, float radiance) {
-    for (size_t channel = 0; channel < 3; ++channel)
-        probe.pixels[3 * (size_t{y} * probe.width + x) + channel] = radiance;
+    for (size_t channel = 0; channel < 3; ++channel) probe.pixels[3 * (size_t{y} * probe.width + x) + channel] = radiance;
 }
 
 // The integral of the density over all directions, after a check of its size.
@@ -58,10 +57,8 @@ TEST(ProbeTable, FollowsTheMeanOfTheFilteredRadiance) {
 }
 
 TEST(ProbeTable, OfABlackProbeIsUniform) {
-    for (const ProbeCell& cell : build_probe_table(make_probe(32, 16, 0)))
-        EXPECT_NEAR(cell.density, 1 / (4 * pi), 1e-6);
-    for (const ProbeCell& cell : build_probe_table(make_probe(32, 16, 3)))
-        EXPECT_NEAR(cell.density, 1 / (4 * pi), 1e-6);
+    for (const ProbeCell& cell : build_probe_table(make_probe(32, 16, 0))) EXPECT_NEAR(cell.density, 1 / (4 * pi), 1e-6);
+    for (const ProbeCell& cell : build_probe_table(make_probe(32, 16, 3))) EXPECT_NEAR(cell.density, 1 / (4 * pi), 1e-6);
 }
 
 TEST(ProbeTable, HasLargerCellsWhereThereAreVeryManyTexels) {

@@ -33,9 +33,8 @@ class SceneFile : public testing::Test {
 };
 
 void expect_close(const vec3& actual, const vec3& expected, float tolerance = 1e-6f) {
-    EXPECT_LE(glm::distance(actual, expected), tolerance)
-        << actual.x << " " << actual.y << " " << actual.z << " instead of " << expected.x << " " << expected.y
-        << " " << expected.z;
+    EXPECT_LE(glm::distance(actual, expected), tolerance) << actual.x << " " << actual.y << " " << actual.z << " instead of "
+                                                          << expected.x << " " << expected.y << " " << expected.z;
 }
 
 bool contains(const std::vector<std::string>& warnings, const std::string& part) {
@@ -85,8 +84,8 @@ TEST_F(SceneFile, MayBeOnlySky) {
 
 TEST_F(SceneFile, LightProbe) {
     write_hdr(folder / "sky.hdr", {2, 1, {1, 2, 4, 8, 16, 32}});
-    const Scene scene = load(
-        R"({"meshes": [], "background": {"light_probe": "sky.hdr", "intensity": 3, "rotation_degrees": 90}})");
+    const Scene scene =
+        load(R"({"meshes": [], "background": {"light_probe": "sky.hdr", "intensity": 3, "rotation_degrees": 90}})");
     ASSERT_TRUE(scene.light_probe);
     EXPECT_EQ(scene.light_probe->pixels, (std::vector<float>{1, 2, 4, 8, 16, 32}));
     EXPECT_EQ(scene.background, vec3(3));
@@ -109,8 +108,8 @@ TEST_F(SceneFile, MeshesAreRelativeToItsFolderAndLoadedOnce) {
 }
 
 TEST_F(SceneFile, TransformsScaleThenRotateThenTranslate) {
-    const Instance all = instance(
-        R"("scale": [2, 3, 4], "rotation": {"axis": [0, 0, 2], "degrees": 90}, "translation": [10, 20, 30])");
+    const Instance all =
+        instance(R"("scale": [2, 3, 4], "rotation": {"axis": [0, 0, 2], "degrees": 90}, "translation": [10, 20, 30])");
     // Object x becomes 2 long along +Y, object y 3 long along -X.
     expect_close(all.object_to_world[0], {0, 2, 0});
     expect_close(all.object_to_world[1], {-3, 0, 0});
@@ -144,8 +143,7 @@ TEST_F(SceneFile, WorldBounds) {
 TEST_F(SceneFile, UnknownKeysAreNamedWithTheKnownOnes) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"meshes": [], "sample": 4})", "known keys are description, meshes, camera"},
-        {R"({"meshes": [{"file": "a.obj", "scaling": 1}]})",
-         "known keys are file, scale, rotation, translation"},
+        {R"({"meshes": [{"file": "a.obj", "scaling": 1}]})", "known keys are file, scale, rotation, translation"},
         {R"({"meshes": [{"file": "a.obj", "rotation": {"angle": 1}}]})", "known keys are axis, degrees"},
         {R"({"meshes": [], "camera": {"fov": 1}})", "known keys are position, target, up, vertical_fov"},
         {R"({"meshes": [], "background": {"color": 1}})", "known keys are radiance, light_probe, intensity"},
@@ -191,10 +189,8 @@ TEST_F(SceneFile, WrongValuesNameTheirKey) {
         {R"({"meshes": [{"file": "a.obj", "rotation": 90}]})", "\"rotation\" must be an object"},
         {R"({"meshes": [], "camera": {"position": [0, 0, 1]}})", R"("target" in "camera" is missing)"},
         {R"({"meshes": [], "camera": {"position": [0, 0, 0], "target": [0, 0, 0]}})", "\"target\""},
-        {R"({"meshes": [], "camera": {"position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 180}})",
-         "\"vertical_fov\""},
-        {R"({"meshes": [], "camera": {"position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 0}})",
-         "\"vertical_fov\""},
+        {R"({"meshes": [], "camera": {"position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 180}})", "\"vertical_fov\""},
+        {R"({"meshes": [], "camera": {"position": [0, 0, 1], "target": [0, 0, 0], "vertical_fov": 0}})", "\"vertical_fov\""},
         {R"({"meshes": [], "background": {}})", "\"light_probe\""},
         {R"({"meshes": [], "background": {"radiance": 1, "light_probe": "a.hdr"}})", "not both"},
         {R"({"meshes": [], "background": {"radiance": [1, -1, 1]}})", "\"radiance\""},
@@ -243,8 +239,7 @@ TEST_F(SceneFile, DamagedFilesAreRefusedOrRead) {
 }
 
 TEST_F(SceneFile, HashCoversAllFilesButNotTheirPlace) {
-    const auto write = [&](const std::string& root, const char* json, const char* mtl, uint8_t texel,
-                           float sky) {
+    const auto write = [&](const std::string& root, const char* json, const char* mtl, uint8_t texel, float sky) {
         folder.write(root + "/a.mtl", mtl);
         folder.write(root + "/a.obj", "mtllib a.mtl\nusemtl m\n" + triangle_obj);
         write_png(folder / (root + "/a.png"), {1, 1, {texel, 0, 0, 255}});
@@ -296,16 +291,14 @@ TEST_F(SceneFile, BareMeshWithLightsHasABlackSky) {
 
 TEST_F(SceneFile, FeaturesAreWhatTheSceneNeeds) {
     EXPECT_TRUE(features_of(load("{" + one_mesh + "}")).defines().empty());
-    folder.write(
-        "b.mtl",
-        "newmtl unused\nKe 1 1 1\nmap_Kd missing.png\n"
-        "newmtl all\nKd 0.5 0.5 0.5\nKs 0.1 0.1 0.1\nNs 10\nd 0\nNi 1.5\nTf 0.5 1 1\nmap_Kd b.png\n");
+    folder.write("b.mtl",
+                 "newmtl unused\nKe 1 1 1\nmap_Kd missing.png\n"
+                 "newmtl all\nKd 0.5 0.5 0.5\nKs 0.1 0.1 0.1\nNs 10\nd 0\nNi 1.5\nTf 0.5 1 1\nmap_Kd b.png\n");
     write_png(folder / "b.png", {1, 1, {1, 2, 3, 255}});
-    folder.write("b.obj",
-                 "mtllib b.mtl\nusemtl all\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n");
-    const std::vector<std::string> expected = {
-        "FEATURE_VERTEX_NORMALS", "FEATURE_TEXTURES",   "FEATURE_SKY",       "FEATURE_SPECULAR",
-        "FEATURE_DIELECTRICS",    "FEATURE_ABSORPTION", "FEATURE_TRANSFORMS"};
+    folder.write("b.obj", "mtllib b.mtl\nusemtl all\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n");
+    const std::vector<std::string> expected = {"FEATURE_VERTEX_NORMALS", "FEATURE_TEXTURES",    "FEATURE_SKY",
+                                               "FEATURE_SPECULAR",       "FEATURE_DIELECTRICS", "FEATURE_ABSORPTION",
+                                               "FEATURE_TRANSFORMS"};
     const std::string json = R"({"meshes": [{"file": "b.obj", "scale": 2}], "background": {"radiance": 1}})";
     EXPECT_EQ(features_of(load(json, true)).defines(), expected);
     EXPECT_FALSE(features_of(load(json)).specular);
@@ -320,8 +313,7 @@ TEST(Camera, SpansTheImagePlane) {
 }
 
 TEST(Camera, UpNeedNotBePerpendicularButIsReplacedAlongTheLineOfSight) {
-    expect_close(make_camera({{0, 0, 0}, {0, -1, -1}, {0, 1, 0}, 90}, 1, 1).up,
-                 glm::normalize(vec3(0, 1, -1)));
+    expect_close(make_camera({{0, 0, 0}, {0, -1, -1}, {0, 1, 0}, 90}, 1, 1).up, glm::normalize(vec3(0, 1, -1)));
     expect_close(make_camera({{0, 5, 0}, {0, 0, 0}, {0, 1, 0}, 90}, 1, 1).up, {0, 0, -1});
     expect_close(make_camera({{0, 0, 5}, {0, 0, 0}, {0, 0, 3}, 90}, 1, 1).up, {0, 1, 0});
 }
@@ -330,9 +322,8 @@ TEST(Camera, RefusesPosesWithoutADirection) {
     const float nan = std::nanf("");
     for (const CameraPose& pose :
          {CameraPose{{1, 1, 1}, {1, 1, 1}, {0, 1, 0}, 45}, CameraPose{{nan, 0, 0}, {1, 1, 1}, {0, 1, 0}, 45},
-          CameraPose{{0, 0, 0}, {0, INFINITY, 0}, {0, 1, 0}, 45},
-          CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, 45}, CameraPose{{0, 0, 0}, {1, 1, 1}, {0, nan, 0}, 45},
-          CameraPose{{0, 0, 0}, {1, 1, 1}, {0, INFINITY, 0}, 45},
+          CameraPose{{0, 0, 0}, {0, INFINITY, 0}, {0, 1, 0}, 45}, CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, 45},
+          CameraPose{{0, 0, 0}, {1, 1, 1}, {0, nan, 0}, 45}, CameraPose{{0, 0, 0}, {1, 1, 1}, {0, INFINITY, 0}, 45},
           CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 1, 0}, 0}, CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 1, 0}, 180},
           CameraPose{{0, 0, 0}, {1, 1, 1}, {0, 1, 0}, nan}})
         EXPECT_USER_ERROR(make_camera(pose, 16, 16), "camera");

@@ -118,9 +118,7 @@ void expect_share(const std::string& what, int trials, double lowest, double hig
     int rejected = 0;
     for (int trial = 0; trial < trials; ++trial) rejected += rejects(generator);
     const double share = static_cast<double>(rejected) / trials;
-    const auto noise = [&](double probability) {
-        return 5 * std::sqrt(probability * (1 - probability) / trials);
-    };
+    const auto noise = [&](double probability) { return 5 * std::sqrt(probability * (1 - probability) / trials); };
     EXPECT_GE(share, lowest - noise(lowest)) << what;
     EXPECT_LE(share, highest + noise(highest)) << what;
 }
@@ -142,8 +140,7 @@ TEST(TTest, HasItsLevelAndItsPower) {
         expect_share("level, " + what, 20'000, lowest_level * level, level,
                      [&](Generator& generator) { return p_value(generator, 0) < level; });
         const double bias =
-            Difference{0, 1 / std::sqrt(static_cast<double>(count)), 1.0 * freedom}.smallest_detectable(
-                significance, power);
+            Difference{0, 1 / std::sqrt(static_cast<double>(count)), 1.0 * freedom}.smallest_detectable(significance, power);
         expect_share("power, " + what, 20'000, power, power + 0.002,
                      [&](Generator& generator) { return p_value(generator, bias) < significance; });
     }
@@ -167,14 +164,11 @@ TEST(WelchTest, HasItsLevelAndItsPower) {
             const auto a = normal_numbers(generator, first, 10 + bias, first_deviation);
             return difference_of(a, normal_numbers(generator, second, 10, second_deviation)).p_value();
         };
-        const std::string what =
-            "deviations " + std::to_string(first_deviation) + " and " + std::to_string(second_deviation);
+        const std::string what = "deviations " + std::to_string(first_deviation) + " and " + std::to_string(second_deviation);
         expect_share("level, " + what, 20'000, 0.95 * level, 1.05 * level,
                      [&](Generator& generator) { return p_value(generator, 0) < level; });
-        const double a = first_deviation * first_deviation / first,
-                     b = second_deviation * second_deviation / second;
-        const Difference exact{0, std::sqrt(a + b),
-                               (a + b) * (a + b) / (a * a / (first - 1) + b * b / (second - 1))};
+        const double a = first_deviation * first_deviation / first, b = second_deviation * second_deviation / second;
+        const Difference exact{0, std::sqrt(a + b), (a + b) * (a + b) / (a * a / (first - 1) + b * b / (second - 1))};
         const double bias = exact.smallest_detectable(level, power);
         expect_share("power, " + what, 20'000, power - 0.003, power + 0.003,
                      [&](Generator& generator) { return p_value(generator, bias) < level; });

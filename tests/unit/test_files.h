@@ -28,9 +28,7 @@ class TestFolder : public TemporaryFolder {
         return path() / name;
     }
 
-    size_t file_count() const {
-        return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(path()), {}));
-    }
+    size_t file_count() const { return static_cast<size_t>(std::distance(std::filesystem::directory_iterator(path()), {})); }
 };
 
 inline std::string file_bytes(const std::filesystem::path& file) {
@@ -52,17 +50,14 @@ inline std::string user_error(const std::function<void()>& call) {
     return "";
 }
 
-#define EXPECT_USER_ERROR(call, part) \
-    EXPECT_PRED_FORMAT2(::testing::IsSubstring, part, user_error([&] { call; }))
+#define EXPECT_USER_ERROR(call, part) EXPECT_PRED_FORMAT2(::testing::IsSubstring, part, user_error([&] { call; }))
 
 // Reads a valid file truncated at 200 places and, 200 times, with a few bytes changed. Each read must succeed
 // or throw a UserError; a truncated file must be refused if `cut_is_error`.
-inline void damage(const TestFolder& folder, const std::string& name, const std::string& valid,
-                   bool cut_is_error, const std::function<void(const std::filesystem::path&)>& read) {
+inline void damage(const TestFolder& folder, const std::string& name, const std::string& valid, bool cut_is_error,
+                   const std::function<void(const std::filesystem::path&)>& read) {
     std::mt19937 random(20240229);
-    const auto below = [&](size_t bound) {
-        return std::uniform_int_distribution<size_t>(0, bound - 1)(random);
-    };
+    const auto below = [&](size_t bound) { return std::uniform_int_distribution<size_t>(0, bound - 1)(random); };
     ASSERT_NO_THROW(read(folder.write(name, valid)));
     for (int i = 0; i < 400; ++i) {
         const bool cut = i < 200;
@@ -70,8 +65,7 @@ inline void damage(const TestFolder& folder, const std::string& name, const std:
         if (cut) bytes.resize(below(valid.size()));
         // Headers are where damage does most: half of the changes go there.
         for (size_t changes = cut ? 0 : 1 + below(4); changes > 0; --changes)
-            bytes[below(below(2) ? valid.size() : std::min<size_t>(valid.size(), 400))] =
-                static_cast<char>(below(256));
+            bytes[below(below(2) ? valid.size() : std::min<size_t>(valid.size(), 400))] = static_cast<char>(below(256));
         bool refused = false;
         try {
             read(folder.write(name, bytes));
@@ -81,8 +75,7 @@ inline void damage(const TestFolder& folder, const std::string& name, const std:
         } catch (const std::exception& error) {
             ADD_FAILURE() << "damaged " << name << " number " << i << ": " << error.what();
         }
-        EXPECT_TRUE(refused || !(cut && cut_is_error))
-            << name << " cut to " << bytes.size() << " bytes was accepted";
+        EXPECT_TRUE(refused || !(cut && cut_is_error)) << name << " cut to " << bytes.size() << " bytes was accepted";
     }
 }
 

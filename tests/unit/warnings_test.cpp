@@ -21,10 +21,9 @@ const std::string nested = "a dielectric may lie inside the dielectric of ",
 class DielectricWarnings : public testing::Test {
   protected:
     DielectricWarnings() {
-        folder.write(
-            "all.mtl",
-            "newmtl clear\nd 0\nNi 1.5\nnewmtl teal\nd 0\nNi 1.5\nTf 0.1 0.5 0.6\nnewmtl wall\nKd 1 1 1\n"
-            "newmtl water\nd 0\nNi 1.33\n");
+        folder.write("all.mtl",
+                     "newmtl clear\nd 0\nNi 1.5\nnewmtl teal\nd 0\nNi 1.5\nTf 0.1 0.5 0.6\nnewmtl wall\nKd 1 1 1\n"
+                     "newmtl water\nd 0\nNi 1.33\n");
         for (const std::string material : {"clear", "teal", "wall"})
             folder.write("cube_" + material + ".obj", "mtllib all.mtl\nusemtl " + material + "\n" + cube(1));
     }
@@ -38,8 +37,7 @@ class DielectricWarnings : public testing::Test {
             for (int axis = 0; axis < 3; ++axis) text += (corner >> axis & 1 ? " " : " -") + one;
             text += "\n";
         }
-        return text +
-               "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n";
+        return text + "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n";
     }
 
     // Warnings for these entries of "meshes".
@@ -49,17 +47,16 @@ class DielectricWarnings : public testing::Test {
 
     // An entry of "meshes".
     static std::string entry(const std::string& material, double scale, double x = 0) {
-        return R"({"file": "cube_)" + material + R"(.obj", "scale": )" + std::to_string(scale) +
-               R"(, "translation": [)" + std::to_string(x) + ", 0, 0]}";
+        return R"({"file": "cube_)" + material + R"(.obj", "scale": )" + std::to_string(scale) + R"(, "translation": [)" +
+               std::to_string(x) + ", 0, 0]}";
     }
 
     // The only warning is of this kind, and names these files.
-    static void expect_only(const std::vector<std::string>& warnings, const std::string& kind,
-                            const std::string& inner, const std::string& outer) {
+    static void expect_only(const std::vector<std::string>& warnings, const std::string& kind, const std::string& inner,
+                            const std::string& outer) {
         ASSERT_EQ(warnings.size(), 1u) << kind;
         EXPECT_NE(warnings[0].find("cube_" + inner + ".obj: " + kind), std::string::npos) << warnings[0];
-        EXPECT_NE(warnings[0].find("cube_" + outer + ".obj: ", warnings[0].find(" of ")), std::string::npos)
-            << warnings[0];
+        EXPECT_NE(warnings[0].find("cube_" + outer + ".obj: ", warnings[0].find(" of ")), std::string::npos) << warnings[0];
         EXPECT_EQ(warnings[0].find('\n'), std::string::npos);
     }
 
@@ -79,8 +76,7 @@ TEST_F(DielectricWarnings, NameAnOpaqueObjectInsideAbsorbingGlass) {
 TEST_F(DielectricWarnings, NameAnOpaqueObjectPartlyInsideAbsorbingGlass) {
     expect_only(warnings(entry("teal", 1) + "," + entry("wall", 0.5, 1.2)), reaching, "wall", "teal");
     // A straw through the glass, and a table into which it has sunk: no corner of either is inside.
-    expect_only(warnings(entry("teal", 1) + R"(,{"file": "cube_wall.obj", "scale": [0.1, 5, 0.1]})"),
-                reaching, "wall", "teal");
+    expect_only(warnings(entry("teal", 1) + R"(,{"file": "cube_wall.obj", "scale": [0.1, 5, 0.1]})"), reaching, "wall", "teal");
     expect_only(warnings(entry("teal", 1) + R"(,{"file": "cube_wall.obj", "scale": [5, 1, 5],
                          "translation": [0, -1.9, 0]})"),
                 reaching, "wall", "teal");
@@ -106,8 +102,7 @@ TEST_F(DielectricWarnings, NameGlassThatIsNotClosed) {
     EXPECT_EQ(count(closed.substr(0, closed.rfind("f ")) + "f -7 -3 -1 -5\n"), "4") << "its lid inside out";
     EXPECT_EQ(count(closed.substr(0, closed.rfind("f ")) + "usemtl wall\nf -7 -5 -1 -3\n"), "4") << "of wood";
     // Each face with corners of its own, and -0 is 0.
-    EXPECT_EQ(count("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -0 0 0\nf 1 3 2\nf 5 2 4\nf 2 3 4\nf 1 4 3\n"),
-              "none");
+    EXPECT_EQ(count("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -0 0 0\nf 1 3 2\nf 5 2 4\nf 2 3 4\nf 1 4 3\n"), "none");
 }
 
 TEST_F(DielectricWarnings, AreOneLineForEachKind) {
@@ -152,8 +147,7 @@ TEST_F(DielectricWarnings, AbsurdIndicesAreRefused) {
         folder.write("b.mtl", "newmtl m\nd 0\nNi " + index + "\n");
         return load_scene(folder.write("b.obj", "mtllib b.mtl\nusemtl m\n" + cube(1)));
     };
-    for (const char* index : {"-1.5", "0", "-0", "nan", "inf", "1e39", "1e-30", "1e30"})
-        EXPECT_USER_ERROR(load(index), "Ni");
+    for (const char* index : {"-1.5", "0", "-0", "nan", "inf", "1e39", "1e-30", "1e30"}) EXPECT_USER_ERROR(load(index), "Ni");
     for (const char* index : {"1", "0.75", "2.42", "4"}) EXPECT_NO_THROW(load(index)) << index;
 }
 
@@ -165,9 +159,7 @@ class PrecisionWarnings : public testing::Test {
         folder_.write("a.obj",
                       "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                       "f 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
-        return load_scene(
-                   folder_.write("s.json", R"({"meshes": [{"file": "a.obj")" + placement + "}]" + keys + "}"))
-            .warnings;
+        return load_scene(folder_.write("s.json", R"({"meshes": [{"file": "a.obj")" + placement + "}]" + keys + "}")).warnings;
     }
 
   private:
@@ -189,10 +181,8 @@ TEST_F(PrecisionWarnings, TellHowFarFromTheOriginASceneIs) {
 
 TEST_F(PrecisionWarnings, TellHowNarrowAFieldOfViewIs) {
     const auto with_fov = [&](const std::string& degrees, int height) {
-        return warnings(
-            "", R"(, "height": )" + std::to_string(height) +
-                    R"(, "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "vertical_fov": )" + degrees +
-                    "}");
+        return warnings("", R"(, "height": )" + std::to_string(height) +
+                                R"(, "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "vertical_fov": )" + degrees + "}");
     };
     EXPECT_TRUE(with_fov("0.1", 512).empty());
     EXPECT_TRUE(with_fov("0.0001", 1).empty());

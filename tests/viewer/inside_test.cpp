@@ -68,8 +68,7 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     EXPECT_LT(blue_pixels(), 10u);
 
     write(shader, good);
-    wait_until("unbiased",
-               [&] { return session().latest_verdict() && !session().latest_verdict()->is_biased; });
+    wait_until("unbiased", [&] { return session().latest_verdict() && !session().latest_verdict()->is_biased; });
 }
 
 TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {
@@ -197,8 +196,7 @@ TEST_F(InsideTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
     const vec2 floor = point_of_picture({0.4f, 0.85f});
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
     click(floor.x, floor.y);
-    wait_until("the hemisphere",
-               [&] { return inspection().has_hemisphere() && inspection().hemisphere().samples() >= 2; });
+    wait_until("the hemisphere", [&] { return inspection().has_hemisphere() && inspection().hemisphere().samples() >= 2; });
     const auto resize = [&](const uvec2& size) {
         glfwSetWindowSize(window_->handle(), static_cast<int>(size.x), static_cast<int>(size.y));
         wait_until("resized", [&] { return viewer_->screen().size() == size; });
@@ -214,8 +212,7 @@ TEST_F(InsideTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
             const vec2 point = point_of_picture(position);
             point_at(point.x, point.y);
             run_frames(2);
-            EXPECT_FALSE(ImGui::GetIO().WantCaptureMouse)
-                << size.x << ": at " << position.x << ", " << position.y;
+            EXPECT_FALSE(ImGui::GetIO().WantCaptureMouse) << size.x << ": at " << position.x << ", " << position.y;
         }
     }
 }

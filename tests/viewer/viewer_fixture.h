@@ -30,15 +30,13 @@ inline void write(const fs::path& file, const std::string& text) { std::ofstream
 class ViewerTest : public testing::Test {
   protected:
     void SetUp() override {
-        if (window_systems().empty())
-            GTEST_SKIP() << "there is no display: use tests/support/with_display.sh";
+        if (window_systems().empty()) GTEST_SKIP() << "there is no display: use tests/support/with_display.sh";
     }
 
     void TearDown() override {
         viewer_.reset();
         if (!device_) return;
-        for (const auto& message : device_->validation_messages())
-            ADD_FAILURE() << "validation layer: " << message;
+        for (const auto& message : device_->validation_messages()) ADD_FAILURE() << "validation layer: " << message;
         device_.reset();
         window_.reset();
     }
@@ -66,11 +64,11 @@ class ViewerTest : public testing::Test {
         window_ = std::make_unique<Window>("test", window_size);
         // A virtual display may be out of a GPU's reach, but not of the CPU's.
         for (const char* choice : {"", "llvmpipe"}) {
-            device_ = std::make_unique<Device>(DeviceOptions{
-                .choice = choice,
-                .validation = true,
-                .instance_extensions = window_->instance_extensions(),
-                .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); }});
+            device_ = std::make_unique<Device>(
+                DeviceOptions{.choice = choice,
+                              .validation = true,
+                              .instance_extensions = window_->instance_extensions(),
+                              .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); }});
             if (*device_->surface()) break;
         }
         ASSERT_TRUE(*device_->surface());
@@ -93,8 +91,7 @@ class ViewerTest : public testing::Test {
         const auto start = Clock::now();
         while (!is_so()) {
             ASSERT_TRUE(viewer_->frame());
-            ASSERT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 60)
-                << "still not: " << what;
+            ASSERT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 60) << "still not: " << what;
         }
     }
 

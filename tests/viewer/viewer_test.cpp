@@ -22,17 +22,14 @@ TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
     session().save({saved});
 
     const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / chapter_.name;
-    const std::string command =
-        program.string() +
-        " cornell_box --headless --quiet --backend=compute --width=48 --height=40 --seed=7 "
-        "--samples=24 --output=" +
-        expected.string();
+    const std::string command = program.string() +
+                                " cornell_box --headless --quiet --backend=compute --width=48 --height=40 --seed=7 "
+                                "--samples=24 --output=" +
+                                expected.string();
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
     const FilmFile a = read_film(saved), b = read_film(expected);
     ASSERT_EQ(a.image.pixels.size(), b.image.pixels.size());
-    EXPECT_EQ(
-        std::memcmp(a.image.pixels.data(), b.image.pixels.data(), a.image.pixels.size() * sizeof(FilmPixel)),
-        0);
+    EXPECT_EQ(std::memcmp(a.image.pixels.data(), b.image.pixels.data(), a.image.pixels.size() * sizeof(FilmPixel)), 0);
     EXPECT_NO_THROW(require_same_render(a, b, "window", "headless"));
     EXPECT_EQ(a.record.backend, b.record.backend);
     EXPECT_EQ(a.record.estimator_hash, b.record.estimator_hash);
@@ -101,8 +98,7 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     for (size_t i = 0; i < chapter_.options.size(); ++i) {
         const RenderParameters before = parameters();
         change([&](Options& options) { options.samples.chapter_values[i] = chapter_.options[i].low; });
-        EXPECT_NE(std::memcmp(&before, &session().build().job.parameters, sizeof before), 0)
-            << chapter_.options[i].name;
+        EXPECT_NE(std::memcmp(&before, &session().build().job.parameters, sizeof before), 0) << chapter_.options[i].name;
         EXPECT_NE(session().build().job.record.settings.find(chapter_.options[i].name), std::string::npos);
     }
     change([](Options& options) { options.samples.chapter_values.assign(3, std::nullopt); });
@@ -115,8 +111,7 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     change([](Options& options) { options.light.only_path_length.reset(); });
     change([](Options& options) { options.estimator.strategy = Strategy::bounces; });
     EXPECT_NE(session().build().job.record.settings.find("--strategy bounces"), std::string::npos);
-    const double black_sky =
-        change([](Options& options) { options.estimator.strategy.reset(), options.scene.specular = true; });
+    const double black_sky = change([](Options& options) { options.estimator.strategy.reset(), options.scene.specular = true; });
     const double sky = change([](Options& options) { options.light.background = {1, 2, 3}; });
     EXPECT_EQ(parameters().background, vec3(1, 2, 3));
     EXPECT_GT(sky, 1.2 * black_sky);
@@ -163,24 +158,21 @@ TEST_F(ViewerTest, AChangedShaderIsShownAndABrokenOneReported) {
     const fs::path shader = folder_.path() / "path_trace.glsl";
     chapter_ = {.name = folder_.path().string(), .title = "Reload"};
     const auto constant = [](const char* colour) {
-        return std::string(
-                   "#include \"colour.glsl\"\nvec3 path_trace(Ray ray, inout uvec2 seed) {\n    return ") +
-               colour + ";\n}\n";
+        return std::string("#include \"colour.glsl\"\nvec3 path_trace(Ray ray, inout uvec2 seed) {\n    return ") + colour +
+               ";\n}\n";
     };
     write(folder_.path() / "colour.glsl", "const vec3 included = vec3(0.0, 0.0, 1.0);\n");
     write(shader, constant("vec3(1.0, 0.0, 0.0)"));
     open(make_options());
     const auto shows = [&](double red, double green, double blue) {
-        return session().samples() >= 1 &&
-               saved_film("shown.exr").mean_radiance() == std::array{red, green, blue};
+        return session().samples() >= 1 && saved_film("shown.exr").mean_radiance() == std::array{red, green, blue};
     };
     EXPECT_TRUE(shows(1, 0, 0));
 
     auto start = Clock::now();
     write(shader, constant("vec3(0.0, 1.0, 0.0)"));
     wait_until("green", [&] { return shows(0, 1, 0); });
-    RecordProperty("reload_seconds",
-                   std::to_string(std::chrono::duration<double>(Clock::now() - start).count()));
+    RecordProperty("reload_seconds", std::to_string(std::chrono::duration<double>(Clock::now() - start).count()));
 
     write(shader, constant("missing_colour"));
     wait_until("an error", [&] { return !session().message().empty(); });
@@ -237,15 +229,12 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken_all) {
         size_t different = 0;
         for (int y = 0; y < where.size.y; ++y)
             for (int x = 0; x < where.size.x; ++x) {
-                const auto scaled = [&](int i, int size) {
-                    return static_cast<size_t>((2 * i + 1) * 256 / (2 * size));
-                };
+                const auto scaled = [&](int i, int size) { return static_cast<size_t>((2 * i + 1) * 256 / (2 * size)); };
                 const size_t from = 4 * (256 * scaled(y, where.size.y) + scaled(x, where.size.x));
-                const size_t to = 4 * (shown.width * static_cast<size_t>(where.corner.y + y) +
-                                       static_cast<size_t>(where.corner.x + x));
+                const size_t to =
+                    4 * (shown.width * static_cast<size_t>(where.corner.y + y) + static_cast<size_t>(where.corner.x + x));
                 for (size_t channel = 0; channel < 3; ++channel)
-                    different +=
-                        std::abs(int{shown.pixels[to + channel]} - int{picture.pixels[from + channel]}) > 1;
+                    different += std::abs(int{shown.pixels[to + channel]} - int{picture.pixels[from + channel]}) > 1;
             }
         // Where a pixel ends is a matter of rounding.
         EXPECT_LT(different, picture.pixels.size() / 100);

@@ -34,8 +34,8 @@ struct Inputs {
 };
 
 // `count` points: `samples` of each pixel, pixel after pixel.
-std::vector<float> sample(const std::string& define, const std::string& chapter, uint32_t columns,
-                          uint32_t count, uint32_t samples, uint32_t seed, const std::string& device_name) {
+std::vector<float> sample(const std::string& define, const std::string& chapter, uint32_t columns, uint32_t count,
+                          uint32_t samples, uint32_t seed, const std::string& device_name) {
     const Estimator estimator = estimator_of(load_chapter(chapter));
     ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
                         .defines = {define, "COLUMNS " + std::to_string(columns)},
@@ -65,9 +65,8 @@ int main(int argument_count, char** arguments) {
         if (words.size() != 7 || !samplers.contains(words[0]))
             throw std::runtime_error("sample_points is a part of ./lab sample: call that");
         const Sampler& sampler = samplers.at(words[0]);
-        const auto points =
-            sample(sampler.define, words[1], sampler.columns > 0 ? sampler.columns : number(5), number(2),
-                   number(3), number(4), words[6]);
+        const auto points = sample(sampler.define, words[1], sampler.columns > 0 ? sampler.columns : number(5), number(2),
+                                   number(3), number(4), words[6]);
         make_binary(stdout);
         std::cout.write(reinterpret_cast<const char*>(points.data()),
                         static_cast<std::streamsize>(points.size() * sizeof(float)));
