@@ -8,7 +8,7 @@
 #include "measure/box_scene.h"
 #include "measure/measurement.h"
 #include "measure/rates.h"
-#include "measure/recorded_ray.h"
+#include "measure/replay/recorded_ray.h"
 #include "rendering/settings.h"
 #include "scene/scene_file.h"
 
