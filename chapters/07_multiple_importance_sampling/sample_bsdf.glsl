@@ -18,8 +18,8 @@ BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
     if (is_from_lobe) omega = sample_phong(s, get_random_numbers(seed));
 #endif
     if (!is_from_lobe) omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
-    // The weight ρ n·ω / p_b.
+    // The weight ρ n·ω / p_b = π ρ · (n·ω / π) / p_b: exactly π ρ where p_b is the cosine's density.
     float density = get_bsdf_density(s, omega);
-    vec3 weight = get_brdf(s, omega) * (dot(s.normal, omega) / density);
+    vec3 weight = PI * get_brdf(s, omega) * (dot(s.normal, omega) / PI / density);
     return BsdfSample(omega, is_above_surface(s, omega) ? weight : vec3(0.0), density, false, 1.0);
 }

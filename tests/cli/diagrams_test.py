@@ -1,6 +1,7 @@
 """The diagrams of the pages, SVG files drawn once: they are legible on white and on black."""
 
 import re
+import unittest
 import xml.etree.ElementTree as ElementTree
 
 from program import PROJECT

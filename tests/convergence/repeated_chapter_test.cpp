@@ -17,15 +17,6 @@ class RepeatedChapter : public testing::TestWithParam<size_t> {};
 INSTANTIATE_TEST_SUITE_P(, RepeatedChapter, testing::Range(size_t{0}, repeated_chapters.size()),
                          [](const auto& instance) { return "chapter_" + repeated_chapters[instance.param].chapter; });
 
-Estimator repetition_estimator(const Repetition& repetition) {
-    Estimator estimator = chapter_estimator(repetition.chapter);
-    if (repetition.has("points")) return estimator;
-    estimator.observed = estimator.file;
-    estimator.file = project_folder() / "tests" / "shaders" / "without_points.glsl";
-    std::erase(estimator.defines, "LOW_DISCREPANCY");
-    return estimator;
-}
-
 // Rooms to be rendered, and whether light samples find the light in them.
 std::vector<std::pair<Scene, Strategy>> scenes_of(const Repetition& repetition) {
     const Scene room = empty_room();
@@ -72,7 +63,7 @@ TEST_P(RepeatedChapter, IsTheChapterBeforeIt) {
                                 .seed = 7,
                                 .splitting_factor = repetition.has("splitting") ? 2u : 1u,
                                 .strategy = strategy,
-                                .estimator = repetition_estimator(repetition)};
+                                .estimator = chapter_estimator(repetition.chapter)};
         SceneRenderer chapter(scene, settings);
         settings.estimator = chapter_estimator(repetition.before);
         SceneRenderer before(scene, settings);

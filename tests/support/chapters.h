@@ -57,7 +57,7 @@ std::vector<ReferenceCase> reference_cases();
 // A chapter that is the one before it where what it adds is left out: "repeats" in tests.json.
 struct Repetition {
     std::string chapter, before;
-    std::vector<std::string> without;  // "splitting", "roulette", "glass", "probe" or "points"
+    std::vector<std::string> without;  // "splitting", "roulette", "glass" or "probe"
 
     bool has(const std::string& what) const;
 };
