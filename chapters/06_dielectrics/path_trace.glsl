@@ -8,15 +8,7 @@
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "03_next_event_estimation/direct_light.glsl"
 #include "dielectric.glsl"
-
-// Samples ω_k: at a dielectric one of two directions, elsewhere with density n·ω_k / π with respect to solid angle and the
-// weight π ρ.
-BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
-    if (s.is_dielectric) return sample_dielectric(s, seed);
-    vec3 omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
-    vec3 weight = is_above_surface(s, omega) ? PI * get_brdf(s, omega) : vec3(0.0);
-    return BsdfSample(omega, weight, dot(s.normal, omega) / PI, false, 1.0);
-}
+#include "sample_bsdf.glsl"
 
 // Estimates the light that the first hit x_1 scatters to the camera, by one path.
 vec3 trace_branch(ShadingData s, inout uvec2 seed) {

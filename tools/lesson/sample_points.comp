@@ -13,7 +13,7 @@ layout(scalar, binding = 1) readonly buffer Inputs {
     LightTriangle light_triangles[1];
 };
 
-#if defined(DIRECTIONS) || defined(LIGHT_POINTS) || defined(LOW_DISCREPANCY)
+#if defined(DIRECTIONS) || defined(LIGHT_POINTS)
 #include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
 
