@@ -119,7 +119,7 @@ TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_a
     options.appearance.sample_count = 1;
     open(options);
     Inspection inspection(*device_);
-    inspection.select({40, 40});
+    inspection.select({64, 100});
     vec3 before(0);
     const auto expect_the_sample_of_the_render = [&](const char* what) {
         session().change(options);
