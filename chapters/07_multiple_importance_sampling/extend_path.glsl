@@ -1,5 +1,6 @@
 // The loop over a path, for any light samples: they are sample_direct_light(), and get_background_density() is their density
-// p_l, with respect to solid angle, of a direction that misses all triangles.
+// p_l, with respect to solid angle, of a direction that misses all triangles. A bounce is a function of its own: chapter 10
+// calls it from another loop.
 
 // What a path carries from bounce to bounce.
 struct Path {

@@ -84,7 +84,7 @@ if __name__ == "__main__":
 
 
 class FreshKnowledge_all(unittest.TestCase):
-    """What was measured is no older than the shaders. Measuring takes hours on a CPU, and a stale record misleads nobody for a day."""
+    """What was measured is no older than the shaders. Measuring anew takes hours on a CPU."""
 
     def test_knowledge_was_measured_with_the_shaders_and_settings_of_the_code(self):
         scenes = {chapter: SCENES[chapter][1] for chapter in course()}
