@@ -139,10 +139,13 @@ struct DispatchParameters {
     uint first_film_pixel;  // that the binding of the film begins with
 };
 
-// What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation).
+// What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation). Its first,
+// third, fifth, … samples and the others are independent halves, even where the samples of a half fill each other's gaps: their
+// difference tells the error. It stays small, so that it needs no compensation.
 struct FilmPixel {
     vec3 sum;
     vec3 compensation;
+    vec3 difference;     // sum of the first, third, … sample minus that of the others
     uint sample_count;   // includes the invalid ones
     uint invalid_count;  // samples that were infinite or not a number; they add 0
 };

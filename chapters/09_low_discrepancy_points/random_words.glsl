@@ -22,12 +22,12 @@ uint get_second_dimension(uint index) {
     return index;
 }
 
-// The sample's index and a hash, of the pixel and of the scramble. Samples 2^k to 2^(k+1) - 1 share a scramble and fill
-// the unit square evenly. Those before have others. So whenever the samples of a pixel double, the new ones are
-// independent of the old ones, and the difference of the halves tells the error.
+// The index of the sample's point, and a hash of pixel and scramble. Samples of even index have one scramble, and those of
+// odd index another one. So each half fills the unit square evenly, and is independent of the other one: their difference
+// tells the error, at any number of samples.
 uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
-    uint scramble = uint(findMSB(sample_index) + 1);
-    return uvec2(sample_index, get_state(pixel_index, scramble, key).x);
+    uint scramble = sample_index & 1u;
+    return uvec2(sample_index >> 1u, get_state(pixel_index, scramble, key).x);
 }
 
 // The words of the pixel's next point. The hash in the state counts on, so that it comes back after 2^32 pairs only: a

@@ -70,7 +70,6 @@ class HeadlessRender {
                 std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(), difference.c_str());
         }
         take_snapshot();
-        last_row_film_ = snapshot_;
     }
 
     void run() {
@@ -95,7 +94,7 @@ class HeadlessRender {
         Progress progress(job_.samples, renderer_.samples(), options_.quiet);
         uint32_t done = snapshot_.min_samples();
         while (done < job_.samples && !is_interrupted()) {
-            const uint32_t next = next_look(done, job_.samples);
+            const uint32_t next = next_look(done, job_.samples, growth());
             bool more = true;
             while (more && !is_interrupted() && !is_time_over()) {
                 more = renderer_.advance(next);
@@ -119,10 +118,13 @@ class HeadlessRender {
         return options_.time_limit && renderer_.samples() > 0 && seconds() - job_.record.seconds >= *options_.time_limit;
     }
 
-    bool is_accurate() const {
-        return options_.target_error && !rows_.empty() && rows_.back().error &&
-               rows_.back().error->rel_rmse <= *options_.target_error;
+    // By how much the number of samples must grow until the error is small enough, as it falls with random numbers.
+    double growth() const {
+        if (!options_.target_error || rows_.empty() || !rows_.back().error) return 2;
+        return std::pow(rows_.back().error->rel_rmse / *options_.target_error, 2);
     }
+
+    bool is_accurate() const { return growth() <= 1; }
 
     void save_if_due() {
         // A snapshot is also what remains if the device is lost.
@@ -150,19 +152,21 @@ class HeadlessRender {
     }
 
     void add_row(uint32_t samples) {
-        const bool is_for_summary = !options_.quiet && 2 * uint64_t{samples} == job_.samples;  // tells its error
-        if (options_.report.empty() && !options_.target_error && !is_for_summary && samples < job_.samples) return;
+        if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
         const auto start = Clock::now();
         take_snapshot();
-        rows_.push_back(
-            {.samples = samples,
-             .seconds = record_.seconds,
-             .device_seconds = renderer_.device_seconds(),
-             .rays = record_.rays,
-             .mean = snapshot_.mean_radiance(),
-             .error = reference_ ? compare(snapshot_.mean(), *reference_) : job_.error_from(last_row_film_, snapshot_)});
-        last_row_film_ = snapshot_;
+        rows_.push_back({.samples = samples,
+                         .seconds = record_.seconds,
+                         .device_seconds = renderer_.device_seconds(),
+                         .rays = record_.rays,
+                         .mean = snapshot_.mean_radiance(),
+                         .difference = snapshot_.mean_difference(),
+                         .error = find_error()});
         measuring_seconds_ += seconds_since(start);
+    }
+
+    std::optional<ErrorMetrics> find_error() const {
+        return reference_ ? compare(snapshot_.mean(), *reference_) : estimate_error(snapshot_);
     }
 
     void write_outputs() {
@@ -191,13 +195,12 @@ class HeadlessRender {
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = record_.seconds - job_.record.seconds;
-        const ErrorMetrics* error = rows_.empty() || !rows_.back().error ? nullptr : &*rows_.back().error;
+        const std::optional<ErrorMetrics> error = find_error();
         // Pixels are independent. Against a reference the error would include bias.
-        const double pixels = static_cast<double>(snapshot_.pixels.size());
-        const bool is_of_this_film = error && !reference_ && rows_.back().samples * pixels == paths();
+        const bool is_spread = error && !reference_;
         std::printf("mean radiance  %.5g %.5g %.5g", mean[0], mean[1], mean[2]);
-        if (is_of_this_film) std::printf(" ± %.2g", std::sqrt(error->mse / pixels));
-        std::printf(" (red, green, blue%s)\n", is_of_this_film ? "; standard error, on average" : "");
+        if (is_spread) std::printf(" ± %.2g", std::sqrt(error->mse / static_cast<double>(snapshot_.pixels.size())));
+        std::printf(" (red, green, blue%s)\n", is_spread ? "; standard error, on average" : "");
         std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(), short_number(paths()).c_str(),
                     snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
         std::printf("time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
@@ -218,9 +221,8 @@ class HeadlessRender {
     Renderer& renderer_;
     const AccelerationStructure& acceleration_structure_;
     std::optional<Reference> reference_;
-    FilmImage snapshot_;       // last read from the device
-    FilmRecord record_;        // of that film
-    FilmImage last_row_film_;  // at the last row of the report
+    FilmImage snapshot_;  // last read from the device
+    FilmRecord record_;   // of that film
     std::vector<ReportRow> rows_;
     Clock::time_point start_ = Clock::now();  // of rendering
     Clock::time_point last_save_;

@@ -50,6 +50,8 @@ std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t
     return result;
 }
 
+constexpr std::array<const char*, 3> differences{"difference.R", "difference.G", "difference.B"};
+
 // Not inlined: in loops over floats and doubles GCC 12 drops this rounding.
 [[gnu::noinline]] float to_float(double number) { return static_cast<float>(number); }
 
@@ -70,6 +72,10 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
                       {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
                       {"rays", std::to_string(record.rays)}, {"seconds", to_text(record.seconds)}};
     for (const auto& [name, text] : texts) exr.attributes[name] = record.*text;
+    for (int channel = 0; channel < 3; ++channel)
+        for (const auto& pixel : image.pixels)
+            exr.channels[differences[static_cast<size_t>(channel)]].push_back(
+                to_float(double{pixel.difference[channel]} / std::max(pixel.sample_count, 1u)));
     // Beyond the fewest, since floats hold whole numbers only up to 2^24.
     if (!image.has_equal_sample_counts())
         for (const auto& pixel : image.pixels)
@@ -91,6 +97,14 @@ FilmFile read_film(const std::filesystem::path& file) {
     const auto samples = number<uint32_t>(exr, "samples", file);
     const auto further_samples = counts(exr, "further_samples", count, file);
     const auto invalid = counts(exr, "invalid_samples", count, file);
+    std::array<const std::vector<float>*, 3> difference{};
+    for (size_t channel = 0; channel < 3; ++channel) {
+        const auto found = exr.channels.find(differences[channel]);
+        if (found == exr.channels.end())
+            throw UserError(file.string() + ": no channel '" + differences[channel] +
+                            "', which tells its error: only an EXR written by a chapter of today can be continued or merged");
+        difference[channel] = &found->second;
+    }
     film.image = {exr.image.width, exr.image.height, std::vector<FilmPixel>(count)};
     in_parallel(count, 1 << 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
@@ -101,6 +115,8 @@ FilmFile read_film(const std::filesystem::path& file) {
             if (!std::all_of(rgb, rgb + 3, [](float value) { return std::isfinite(value); }))
                 throw UserError(file.string() + ": has infinite pixels: render again");
             set_sum(pixel, glm::dvec3(rgb[0], rgb[1], rgb[2]) * static_cast<double>(pixel.sample_count));
+            const vec3 mean_difference((*difference[0])[i], (*difference[1])[i], (*difference[2])[i]);
+            pixel.difference = mean_difference * static_cast<float>(pixel.sample_count);
         }
     });
     return film;
@@ -122,16 +138,21 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
 
 // Adds a film to the sum of others of the same render.
 static void add(FilmFile& sum, const FilmFile& part) {
+    // A range that begins at an odd sample of the whole has the halves the other way round.
+    const uint32_t first_sample = std::min(sum.record.first_sample, part.record.first_sample);
+    const auto sign_of = [&](const FilmFile& film) { return (film.record.first_sample - first_sample) % 2 == 0 ? 1.0f : -1.0f; };
+    const float sign_of_sum = sign_of(sum), sign_of_part = sign_of(part);
     in_parallel(sum.image.pixels.size(), 1 << 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             FilmPixel& pixel = sum.image.pixels[i];
             const FilmPixel& added = part.image.pixels[i];
             set_sum(pixel, sum_of(pixel) + glm::dvec3(added.sum) + glm::dvec3(added.compensation));
+            pixel.difference = sign_of_sum * pixel.difference + sign_of_part * added.difference;
             pixel.sample_count += added.sample_count;
             pixel.invalid_count += added.invalid_count;
         }
     });
-    sum.record.first_sample = std::min(sum.record.first_sample, part.record.first_sample);
+    sum.record.first_sample = first_sample;
     sum.record.rays += part.record.rays;
     sum.record.seconds += part.record.seconds;
     if (sum.record.backend != part.record.backend) sum.record.backend = "several";

@@ -24,7 +24,9 @@ struct FilmRecord {
 };
 
 // The attribute `samples` is the smallest count of all pixels; after an interrupted render the channel `further_samples` holds
-// what pixels have beyond it. The channel `invalid_samples` counts invalid ones, if any.
+// what pixels have beyond it. The channels `difference.R`, … hold what the first, third, … sample of a pixel add to the picture
+// minus what the others add: with an even number of samples its absolute value is the standard error. The channel
+// `invalid_samples` counts invalid ones, if any.
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record);
 
 struct FilmFile {

@@ -12,7 +12,36 @@ constexpr size_t pixels_per_piece = 1 << 16;  // that a thread works on at a tim
 
 glm::dvec3 mean_of(const FilmPixel& pixel) { return sum_of(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u)); }
 
+std::array<double, 3> mean_over_pixels(const std::vector<FilmPixel>& pixels, glm::dvec3 (*value_of)(const FilmPixel&)) {
+    const auto sum = sum_in_parallel<glm::dvec3>(pixels.size(), [&](size_t begin, size_t end) {
+        glm::dvec3 part(0);
+        for (size_t i = begin; i < end; ++i) part += value_of(pixels[i]);
+        return part;
+    });
+    const glm::dvec3 mean = sum / static_cast<double>(std::max<size_t>(pixels.size(), 1));
+    return {mean.r, mean.g, mean.b};
+}
+
+// Numbers of samples of the two halves.
+glm::dvec2 sizes_of_halves(const FilmPixel& pixel) {
+    return {pixel.sample_count - pixel.sample_count / 2, pixel.sample_count / 2};
+}
+
 }  // namespace
+
+glm::dvec3 difference_of_halves(const FilmPixel& pixel) {
+    if (pixel.sample_count < 2) return glm::dvec3(0);
+    const glm::dvec2 sizes = sizes_of_halves(pixel);
+    const glm::dvec3 sum = sum_of(pixel), difference(pixel.difference);
+    return 0.5 * ((sum + difference) / sizes[0] - (sum - difference) / sizes[1]);
+}
+
+glm::dvec3 variance_of_mean(const FilmPixel& pixel) {
+    // The expected square of the difference is the variance of a sample times 1/n_0 + 1/n_1 = n/(n_0 n_1).
+    const glm::dvec2 parts = sizes_of_halves(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u));
+    const glm::dvec3 difference = difference_of_halves(pixel);
+    return parts[0] * parts[1] * difference * difference;
+}
 
 uint32_t FilmImage::min_samples() const {
     return pixels.empty() ? 0 : std::ranges::min(pixels, {}, &FilmPixel::sample_count).sample_count;
@@ -42,31 +71,10 @@ Image FilmImage::mean() const {
     return image;
 }
 
-std::array<double, 3> FilmImage::mean_radiance() const {
-    const auto sum = sum_in_parallel<glm::dvec3>(pixels.size(), [&](size_t begin, size_t end) {
-        glm::dvec3 sum_of_means(0);
-        for (size_t i = begin; i < end; ++i) sum_of_means += mean_of(pixels[i]);
-        return sum_of_means;
-    });
-    const glm::dvec3 mean = sum / static_cast<double>(std::max<size_t>(pixels.size(), 1));
-    return {mean.r, mean.g, mean.b};
-}
+std::array<double, 3> FilmImage::mean_radiance() const { return mean_over_pixels(pixels, mean_of); }
+std::array<double, 3> FilmImage::mean_difference() const { return mean_over_pixels(pixels, difference_of_halves); }
 
 std::string size_text(const uvec2& size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }
-
-FilmImage samples_after(const FilmImage& first, const FilmImage& whole) {
-    FilmImage rest = whole;
-    in_parallel(rest.pixels.size(), pixels_per_piece, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            FilmPixel& pixel = rest.pixels[i];
-            const FilmPixel& before = first.pixels[i];
-            pixel.sum -= before.sum;
-            pixel.compensation -= before.compensation;
-            pixel.sample_count -= before.sample_count;
-        }
-    });
-    return rest;
-}
 
 Texture to_display(const FilmImage& film, DisplayTransform transform, float exposure) {
     const Image mean = film.mean();

@@ -11,6 +11,11 @@ namespace lab {
 // The sum of a pixel's samples: two floats together hold it.
 inline glm::dvec3 sum_of(const FilmPixel& pixel) { return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation); }
 
+// The mean of the first, third, … sample minus that of the others: two independent estimates. 0 of fewer than two samples.
+glm::dvec3 difference_of_halves(const FilmPixel& pixel);
+// The variance of the mean of all samples, estimated from that difference.
+glm::dvec3 variance_of_mean(const FilmPixel& pixel);
+
 // The contents of a film: pixels row by row from the top.
 struct FilmImage {
     uint32_t width = 0;
@@ -18,17 +23,15 @@ struct FilmImage {
     std::vector<FilmPixel> pixels;
 
     bool has_equal_sample_counts() const;
-    uint32_t min_samples() const;                 // per pixel, the fewest
-    uint64_t invalid_samples() const;             // infinite or NaN samples of all pixels
-    Image mean() const;                           // per pixel; 0 without samples
-    std::array<double, 3> mean_radiance() const;  // of the whole image
+    uint32_t min_samples() const;                   // per pixel, the fewest
+    uint64_t invalid_samples() const;               // infinite or NaN samples of all pixels
+    Image mean() const;                             // per pixel; 0 without samples
+    std::array<double, 3> mean_radiance() const;    // of the whole image
+    std::array<double, 3> mean_difference() const;  // of the halves, of the whole image
 };
 
 // For messages: "640x480".
 std::string size_text(const uvec2& size);
-
-// The samples that `whole` has beyond `first`, an earlier state of the same film.
-FilmImage samples_after(const FilmImage& first, const FilmImage& whole);
 
 // How values become colours; views of normals, depth and the like are not radiance.
 enum class DisplayTransform {

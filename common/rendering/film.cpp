@@ -5,8 +5,8 @@
 namespace lab {
 namespace {
 
-// Of windows, in bytes: no device asks for more.
-constexpr size_t alignment = 256;
+// Of windows, in bytes: whole pixels, and a multiple of 256 bytes. No device asks for more.
+constexpr size_t alignment = 64 * sizeof(FilmPixel);
 
 }  // namespace
 
@@ -23,7 +23,7 @@ MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
 }
 
 size_t Film::max_pixels(const DeviceDescription& device) {
-    return std::min(device.largest_buffer, device.memory) / sizeof(FilmPixel);
+    return std::min(device.largest_buffer, device.memory) / alignment * (alignment / sizeof(FilmPixel));
 }
 
 Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_window)
@@ -44,8 +44,7 @@ Binding Film::binding() const {
 FilmWindow Film::window_from(uint32_t block) const {
     const uint32_t blocks_per_row = count_blocks({width_, 1});
     const size_t first_row = block / blocks_per_row * BLOCK_HEIGHT;
-    // Eight rows of pixels are a multiple of the alignment.
-    const size_t offset = std::min(first_row * width_ * sizeof(FilmPixel), buffer_.size() - window_size_);
+    const size_t offset = std::min(first_row * width_ * sizeof(FilmPixel) / alignment * alignment, buffer_.size() - window_size_);
     const size_t end_row = (offset + window_size_) / sizeof(FilmPixel) / width_;
     return {static_cast<uint32_t>(offset / sizeof(FilmPixel)),
             end_row < height_ ? static_cast<uint32_t>(end_row) / BLOCK_HEIGHT * blocks_per_row : count_blocks({width_, height_})};

@@ -22,7 +22,7 @@ class Film {
     // Pixels of the largest film that a device can hold.
     static size_t max_pixels(const DeviceDescription& device);
 
-    // Starts without samples. A window has at most `max_window` bytes, and room for a row of blocks.
+    // Starts without samples. A window has at most `max_window` bytes, and room for a row of blocks and 128 pixels.
     Film(const Device& device, uint32_t width, uint32_t height, size_t max_window = SIZE_MAX);
 
     uint32_t width() const { return width_; }

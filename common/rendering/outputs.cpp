@@ -61,6 +61,7 @@ json to_json(const ReportRow& row) {
     set("mse_uncorrected", &ErrorMetrics::mse_uncorrected);
     set("rel_mse_uncorrected", &ErrorMetrics::rel_mse_uncorrected);
     result["mean"] = row.mean;
+    result["difference"] = row.difference;
     return result;
 }
 
@@ -69,13 +70,14 @@ std::string to_csv(const json& rows) {
     for (const auto& row : rows) {
         names.str("");  // the same for every row
         for (const auto& [name, value] : row.items()) {
-            if (name == "mean") {
-                names << "mean_r,mean_g,mean_b";
-                values << value[0] << ',' << value[1] << ',' << value[2];
+            const char* separator = names.tellp() > 0 ? "," : "";
+            if (value.is_array()) {
+                names << separator << name << "_r," << name << "_g," << name << "_b";
+                values << separator << value[0] << ',' << value[1] << ',' << value[2];
             } else {
-                names << name << ',';
+                names << separator << name;
+                values << separator;
                 if (!value.is_null()) values << value;
-                values << ',';
             }
         }
         values << "\n";

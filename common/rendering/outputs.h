@@ -27,11 +27,12 @@ struct ReportRow {
     double seconds = 0;         // of rendering, without the making of rows
     double device_seconds = 0;  // of the device in this run
     uint64_t rays = 0;
-    std::array<double, 3> mean{};  // radiance of the image
+    std::array<double, 3> mean{};        // radiance of the image
+    std::array<double, 3> difference{};  // of the means of the samples' halves
     std::optional<ErrorMetrics> error;
 };
 
-// Errors are against a reference, or estimated from two halves of the samples.
+// Errors are against a reference, or estimated from the halves of the samples.
 enum class ErrorSource { reference, halves };
 
 // Writes .json or .csv.

@@ -1,7 +1,7 @@
 #include "rendering/render_job.h"
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 
 #include "error.h"
 #include "files/file.h"
@@ -28,13 +28,6 @@ void check_sample_count(const RenderJob& job) {
         throw UserError("--first-sample + --samples is above 2^32: there are no more random numbers than that");
 }
 
-void check_halves(const RenderJob& job) {
-    if (!job.has_independent_halves() && job.options.run.target_error && job.options.run.reference.empty())
-        throw UserError(
-            "--target-error: with --first-sample this chapter cannot tell its error, since its samples "
-            "depend on each other: give a --reference");
-}
-
 void check_scene(const Chapter& chapter, const Scene& scene) {
     if (features_of(scene).dielectrics && !chapter.dielectrics)
         throw UserError(scene.file.string() + ": has a dielectric (d < 1), which " + chapter.name +
@@ -43,23 +36,15 @@ void check_scene(const Chapter& chapter, const Scene& scene) {
 
 }  // namespace
 
-std::optional<ErrorMetrics> RenderJob::error_from(const FilmImage& half, const FilmImage& whole) const {
-    const uint32_t before = half.min_samples();
-    if (!has_independent_halves() || before == 0 || whole.min_samples() != 2 * before) return std::nullopt;
-    if (low_discrepancy && !std::has_single_bit(before)) return std::nullopt;   // they share a scramble
-    if (whole.mean_radiance() == std::array<double, 3>{}) return std::nullopt;  // black halves agree by chance
-    return estimate_error(half.mean(), samples_after(half, whole).mean());
-}
-
-uint32_t next_look(uint32_t samples, uint32_t target) {
-    return static_cast<uint32_t>(std::min<uint64_t>(std::bit_ceil(uint64_t{samples} + 1), target));
+uint32_t next_look(uint32_t samples, uint32_t target, double growth) {
+    const double next = std::ceil(samples * std::clamp(growth, 1.125, 2.0));
+    return static_cast<uint32_t>(std::clamp(next, samples + 1.0, static_cast<double>(target)));
 }
 
 RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_ptr<const Scene> scene) {
     check_scene(chapter, *scene);
     RenderJob job;
     job.estimator = make_estimator(chapter, options);
-    job.low_discrepancy = chapter.low_discrepancy;
     job.scene = std::move(scene);
     job.record.chapter = chapter.name;
     job.record.scene = job.scene->file.filename().string();
@@ -74,7 +59,6 @@ RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_p
         job.record.rays = job.resumed->record.rays;
         check_sample_count(job);
     }
-    check_halves(job);
     return job;
 }
 

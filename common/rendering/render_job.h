@@ -5,7 +5,6 @@
 #include "film/film_file.h"
 #include "rendering/options.h"
 #include "rendering/renderer.h"
-#include "statistics/error_metrics.h"
 
 namespace lab {
 
@@ -16,20 +15,13 @@ struct RenderJob {
     RenderParameters parameters{};
     uint32_t samples = 0;  // wanted per pixel
     FilmRecord record = {};
-    bool low_discrepancy = false;          // of the chapter
     std::optional<FilmFile> resumed = {};  // the run that this one continues
-
-    // Whether the two halves of 2^k samples are independent, so that their difference gives the error. Low-discrepancy samples
-    // 2^k to 2^(k+1) - 1, counted from 0, share a scramble.
-    bool has_independent_halves() const { return !low_discrepancy || record.first_sample == 0; }
-    // Estimates the error of a film from an earlier state with half the samples. Unknown for other counts, and while the film is
-    // black.
-    std::optional<ErrorMetrics> error_from(const FilmImage& half, const FilmImage& whole) const;
 };
 
-// The sample count at which a render looks at its error next: a power of two or the target. Looking at every dispatch would
-// favour images that look converged by chance.
-uint32_t next_look(uint32_t samples, uint32_t target);
+// The sample count at which a render looks at its error next: by `growth` more samples, at least an eighth and at most as many
+// again, but no more than the target. So looks are few and cheap. A look at every dispatch would not only take time: where a few
+// bright samples decide, it would favour pictures that have met few of them so far.
+uint32_t next_look(uint32_t samples, uint32_t target, double growth = 2);
 
 // Prepares everything that needs no device, so that mistakes show first. Throws UserError for scenes that the chapter cannot
 // render, and for options that contradict each other or what --resume continues.

@@ -103,39 +103,26 @@ ErrorMetrics compare(const Image& image, const Reference& reference) {
         [&](size_t i) { return reference.variance ? double{reference.variance->pixels[i]} : 0; });
 }
 
-ErrorMetrics estimate_error(const Image& first, const Image& second) {
-    Image mean = first;
-    for (size_t i = 0; i < mean.pixels.size(); ++i) mean.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
+std::optional<ErrorMetrics> estimate_error(const FilmImage& film) {
+    if (film.min_samples() < 2 || film.mean_radiance() == std::array<double, 3>{}) return std::nullopt;
     return metrics(
-        block_means(mean),
-        [&](size_t i) {
-            const double difference = double{first.pixels[i]} - double{second.pixels[i]};
-            return difference * difference / 4;
-        },
+        block_means(film.mean()), [&](size_t i) { return variance_of_mean(film.pixels[i / 3])[static_cast<int>(i % 3)]; },
         [](size_t) { return 0.0; });
 }
 
-NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, glm::uvec2 corner, glm::uvec2 size) {
+NoiseEstimate estimate_noise(const FilmImage& film, glm::uvec2 corner, glm::uvec2 size) {
     NoiseEstimate estimate;
     double variance = 0;
-    const glm::uvec2 end = glm::min(corner + size, glm::uvec2(later.width, later.height));
+    const glm::uvec2 end = glm::min(corner + size, glm::uvec2(film.width, film.height));
     const double pixels = std::max((end.x - corner.x) * (end.y - corner.y), 1u);
     for (uint32_t y = corner.y; y < end.y; ++y)
         for (uint32_t x = corner.x; x < end.x; ++x) {
-            const size_t i = size_t{y} * later.width + x;
-            const FilmPixel& whole = later.pixels[i];
-            if (whole.sample_count == 0) continue;
-            const double count = whole.sample_count;
-            const double first = earlier.pixels.empty() ? 0 : earlier.pixels[i].sample_count, second = count - first;
+            const FilmPixel& pixel = film.pixels[size_t{y} * film.width + x];
+            const double count = pixel.sample_count;
             estimate.samples += count / pixels;
-            estimate.invalid_samples += whole.invalid_count;
-            const glm::dvec3 sum = sum_of(whole);
-            estimate.mean += sum / count / pixels;
-            if (first == 0 || second == 0) continue;
-            const glm::dvec3 sum_of_first = sum_of(earlier.pixels[i]);
-            const glm::dvec3 difference = sum_of_first / first - (sum - sum_of_first) / second;
-            // Its expected square is the variance of a sample times 1/first + 1/second.
-            variance += glm::dot(difference, difference) / (1 / first + 1 / second) / count / (3 * pixels);
+            estimate.invalid_samples += pixel.invalid_count;
+            estimate.mean += sum_of(pixel) / std::max(count, 1.0) / pixels;
+            variance += glm::dot(variance_of_mean(pixel), glm::dvec3(1)) / (3 * pixels);
         }
     estimate.standard_error = std::sqrt(variance);
     const double mean = (estimate.mean[0] + estimate.mean[1] + estimate.mean[2]) / 3;

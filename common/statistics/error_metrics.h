@@ -39,10 +39,10 @@ Reference read_reference(const std::filesystem::path& file);
 // Image and reference have the same size.
 ErrorMetrics compare(const Image& image, const Reference& reference);
 
-// Estimates the error of (first + second) / 2 for two independent renders with equally many samples: the expected square of their
-// difference is four times the variance of that mean. Errors are relative to means over 8 x 8 pixels, since a noisy pixel's own
-// value would excuse its error.
-ErrorMetrics estimate_error(const Image& first, const Image& second);
+// Estimates the error of a film from the halves of its samples. Errors are relative to means over 8 x 8 pixels, since a noisy
+// pixel's own value would excuse its error. Unknown before every pixel has two samples, and while the film is black: black halves
+// agree by chance.
+std::optional<ErrorMetrics> estimate_error(const FilmImage& film);
 
 // The noise of a rectangle of pixels.
 struct NoiseEstimate {
@@ -54,8 +54,7 @@ struct NoiseEstimate {
     uint64_t invalid_samples = 0;
 };
 
-// Estimates noise from two states of a film: the samples added in between are independent of the earlier ones, so the two means
-// differ by noise only. The standard error is 0 where either part has no samples.
-NoiseEstimate estimate_noise(const FilmImage& earlier, const FilmImage& later, glm::uvec2 corner, glm::uvec2 size);
+// Estimates noise from the halves of the samples. Pixels with fewer than two have none.
+NoiseEstimate estimate_noise(const FilmImage& film, glm::uvec2 corner, glm::uvec2 size);
 
 }  // namespace lab

@@ -96,13 +96,12 @@ std::vector<Layer> Comparison::layers(const Session& first, const Rectangle& whe
 }
 
 std::optional<Difference> Comparison::difference(const Session& first) const {
-    if (!second_ || first.earlier_snapshot().pixels.empty() || second_->earlier_snapshot().pixels.empty()) return std::nullopt;
+    if (!second_ || first.last_snapshot().min_samples() < 2) return std::nullopt;
     // Images of different sizes are about to be replaced.
     const FilmImage &a = first.last_snapshot(), &b = second_->last_snapshot();
     if (a.pixels.size() != b.pixels.size()) return std::nullopt;
     const glm::uvec2 size(a.width, a.height);
-    const NoiseEstimate noise_a = estimate_noise(first.earlier_snapshot(), a, {0, 0}, size),
-                        noise_b = estimate_noise(second_->earlier_snapshot(), b, {0, 0}, size);
+    const NoiseEstimate noise_a = estimate_noise(a, {0, 0}, size), noise_b = estimate_noise(b, {0, 0}, size);
     const auto mean = [](const NoiseEstimate& noise) { return (noise.mean[0] + noise.mean[1] + noise.mean[2]) / 3; };
     if (!(mean(noise_b) > 0)) return std::nullopt;
     // Pixels are independent, the channels of a pixel are not.

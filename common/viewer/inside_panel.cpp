@@ -116,9 +116,9 @@ void InsidePanel::draw_pixel(const Session& session) {
     const FilmImage& film = session.last_snapshot();
     const std::optional<glm::uvec2> pixel = hovered_ ? hovered_ : selection ? std::optional(selection->pixel) : std::nullopt;
     if (pixel && pixel->x < film.width && pixel->y < film.height) {
-        const NoiseEstimate value = estimate_noise(session.earlier_snapshot(), film, *pixel, {1, 1});
+        const NoiseEstimate value = estimate_noise(film, *pixel, {1, 1});
         const glm::uvec2 corner = *pixel - glm::min(*pixel, glm::uvec2(3));
-        const NoiseEstimate around = estimate_noise(session.earlier_snapshot(), film, corner, {7, 7});
+        const NoiseEstimate around = estimate_noise(film, corner, {7, 7});
         ImGui::TextWrapped("pixel (%u, %u): mean of %.0f samples, %llu invalid", pixel->x, pixel->y, value.samples,
                            static_cast<unsigned long long>(value.invalid_samples));
         text_colour("radiance", vec3(value.mean[0], value.mean[1], value.mean[2]));

@@ -156,7 +156,7 @@ void Session::begin(uint32_t reduction) {
     parameters.image_size = glm::max(parameters.image_size / reduction_, uvec2(1));
     build_->renderer->restart(parameters);
     seconds_ = 0;
-    snapshot_ = earlier_snapshot_ = {};
+    snapshot_ = {};
     snapshot_error_.reset();
     verdict_ = find_verdict();
 }
@@ -207,7 +207,8 @@ void Session::render(double seconds) {
         return elapsed < 0.75 * seconds || (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
     };
     while (renderer.samples() < target_samples() && goes_on()) {
-        uint32_t next = next_look(static_cast<uint32_t>(renderer.samples()), target_samples());
+        auto next = static_cast<uint32_t>(
+            std::min<uint64_t>(std::bit_ceil(static_cast<uint64_t>(renderer.samples()) + 1), target_samples()));
         if (verdict()) next = std::min(next, verdict()->next_samples());
         renderer.set_dispatch_seconds(std::max(seconds - elapsed, 0.1 * seconds));
         const bool is_complete = !renderer.advance(next);
@@ -231,8 +232,7 @@ void Session::take_snapshots(uint32_t samples, double seconds) {
     FilmImage film = build_->renderer->film().read();
     if (is_for_verdict) live_verdict->add(film);
     if (!is_for_error) return;
-    if (const auto error = build_->job.error_from(snapshot_, film)) snapshot_error_ = error->rel_rmse;
-    earlier_snapshot_ = std::move(snapshot_);
+    if (const auto error = estimate_error(film)) snapshot_error_ = error->rel_rmse;
     snapshot_ = std::move(film);
     snapshot_record_ = record(seconds);
 }

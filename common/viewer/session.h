@@ -68,7 +68,7 @@ class Session {
     double seconds() const { return seconds_; }  // spent on rendering
     uint64_t rays() const { return build_->renderer->rays(); }
     uint32_t reduction() const { return reduction_; }  // width of a rendered pixel in pixels of the picture
-    // Relative error (root of rel_mse) estimated from two halves of the samples.
+    // Relative error (root of rel_mse) estimated from the halves of the samples.
     std::optional<double> relative_error() const;
 
     // Test against the scene's reference; null without one, and verdict_text() says why.
@@ -81,8 +81,6 @@ class Session {
     // Writes the picture so far in the formats of the files' extensions.
     void save(const std::vector<std::filesystem::path>& files);
     const FilmImage& last_snapshot() const { return snapshot_; }
-    // The one before, mostly of half the samples; without pixels if there is none.
-    const FilmImage& earlier_snapshot() const { return earlier_snapshot_; }
     // After a failure: keep_after() with the last snapshot.
     [[noreturn]] void keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const;
 
@@ -121,7 +119,6 @@ class Session {
     double seconds_ = 0;
     FilmImage snapshot_;  // at the last power of two
     FilmRecord snapshot_record_;
-    FilmImage earlier_snapshot_;  // at the one before
     std::variant<LiveVerdict, std::string> verdict_ = "the render goes on from an earlier one";
     std::optional<double> snapshot_error_;
 };

@@ -118,32 +118,29 @@ void TileOverlay::explain(const Session& session, const glm::uvec2& pixel) const
 }
 
 // Colours each tile by `heat_of` its estimate.
-void TileOverlay::colour_tiles(const FilmImage& earlier, const FilmImage& later,
-                               const std::function<double(const NoiseEstimate&)>& heat_of) {
+void TileOverlay::colour_tiles(const FilmImage& film, const std::function<double(const NoiseEstimate&)>& heat_of) {
     for (uint32_t y = 0; y < tiles_.y; ++y)
         for (uint32_t x = 0; x < tiles_.x; ++x)
-            colours_.push_back(
-                heat(heat_of(estimate_noise(earlier, later, glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_)))));
+            colours_.push_back(heat(heat_of(estimate_noise(film, glm::uvec2(x, y) * tile_size_, glm::uvec2(tile_size_)))));
 }
 
 void TileOverlay::colour_noise(const Session& session) {
-    const FilmImage& later = session.last_snapshot();
-    if (session.earlier_snapshot().pixels.empty()) {
+    const FilmImage& film = session.last_snapshot();
+    if (film.min_samples() < 2) {
         legend_ = "the noise is not known yet";
         return;
     }
     // Decades from 0.1 % to 100 %.
-    colour_tiles(session.earlier_snapshot(), later,
-                 [](const NoiseEstimate& noise) { return (3 + std::log10(std::max(noise.relative_error, 1e-9))) / 3; });
+    colour_tiles(film, [](const NoiseEstimate& noise) { return (3 + std::log10(std::max(noise.relative_error, 1e-9))) / 3; });
     legend_ = text("standard error of a pixel as part of its tile's mean: dark 0.1 %%, yellow 100 %%; %.0f samples",
-                   later.min_samples(), 0);
+                   film.min_samples(), 0);
 }
 
 void TileOverlay::colour_samples(const Session& session) {
     const FilmImage film = session.build().renderer->film().read();
     const auto [fewest, most] = std::ranges::minmax(film.pixels, {}, &FilmPixel::sample_count);
     const double low = fewest.sample_count, high = most.sample_count;
-    colour_tiles({}, film, [&](const NoiseEstimate& tile) { return high > low ? (tile.samples - low) / (high - low) : 1; });
+    colour_tiles(film, [&](const NoiseEstimate& tile) { return high > low ? (tile.samples - low) / (high - low) : 1; });
     legend_ = text("samples of a pixel: dark %.0f, yellow %.0f", low, high);
 }
 

@@ -29,8 +29,7 @@ class TileOverlay {
     bool shows_bias() const { return shown == Overlay::bias || shown == Overlay::relative_bias; }
     void update(const Session& session);
     void colour_bias(const Session& session);
-    void colour_tiles(const FilmImage& earlier, const FilmImage& later,
-                      const std::function<double(const NoiseEstimate&)>& heat_of);
+    void colour_tiles(const FilmImage& film, const std::function<double(const NoiseEstimate&)>& heat_of);
     void colour_noise(const Session& session);
     void colour_samples(const Session& session);
 

@@ -6,6 +6,7 @@ bool is_invalid(float number) { return (floatBitsToUint(number) & 0x7f800000u) =
 // Adds a sample by Kahan's compensated summation: in 32 bits a plain sum of 10^7 samples is wrong by percents.
 // An invalid sample adds nothing but is counted.
 void add_sample(inout FilmPixel pixel, vec3 radiance) {
+    float sign_of_half = (pixel.sample_count & 1u) == 0u ? 1.0 : -1.0;
     pixel.sample_count += 1u;
     if (is_invalid(radiance.r) || is_invalid(radiance.g) || is_invalid(radiance.b)) {
         pixel.invalid_count += 1u;
@@ -21,4 +22,5 @@ void add_sample(inout FilmPixel pixel, vec3 radiance) {
     precise vec3 lost = corrected - (sum - pixel.sum);
     pixel.compensation = lost;
     pixel.sum = sum;
+    pixel.difference += sign_of_half * radiance;
 }

@@ -11,26 +11,25 @@
 namespace lab {
 namespace {
 
-// Logarithms of error times rays at one sample per pixel, from independent pairs of renders.
+// Logarithms of error times rays at one sample per pixel, from independent renders.
 struct Cost {
     std::vector<double> logarithms;
     double error, rays;
 };
 
 Cost measure(const Scene& scene, RenderSettings settings) {
-    constexpr uint32_t pairs = 16;
-    const double paths = double{2} * settings.samples * settings.width * settings.height;
+    constexpr uint32_t renders = 16;
+    settings.samples *= 2;  // in halves, which tell the error
+    const double paths = static_cast<double>(settings.width) * settings.height * settings.samples;
     Cost cost{.logarithms = {}, .error = 0, .rays = 0};
     SceneRenderer renderer(scene, settings);
-    for (uint32_t pair = 0; pair < pairs; ++pair) {
-        const Rendering first = renderer.render(settings);
+    for (uint32_t i = 0; i < renders; ++i) {
+        const Rendering rendering = renderer.render(settings);
         ++settings.seed;
-        const Rendering second = renderer.render(settings);
-        ++settings.seed;
-        const double error = 2 * settings.samples * estimate_error(first.film.mean(), second.film.mean()).rel_mse;
-        const double rays = static_cast<double>(first.rays + second.rays) / paths;
-        cost.error += error / pairs;
-        cost.rays += rays / pairs;
+        const double error = settings.samples * estimate_error(rendering.film)->rel_mse;
+        const double rays = static_cast<double>(rendering.rays) / paths;
+        cost.error += error / renders;
+        cost.rays += rays / renders;
         cost.logarithms.push_back(std::log(error * rays));
     }
     return cost;

@@ -127,25 +127,20 @@ TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster_all) {
     expect_fast_convergence(load_shipped_scene("cornell_box.json"), settings, -0.52);
 }
 
-// What reports, --target-error and noise maps rest on: the difference between the first half of 2^k samples
-// and the second tells the error of their mean, which the spread over seeds tells as well. Halves of one
-// sequence fill each other's gaps. So they differ more than their mean errs: here their estimate would be
-// several times too large.
+// What reports, --target-error and noise maps rest on: the difference between the halves of the samples tells the error of their
+// mean, which the spread over seeds tells as well. Halves of one sequence fill each other's gaps. So they differ more than their
+// mean errs: here their estimate would be several times too large.
 TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
-    constexpr uint32_t seeds = 24, half = 16;
+    constexpr uint32_t seeds = 24;
     RenderSettings settings = light_samples_only();
-    settings.samples = half;
+    settings.samples = 33;
     SceneRenderer renderer(lamp_above_floor(), settings);
     std::vector<Image> means;
     std::vector<double> estimated, actual;
     for (settings.seed = 9300; settings.seed < 9300 + seeds; ++settings.seed) {
-        settings.first_sample = 0;
-        Image first = renderer.render(settings).film.mean();
-        settings.first_sample = half;
-        const Image second = renderer.render(settings).film.mean();
-        estimated.push_back(estimate_error(first, second).mse);
-        for (size_t i = 0; i < first.pixels.size(); ++i) first.pixels[i] = 0.5f * (first.pixels[i] + second.pixels[i]);
-        means.push_back(std::move(first));
+        const FilmImage film = renderer.render(settings).film;
+        estimated.push_back(estimate_error(film)->mse);
+        means.push_back(film.mean());
     }
     for (const Image& mean : means) {
         double sum = 0;
@@ -164,6 +159,64 @@ TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
                 tolerance + normal_quantile(power) * error);
     EXPECT_NEAR(ratio, 1, tolerance);
     EXPECT_LT(error, tolerance / 6) << "the test is too weak, take larger images";
+}
+
+// The part of tiles of 8 x 8 pixels whose mean is within 1.96 of its standard errors, which the halves tell, of what it should
+// be.
+double part_within_the_error_bar(const FilmImage& film, const Image& expected) {
+    constexpr uint32_t tile = 8;
+    uint32_t within = 0, count = 0;
+    for (uint32_t top = 0; top < film.height; top += tile)
+        for (uint32_t left = 0; left < film.width; left += tile) {
+            glm::dvec3 error(0), variance(0);
+            for (uint32_t i = 0; i < tile * tile; ++i) {
+                const size_t pixel = size_t{top + i / tile} * film.width + left + i % tile;
+                const FilmPixel& values = film.pixels[pixel];
+                const float* mean = &expected.pixels[3 * pixel];
+                error += sum_of(values) / static_cast<double>(values.sample_count) - glm::dvec3(mean[0], mean[1], mean[2]);
+                variance += variance_of_mean(values);
+            }
+            for (int channel = 0; channel < 3; ++channel, ++count)
+                within += std::abs(error[channel]) < 1.96 * std::sqrt(variance[channel]);
+        }
+    return static_cast<double>(within) / count;
+}
+
+// At powers of two, where points are at their best, and at other numbers of samples.
+void expect_error_bars_to_hold(const Scene& scene, RenderSettings settings, uint32_t seeds, const Image& expected) {
+    SceneRenderer renderer(scene, settings);
+    for (const uint32_t samples : {50u, 64u, 100u, 1000u}) {
+        settings.samples = samples;
+        double part = 0;
+        for (uint32_t i = 0; i < seeds; ++i) {
+            settings.seed = test_seed(9500 + i);
+            part += part_within_the_error_bar(renderer.render(settings).film, expected) / seeds;
+        }
+        std::printf("  %u samples: %.1f %% of the error bars hold\n", samples, 100 * part);
+        EXPECT_GT(part, 0.93) << samples << " samples";
+        EXPECT_LT(part, 0.97) << samples << " samples";
+    }
+}
+
+// Of smooth functions whose integrals are 1: there points gain most, and dependent halves tell the most wrong error.
+TEST(LowDiscrepancyConvergence, ErrorBarsHoldAtAnyNumberOfSamples) {
+    const Estimator chapter = chapter_estimator(chapter_named("low_discrepancy_points"));
+    RenderSettings settings{.width = 64, .height = 64};
+    settings.estimator = {.file = project_folder() / "tests" / "shaders" / "smooth_radiance.glsl",
+                          .defines = chapter.defines,
+                          .observed = chapter.file};
+    expect_error_bars_to_hold(closed_box(diffuse_material(vec3(0.5f))), settings, 12,
+                              {64, 64, std::vector<float>(3 * 64 * 64, 1.0f)});
+}
+
+TEST(LowDiscrepancyConvergence, ErrorBarsOfWholePicturesHold_all) {
+    RenderSettings settings{.width = 64, .height = 64, .max_path_length = 3, .roulette_start = 3};
+    settings.estimator = chapter_estimator(chapter_named("low_discrepancy_points"));
+    const Scene scene = load_shipped_scene("cornell_box.json");
+    RenderSettings many = settings;
+    many.samples = 1 << 15;
+    many.seed = test_seed(9400);
+    expect_error_bars_to_hold(scene, settings, 24, render(scene, many).mean());
 }
 
 }  // namespace

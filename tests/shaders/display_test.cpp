@@ -56,7 +56,7 @@ TEST(Display, ShowsAFilmThatIsSeenInParts) {
     FilmImage image = make_film(61, 35);
     std::ranges::rotate(image.pixels, image.pixels.begin() + 1000);
     Film whole(test_device(), image.width, image.height),
-        parts(test_device(), image.width, image.height, BLOCK_HEIGHT * image.width * sizeof(FilmPixel));
+        parts(test_device(), image.width, image.height, (BLOCK_HEIGHT * image.width + 128) * sizeof(FilmPixel));
     whole.write(image);
     parts.write(image);
     ASSERT_GT(parts.window_from(count_blocks({image.width, image.height}) - 1).first_pixel, 0u);

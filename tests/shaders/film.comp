@@ -32,7 +32,7 @@ vec3 get_sample(uint kind, uint index, inout uvec2 seed) {
 }
 
 Result evaluate(Input i) {
-    FilmPixel pixel = FilmPixel(vec3(0.0), vec3(0.0), 0u, 0u);
+    FilmPixel pixel = FilmPixel(vec3(0.0), vec3(0.0), vec3(0.0), 0u, 0u);
     vec3 plain_sum = vec3(0.0);
     uvec2 seed = random_start_state(i.kind, 0u, uvec2(0u));
     for (uint index = 0u; index < i.sample_count; ++index) {

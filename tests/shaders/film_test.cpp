@@ -15,10 +15,10 @@ namespace {
 // As in film.comp.
 enum Kind : uint32_t { uniform, constant, outliers, invalid };
 
-// The sum of a stream of samples. Their bits span less than the 53 of a double, so sums are exact; the
+// The sum of a stream of samples, each times its factor. Their bits span less than the 53 of a double, so sums are exact; the
 // constant is a product.
-std::array<double, 3> exact_sum(Kind kind, uint32_t samples) {
-    if (kind == constant) return {double{0.1f} * samples, double{0.1f} * samples, double{0.1f} * samples};
+template <typename Factor>
+std::array<double, 3> exact_sum(Kind kind, uint32_t samples, Factor factor) {
     std::array<double, 3> sum{};
     RandomState state = start_state(kind, 0, {0, 0});
     for (uint32_t i = 0; i < samples; ++i) {
@@ -26,9 +26,9 @@ std::array<double, 3> exact_sum(Kind kind, uint32_t samples) {
         const auto u = numbers_of_state(state);
         if (kind == invalid && i % 5 == 0) continue;
         const double outlier = kind == outliers && i % 1024 == 0 ? 4096 : 0;
-        sum[0] += static_cast<float>(u[0] + outlier);
-        sum[1] += static_cast<float>(u[1] + outlier);
-        sum[2] += static_cast<float>(1 - u[0] + outlier);
+        const std::array<double, 3> numbers{u[0] + outlier, u[1] + outlier, 1 - u[0] + outlier};
+        for (size_t channel = 0; channel < 3; ++channel)
+            sum[channel] += factor(i) * (kind == constant ? 0.1f : static_cast<float>(numbers[channel]));
     }
     return sum;
 }
@@ -48,12 +48,17 @@ TEST(Film, AddsTenMillionSamplesWithoutLosingAny) {
     for (size_t i = 0; i < inputs.size(); ++i) {
         const auto& [pixel, plain_sum] = results[i];
         const auto kind = static_cast<Kind>(inputs[i].kind);
-        const auto expected = exact_sum(kind, samples);
+        const auto expected = exact_sum(kind, samples, [](uint32_t) { return 1.0; }),
+                   differences = exact_sum(kind, samples, [](uint32_t index) { return index % 2 == 0 ? 1.0 : -1.0; });
         double worst = 0;
         for (int channel = 0; channel < 3; ++channel) {
             const double exact = expected[static_cast<size_t>(channel)];
             const double sum = double{pixel.sum[channel]} + double{pixel.compensation[channel]};
             worst = std::max(worst, std::abs(sum / exact - 1));
+            // Of which the error is told: of random samples it is about as large as the root of their number.
+            const double difference = differences[static_cast<size_t>(channel)];
+            EXPECT_NEAR(pixel.difference[channel], difference, 1e-3 * std::sqrt(samples) + 1e-4 * std::abs(difference))
+                << "stream " << i;
             if (kind != invalid) worst_plain = std::max(worst_plain, std::abs(plain_sum[channel] / exact - 1));
         }
         std::printf("  stream %u: relative error of the sum %.2g\n", inputs[i].kind, worst);

@@ -56,6 +56,7 @@ void main() {
         results[0].dispatch_parameters[i].first_film_pixel = next();
         results[0].film_pixels[i].sum = next_vec3();
         results[0].film_pixels[i].compensation = next_vec3();
+        results[0].film_pixels[i].difference = next_vec3();
         results[0].film_pixels[i].sample_count = next();
         results[0].film_pixels[i].invalid_count = next();
     }

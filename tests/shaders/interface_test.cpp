@@ -59,6 +59,7 @@ TEST(Interface, HasTheSameLayoutInCppAndGlsl) {
         EXPECT_FIELD(all.dispatch_parameters[i].first_film_pixel);
         EXPECT_FIELD(all.film_pixels[i].sum);
         EXPECT_FIELD(all.film_pixels[i].compensation);
+        EXPECT_FIELD(all.film_pixels[i].difference);
         EXPECT_FIELD(all.film_pixels[i].sample_count);
         EXPECT_FIELD(all.film_pixels[i].invalid_count);
     }

@@ -48,12 +48,13 @@ class Points {
     std::vector<Words> words_;
 };
 
-// How many rectangles of 2^-i x 2^(i-k), i = 0, …, k, do not hold exactly one of the 2^k points of a pixel.
-uint32_t count_uneven(const Points& points, uint32_t pixel, uint32_t pair, uint32_t k) {
+// How many rectangles of 2^-i x 2^(i-k), i = 0, …, k, do not hold exactly one of 2^k points of a pixel: every second sample from
+// number `first` on.
+uint32_t count_uneven(const Points& points, uint32_t pixel, uint32_t pair, uint32_t k, uint32_t first) {
     uint32_t uneven = 0;
     for (uint32_t i = 0; i <= k; ++i) {
         std::vector<uint32_t> counts(size_t{1} << k);
-        for (uint32_t n = 0; n < 1u << k; ++n) {
+        for (uint32_t n = first; n < first + (2u << k); n += 2) {
             const auto column = uint64_t{points.word(pixel, n, pair, 0)} >> (32 - i),
                        row = uint64_t{points.word(pixel, n, pair, 1)} >> (32 - (k - i));
             ++counts[column << (k - i) | row];
@@ -63,14 +64,16 @@ uint32_t count_uneven(const Points& points, uint32_t pixel, uint32_t pair, uint3
     return uneven;
 }
 
-TEST(LowDiscrepancyPoints, FillEveryElementaryIntervalOnceWheneverSamplesDouble) {
+TEST(LowDiscrepancyPoints, OfEachHalfFillEveryElementaryIntervalOnce) {
     constexpr uint32_t pixels = 32;
     for (uint32_t k = 0; k <= 12; k += k < 6 ? 1 : 3) {
-        const Points points(pixels, 1u << k, 2u << k, 100 + k);
+        // The first 2^k of each half, and the next.
+        const Points points(pixels, 0, 4u << k, 100 + k);
         for (uint32_t pixel = 0; pixel < pixels; ++pixel)
             for (uint32_t pair = 0; pair < pairs; ++pair)
-                ASSERT_EQ(count_uneven(points, pixel, pair, k), 0u)
-                    << "samples " << (1u << k) << " to " << (2u << k) - 1 << " of pixel " << pixel << ", pair " << pair;
+                for (const uint32_t first : {0u, 1u, 2u << k, (2u << k) + 1})
+                    ASSERT_EQ(count_uneven(points, pixel, pair, k, first), 0u)
+                        << (1u << k) << " samples from " << first << " on of pixel " << pixel << ", pair " << pair;
     }
 }
 
@@ -96,13 +99,13 @@ TEST(LowDiscrepancyPoints, AreUniformWithinTheirStrata) {
     // Where in its stratum of width 1/64 a point lies: a shift that all points of a pixel share would show in
     // the product of two of them.
     constexpr uint32_t pixels = 1 << 14, count = 64;
-    const Points points(pixels, count, 2 * count, 130);
+    const Points points(pixels, 0, 2 * count, 130);
     for (int axis = 0; axis < 2; ++axis) {
         std::vector<uint64_t> counts(64);
         for (uint32_t pixel = 0; pixel < pixels; ++pixel)
-            for (uint32_t i = 0; i < count; i += 2) {
+            for (uint32_t i = 0; i < 2 * count; i += 4) {
                 const uint32_t first = points.word(pixel, i, 1, axis) << 6 >> 29,
-                               second = points.word(pixel, i + 1, 1, axis) << 6 >> 29;
+                               second = points.word(pixel, i + 2, 1, axis) << 6 >> 29;
                 ++counts[first * 8 + second];
             }
         expect_distribution("axis " + std::to_string(axis), counts, std::vector<double>(64, 1.0 / 64), 0.02);
@@ -128,10 +131,10 @@ MeanEstimate shared_order(uint32_t pixels, First first, Second second) {
     return estimate_mean(squares);
 }
 
-TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndScramblesAreIndependent) {
+TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndHalvesAreIndependent) {
+    // Samples of even number, which share a scramble.
     constexpr uint32_t pixels = 4096, count = 64;
-    const Points points(pixels + 1, count, 2 * count, 140), later(pixels, 2 * count, 3 * count, 140),
-        other_seed(pixels, count, 2 * count, 141);
+    const Points points(pixels + 1, 0, 2 * count, 140), other_seed(pixels, 0, 2 * count, 141);
     const auto expect_independent = [&](const std::string& what, const MeanEstimate& mean) {
         std::printf("  %s: %.3f, standard error %.3f\n", what.c_str(), mean.mean, mean.standard_error);
         EXPECT_LT(mean.mean + 5 * mean.standard_error, 2) << what;
@@ -141,15 +144,16 @@ TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndScramblesAreIndependent) {
         for (int axis = 0; axis < 2; ++axis)
             expect_independent("pairs 0 and " + std::to_string(pair) + ", axes 0 and " + std::to_string(axis),
                                shared_order(
-                                   pixels, [&](uint32_t p, uint32_t i) { return points.number(p, i, 0, 0); },
-                                   [&](uint32_t p, uint32_t i) { return points.number(p, i, pair, axis); }));
-    // The same number of a path of neighbouring pixels, of other seeds and of the next scramble.
-    const auto own = [&](uint32_t p, uint32_t i) { return points.number(p, i, 1, 1); };
+                                   pixels, [&](uint32_t p, uint32_t i) { return points.number(p, 2 * i, 0, 0); },
+                                   [&](uint32_t p, uint32_t i) { return points.number(p, 2 * i, pair, axis); }));
+    // The same number of a path of neighbouring pixels, of other seeds and of the other half.
+    const auto own = [&](uint32_t p, uint32_t i) { return points.number(p, 2 * i, 1, 1); };
     expect_independent("neighbours",
-                       shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return points.number(p + 1, i, 1, 1); }));
-    expect_independent("seeds", shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return other_seed.number(p, i, 1, 1); }));
-    expect_independent("the next scramble",
-                       shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return later.number(p, i, 1, 1); }));
+                       shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return points.number(p + 1, 2 * i, 1, 1); }));
+    expect_independent("seeds",
+                       shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return other_seed.number(p, 2 * i, 1, 1); }));
+    expect_independent("halves",
+                       shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return points.number(p, 2 * i + 1, 1, 1); }));
 }
 
 }  // namespace

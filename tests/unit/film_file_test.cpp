@@ -38,7 +38,7 @@ TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
         FilmRecord record{};
         record.first_sample = first;
         const auto file = folder / (std::to_string(first) + "_" + std::to_string(samples) + ".exr");
-        write_film(file, {1, 1, {{vec3(1), vec3(0), samples, 0}}}, record);
+        write_film(file, {1, 1, {{vec3(1), vec3(0), vec3(0), samples, 0}}}, record);
         return file;
     };
     const uint32_t half = 0x80000000;
@@ -58,7 +58,7 @@ TEST(FilmFile, KeepsAndShowsInvalidSamples) {
     for (const uint32_t first : {0u, 5u}) {
         FilmRecord record{};
         record.first_sample = first;
-        const FilmPixel good{vec3(1), vec3(0), 5, 0}, bad{vec3(1), vec3(0), 5, first == 0};
+        const FilmPixel good{vec3(1), vec3(0), vec3(0), 5, 0}, bad{vec3(1), vec3(0), vec3(0), 5, first == 0};
         write_film(folder / (std::to_string(first) + ".exr"), {2, 1, {good, bad}}, record);
     }
     const FilmImage film = merge_films({folder / "0.exr", folder / "5.exr"}).image;

@@ -10,27 +10,28 @@ namespace {
 
 TEST(Noise, IsThatOfTheMean) {
     // Samples are 0 or 1 with probability 1/4, so that their standard deviation is √3/4.
-    constexpr uint32_t extent = 64;
-    FilmImage film{extent, extent, std::vector<FilmPixel>(extent * extent)}, earlier;
+    constexpr uint32_t extent = 64, samples = 63;
+    FilmImage film{extent, extent, std::vector<FilmPixel>(extent * extent)};
     std::mt19937 generator(1);
-    for (const uint32_t samples : {48u, 64u}) {
-        earlier = film;
-        for (FilmPixel& pixel : film.pixels) {
-            std::binomial_distribution<uint32_t> hits(samples - pixel.sample_count, 0.25);
-            for (int channel = 0; channel < 3; ++channel) pixel.sum[channel] += static_cast<float>(hits(generator));
-            pixel.sample_count = samples;
+    for (FilmPixel& pixel : film.pixels) {
+        pixel.sample_count = samples;
+        std::binomial_distribution<uint32_t> of_first((samples + 1) / 2, 0.25), of_second(samples / 2, 0.25);
+        for (int channel = 0; channel < 3; ++channel) {
+            const auto first = static_cast<float>(of_first(generator)), second = static_cast<float>(of_second(generator));
+            pixel.sum[channel] = first + second;
+            pixel.difference[channel] = first - second;
         }
     }
     film.pixels[70].invalid_count = 2;
-    const NoiseEstimate whole = estimate_noise(earlier, film, {0, 0}, {extent, extent});
+    const NoiseEstimate whole = estimate_noise(film, {0, 0}, {extent, extent});
     EXPECT_NEAR(whole.mean[1], 0.25, 0.01);
-    EXPECT_NEAR(whole.standard_error, std::sqrt(3) / 4 / 8, 0.001);
-    EXPECT_NEAR(whole.relative_error, std::sqrt(3) / 8, 0.01);
-    EXPECT_NEAR(whole.samples, 64, 1e-9);
+    EXPECT_NEAR(whole.standard_error, std::sqrt(3.0 / 16 / samples), 0.001);
+    EXPECT_NEAR(whole.relative_error, std::sqrt(3.0 / samples), 0.01);
+    EXPECT_NEAR(whole.samples, samples, 1e-9);
     EXPECT_EQ(whole.invalid_samples, 2u);
-    EXPECT_EQ(estimate_noise(earlier, film, {16, 16}, {8, 8}).invalid_samples, 0u);
-    EXPECT_EQ(estimate_noise({}, film, {0, 0}, {8, 8}).standard_error, 0);
-    EXPECT_EQ(estimate_noise(film, film, {60, 60}, {8, 8}).standard_error, 0);
+    EXPECT_EQ(estimate_noise(film, {16, 16}, {8, 8}).invalid_samples, 0u);
+    EXPECT_EQ(
+        estimate_noise({8, 8, std::vector<FilmPixel>(64, {vec3(1), vec3(0), vec3(1), 1, 0})}, {0, 0}, {8, 8}).standard_error, 0);
 }
 
 TEST(ErrorMetrics, DoNotContainTheVarianceOfTheReference) {

@@ -1,5 +1,6 @@
 #version 460
-// Each invocation writes one point of a sampler, as COLUMNS numbers. A define chooses the sampler.
+// Each invocation writes one point of a sampler, as COLUMNS numbers. A define chooses the sampler. Points of a pixel are those of
+// samples of even index, which belong together where samples depend on each other.
 #ifdef LIGHT_POINTS
 #define FEATURE_LIGHT_TRIANGLES
 #endif
@@ -9,7 +10,7 @@ layout(scalar, binding = 0) writeonly buffer Results { float results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {
     uvec2 key;             // of the random start states
     uint max_path_length;  // 1; set_surface() says why it is no constant
-    uint samples, first_sample;  // of each pixel
+    uint samples;          // of each pixel
     LightTriangle light_triangles[1];
 };
 
@@ -84,5 +85,5 @@ layout(local_size_x = 128) in;
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (COLUMNS * i < results.length()) write_point(i, random_start_state(i / samples, first_sample + i % samples, key));
+    if (COLUMNS * i < results.length()) write_point(i, random_start_state(i / samples, 2u * (i % samples), key));
 }

@@ -1,6 +1,5 @@
 // Writes points of a sampler of a chapter as 32-bit floats to the standard output, for ./lab sample:
 // sample_points SAMPLER CHAPTER COUNT SAMPLES_OF_A_PIXEL SEED DIMENSIONS DEVICE
-#include <bit>
 #include <iostream>
 #include <map>
 
@@ -29,7 +28,7 @@ const std::map<std::string, Sampler> samplers{{"numbers", {"NUMBERS", 0}},
 // As in sample_points.comp.
 struct Inputs {
     uvec2 key;
-    uint32_t max_path_length, samples, first_sample;
+    uint32_t max_path_length, samples;
     LightTriangle light_triangle;
 };
 
@@ -42,10 +41,8 @@ std::vector<float> sample(const std::string& define, const std::string& chapter,
                         .named_includes = named_includes(estimator)};
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     const Device device({device_name, false});
-    // Of low-discrepancy points samples 2^k to 2^(k+1) - 1 belong together.
-    const uint32_t first_sample = samples == 1 ? 0 : std::bit_ceil(samples);
     // A table of one triangle, the stub's second one, that always stands for itself.
-    const Inputs inputs{seed_key(seed), 1, samples, first_sample, {0, 1, 0xffffffffu, 0, 1.0f}};
+    const Inputs inputs{seed_key(seed), 1, samples, {0, 1, 0xffffffffu, 0, 1.0f}};
     std::vector<float> points(size_t{count} * columns);
     Buffer results(device, points.size() * sizeof(float), vk::BufferUsageFlagBits::eStorageBuffer);
     const Buffer input_buffer(device, std::span(&inputs, 1), vk::BufferUsageFlagBits::eStorageBuffer);

@@ -166,15 +166,18 @@ def slope(case, key):
 
 def runs_in_batches(case):
     """The runs of a case for batches(), which needs batch means with a variance of 1 / size. The variance with low-discrepancy
-    points falls faster, so only the two halves of a run are kept, which have independent scrambles, or the whole run if its number
-    of samples is no power of two."""
+    points falls faster, so only the two halves of the samples of a run are kept, which have independent scrambles."""
     if not has_low_discrepancy(case["program"]):
         return case["runs"]
-    kept = []
-    for run in case["runs"]:
-        halves = run["rows"][-2:]
-        kept.append({"rows": halves if halves[-1]["samples"] == 2 * halves[0]["samples"] else halves[-1:]})
-    return kept
+    return [{"rows": halves(run["rows"][-1])} for run in case["runs"]]
+
+
+def halves(row):
+    """Rows of the first half of the samples and of all of them."""
+    if "difference" not in row or row["samples"] < 2:  # of an earlier record
+        return [row]
+    half = {"samples": row["samples"] / 2, "mean": np.array(row["mean"]) + np.array(row["difference"]) / 2}
+    return [half, row]
 
 
 def batches(runs):

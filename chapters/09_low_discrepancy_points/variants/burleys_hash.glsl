@@ -26,12 +26,10 @@ uint mix_bits(uint x) {
     return x ^ (x >> 16u);
 }
 
-// Samples of a scramble are numbered from 0.
+// Samples of even and of odd number have scrambles of their own.
 uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
-    uint octave = sample_index == 0u ? 0u : uint(findMSB(sample_index)) + 1u;
-    uint first = octave == 0u ? 0u : 1u << (octave - 1u);
-    uint hash = mix_bits(key.y ^ mix_bits(pixel_index ^ mix_bits(key.x + octave)));
-    return uvec2(sample_index - first, hash);
+    uint hash = mix_bits(key.y ^ mix_bits(pixel_index ^ mix_bits(key.x + sample_index % 2u)));
+    return uvec2(sample_index / 2u, hash);
 }
 
 uvec2 get_random_words(inout uvec2 seed) {

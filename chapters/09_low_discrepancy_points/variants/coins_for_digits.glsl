@@ -29,10 +29,7 @@ uvec2 get_sobol_point(uint index) {
 }
 
 uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
-    uint bits = 0u;
-    while (bits < 32u && sample_index >> bits != 0u) ++bits;
-    uvec2 state = get_state(pixel_index, bits, key.yx);
-    return uvec2(sample_index - (bits == 0u ? 0u : 1u << (bits - 1u)), state.y);
+    return uvec2(sample_index / 2u, get_state(pixel_index, 2u + sample_index % 2u, key.yx).y);
 }
 
 // An order by a bijection that keeps every aligned block of 2^k indices together: digits are flipped by the higher ones, of
