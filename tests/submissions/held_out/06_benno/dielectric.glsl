@@ -1,0 +1,28 @@
+// Fresnel by Schlick, fast and good enough: F0 + (1 - F0) (1 - cos)^5.
+float get_fresnel_reflectance(float cos_theta, float eta, float eta_cos_theta_t) {
+    float f0 = (1.0 - eta) / (1.0 + eta);
+    f0 *= f0;
+    float m = 1.0 - cos_theta;
+    return f0 + (1.0 - f0) * m * m * m * m * m;
+}
+
+// Follows either the reflected direction, with probability F, or the refracted one. So the weight is 1.
+BsdfSample sample_dielectric(ShadingData s, inout uvec2 seed) {
+    float cos_theta = dot(s.normal, s.out_direction);
+    float eta = s.relative_index;
+    float contrast = (eta - 1.0) * (eta + 1.0);
+    float square = contrast + cos_theta * cos_theta;
+    // Without a refracted direction all light is reflected: total internal reflection.
+    float eta_cos_theta_t = sqrt(max(square, 0.0));
+    bool is_reflected = square <= 0.0 || happens(get_fresnel_reflectance(cos_theta, eta, eta_cos_theta_t), seed);
+
+    vec3 omega = 2.0 * cos_theta * s.normal - s.out_direction;
+    if (!is_reflected) {
+        // cos θ - η cos θ_t, once more without cancellation.
+        float difference = -contrast / (cos_theta + eta_cos_theta_t);
+        omega = normalize(difference * s.normal - s.out_direction);
+    }
+    // A direction on opposite sides of the two normals carries nothing.
+    vec3 weight = vec3(is_reflected == (dot(s.geometric_normal, omega) > 0.0));
+    return BsdfSample(omega, weight, 0.0, true, is_reflected ? 1.0 : 1.0 / (eta * eta));
+}
