@@ -22,7 +22,6 @@ from lesson import sample
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/**/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 COURSE = [name for name in CHAPTERS.values() if (ROOT / "chapters" / name / "exercise.json").exists()]
-CHAPTERS.setdefault(20, CHAPTERS[3])  # the pages call a student's copy of a chapter 20
 SECTIONS = ["From the formula to the code", "The decisive lines", "What it gains, and where it does not", "What can go wrong", "How we know",
             "Exercises", "Summary"]  # of each chapter's page, in this order
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
@@ -62,8 +61,14 @@ def commands(page):
     return [tuple(shlex.split(line, comments=True)) for line in lines]
 
 
-def small_render(words):
-    """Chapter and arguments of `./lab run ...`, changed so that it takes no time."""
+def program_of(number, page):
+    """The program of a chapter. The pages call a student's copy 20: of the chapter whose folder holds the page, or else of any."""
+    folder = page.relative_to(ROOT).parts[1] if page.is_relative_to(ROOT / "chapters") else COURSE[0]
+    return BINARIES / CHAPTERS.get(int(number), folder)
+
+
+def small_render(words, page):
+    """Program and arguments of `./lab run ...`, changed so that it takes no time."""
     number, *arguments = words
     # A reference has a size of its own.
     small = {name: value for name, value in SMALL_RENDER.items() if name not in SIZE or "--reference" not in arguments}
@@ -73,7 +78,7 @@ def small_render(words):
             next(words)
         else:
             kept.append(str(ROOT / "assets/meshes/torus.obj") if word == "my_model.obj" else word)
-    return [BINARIES / CHAPTERS[int(number)], *kept, *(word for option in small.items() for word in option)]
+    return [program_of(number, page), *kept, *(word for option in small.items() for word in option)]
 
 
 class DocumentationTest(unittest.TestCase):
@@ -171,7 +176,7 @@ class DocumentedRendersTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "assets").symlink_to(ROOT / "assets")
             for words in complete:
-                result = subprocess.run(small_render(words), cwd=folder, capture_output=True, text=True, timeout=60,
+                result = subprocess.run(small_render(words, renders[words]), cwd=folder, capture_output=True, text=True, timeout=60,
                                         env=os.environ | UNOPTIMISED)
                 command = f"{renders[words].relative_to(ROOT)}: ./lab run {' '.join(words)}"
                 self.assertEqual(result.returncode, 0, f"{command}: {result.stderr}")
