@@ -20,8 +20,8 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         vec3 omega = get_shading_space(s.normal) * vec3(r * cos(phi), r * sin(phi), z);
         if (!is_above_surface(s, s.out_direction) || !is_above_surface(s, omega)) break;
 
-        // The slides' weight: pi^2 rho (n . omega) sin(theta)
-        throughput *= PI * PI * get_brdf(s, omega) * z * r;
+        // The density is 1 over the area of the hemisphere, so the weight is 2 pi rho (n . omega). No sine: it is in z already.
+        throughput *= 2.0 * PI * z * get_brdf(s, omega);
         ray = get_ray_from_surface(s, omega);
     }
     return radiance;
