@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 
 #include "error.h"
 #include "files/file.h"
@@ -20,6 +19,11 @@ std::filesystem::path cache_folder() {
 }
 
 }  // namespace
+
+std::filesystem::path cache_file(const std::string& name) {
+    const auto folder = cache_folder();
+    return folder.empty() ? folder : folder / name;
+}
 
 // The last eight bytes of an entry are the hash of the others.
 std::optional<std::string> read_cache(const std::string& name) try {

@@ -1,6 +1,7 @@
 // Compiled shaders, pipelines and choices of backends, kept for the next start. Failing to read or write an entry is silent; a
 // damaged entry counts as absent.
 #pragma once
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,9 @@ namespace lab {
 
 // Contents of the entry `name`, if there is one.
 std::optional<std::string> read_cache(const std::string& name);
+
+// The entry's file; empty if there is no folder for a cache.
+std::filesystem::path cache_file(const std::string& name);
 
 // Replaces the entry atomically.
 void write_cache(const std::string& name, std::string_view contents);

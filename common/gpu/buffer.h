@@ -49,10 +49,10 @@ class Buffer {
     void read(void* data, size_t size) const;
     void clear();  // to zeros
 
-    // Contents of a host buffer.
+    // Contents of a host buffer, and of any that the CPU sees; else empty.
     template <typename T>
-    std::span<T> mapped() {
-        return {static_cast<T*>(mapped_), size_ / sizeof(T)};
+    std::span<T> mapped() const {
+        return {static_cast<T*>(mapped_), mapped_ ? size_ / sizeof(T) : 0};
     }
 
   private:

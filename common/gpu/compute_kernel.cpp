@@ -5,11 +5,17 @@
 namespace lab {
 
 Binding storage_binding(uint32_t index, const Buffer& buffer) {
-    return {.index = index, .type = vk::DescriptorType::eStorageBuffer, .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}}};
+    return {.index = index,
+            .type = vk::DescriptorType::eStorageBuffer,
+            .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}},
+            .host = buffer.mapped<std::byte>()};
 }
 
 Binding uniform_binding(uint32_t index, const Buffer& buffer) {
-    return {.index = index, .type = vk::DescriptorType::eUniformBuffer, .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}}};
+    return {.index = index,
+            .type = vk::DescriptorType::eUniformBuffer,
+            .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}},
+            .host = buffer.mapped<std::byte>()};
 }
 
 DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bindings, vk::ShaderStageFlags stages) {

@@ -15,6 +15,7 @@ struct Binding {
     std::vector<vk::DescriptorImageInfo> images = {};
     std::vector<vk::BufferView> texel_views = {};
     std::vector<vk::AccelerationStructureKHR> acceleration_structures = {};
+    std::span<std::byte> host = {};  // a buffer's contents where the CPU sees them
 };
 
 Binding storage_binding(uint32_t index, const Buffer& buffer);

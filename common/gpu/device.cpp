@@ -7,6 +7,7 @@
 #include "error.h"
 #include "files/cache.h"
 #include "files/file.h"
+#include "native/module.h"
 #include "platform.h"
 
 namespace lab {
@@ -38,7 +39,7 @@ using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDev
                                     vk::PhysicalDeviceRayTracingPipelineFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>;
 
 std::vector<const char*> extensions_for(Backend backend) {
-    if (backend == Backend::compute) return {};
+    if (backend == Backend::compute || backend == Backend::native) return {};
     return {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
             backend == Backend::query ? VK_KHR_RAY_QUERY_EXTENSION_NAME : VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME};
 }
@@ -99,8 +100,11 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         missing = missing_everywhere(device, features);
         for (const char* wanted : extensions_for(backend))
             if (!contains(extensions, wanted)) missing.emplace_back(wanted);
-        if (backend != Backend::compute && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
+        if (!extensions_for(backend).empty() && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
             missing.emplace_back("bufferDeviceAddress");
+        if (backend != Backend::native) continue;
+        if (!shares_memory) missing.emplace_back("memory that it shares with the CPU (--device llvmpipe has it)");
+        for (const auto& tool : native::missing_tools()) missing.push_back(tool);
     }
     return description;
 }
@@ -171,7 +175,8 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
 }  // namespace
 
 std::string to_string(Backend backend) {
-    return backend == Backend::pipeline ? "pipeline" : backend == Backend::query ? "query" : "compute";
+    constexpr const char* names[] = {"pipeline", "query", "compute", "native"};
+    return names[static_cast<size_t>(backend)];
 }
 
 Device::Device(const DeviceOptions& options)

@@ -15,8 +15,9 @@ enum class Backend {
     pipeline,  // VK_KHR_ray_tracing_pipeline
     query,     // VK_KHR_ray_query in a compute shader
     compute,   // our own bounding volume hierarchy in a compute shader
+    native,    // the same shaders as C++ on the CPU
 };
-inline constexpr Backend all_backends[] = {Backend::pipeline, Backend::query, Backend::compute};
+inline constexpr Backend all_backends[] = {Backend::pipeline, Backend::query, Backend::compute, Backend::native};
 
 // The backend's name on the command line and in reports.
 std::string to_string(Backend backend);

@@ -152,27 +152,47 @@ EShLanguage stage_of(const fs::path& file) {
     return stages.at(file.extension().string());
 }
 
-std::vector<uint32_t> compile(const ShaderSource& source, const std::string& text, const std::string& preamble) {
+// A shader's text with all that it includes, and its defines.
+struct ExpandedShader {
+    std::string text, preamble;
+    explicit ExpandedShader(const ShaderSource& source) : text(Includer(source).expand(source.file)) {
+        if (source.edit) text = source.edit(text);
+        preamble = "#extension GL_GOOGLE_cpp_style_line_directive : require\n";
+        for (const auto& define : source.defines) preamble += "#define " + define + "\n";
+    }
+};
+
+constexpr auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+
+// Passes the shader to `use`.
+template <typename Use>
+void with_glslang(const ShaderSource& source, const ExpandedShader& expanded, const Use& use) {
     static const bool initialised = glslang::InitializeProcess();
     if (!initialised) throw UserError("glslang could not be initialised");
     const EShLanguage stage = stage_of(source.file);
     glslang::TShader shader(stage);
     const std::string name = source.file.generic_string();  // GLSL has escapes in quotes
-    const char* texts[] = {text.c_str()};
-    const int lengths[] = {static_cast<int>(text.size())};
+    const char* texts[] = {expanded.text.c_str()};
+    const int lengths[] = {static_cast<int>(expanded.text.size())};
     const char* names[] = {name.c_str()};
     shader.setStringsWithLengthsAndNames(texts, lengths, names, 1);
-    shader.setPreamble(preamble.c_str());
+    shader.setPreamble(expanded.preamble.c_str());
     shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 120);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-    const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-    if (!shader.parse(GetDefaultResources(), 460, false, messages)) throw UserError(readable_errors(shader.getInfoLog()));
-    glslang::TProgram program;
-    program.addShader(&shader);
-    if (!program.link(messages)) throw UserError(name + ": " + readable_errors(program.getInfoLog()));
+    if (!use(shader)) throw UserError(readable_errors(shader.getInfoLog()));
+}
+
+std::vector<uint32_t> compile(const ShaderSource& source, const ExpandedShader& expanded) {
     std::vector<uint32_t> words;
-    glslang::GlslangToSpv(*program.getIntermediate(stage), words);
+    with_glslang(source, expanded, [&](glslang::TShader& shader) {
+        if (!shader.parse(GetDefaultResources(), 460, false, messages)) return false;
+        glslang::TProgram program;
+        program.addShader(&shader);
+        if (!program.link(messages)) throw UserError(source.file.generic_string() + ": " + readable_errors(program.getInfoLog()));
+        glslang::GlslangToSpv(*program.getIntermediate(shader.getStage()), words);
+        return true;
+    });
     return words;
 }
 
@@ -187,14 +207,11 @@ std::vector<fs::path> shader_files(const ShaderSource& source) {
 }
 
 std::vector<uint32_t> compile_shader(const ShaderSource& source) {
-    std::string text = Includer(source).expand(source.file);
-    if (source.edit) text = source.edit(text);
-    std::string preamble = "#extension GL_GOOGLE_cpp_style_line_directive : require\n";
-    for (const auto& define : source.defines) preamble += "#define " + define + "\n";
-
+    const ExpandedShader expanded(source);
     const auto version = glslang::GetVersion();
-    const std::string key = preamble + text + source.file.extension().string() + "/" + std::to_string(version.major) + "." +
-                            std::to_string(version.minor) + "." + std::to_string(version.patch);
+    const std::string key = expanded.preamble + expanded.text + source.file.extension().string() + "/" +
+                            std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
+                            std::to_string(version.patch);
     // Two independent 64-bit hashes make a chance collision impossible in practice.
     const std::string name = "shader-" + std::to_string(hash_text(key)) + "-" + std::to_string(hash_text(key, key.size()));
     std::vector<uint32_t> words;
@@ -203,9 +220,18 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
         std::memcpy(words.data(), cached->data(), words.size() * sizeof(uint32_t));
         return words;
     }
-    words = compile(source, text, preamble);
+    words = compile(source, expanded);
     write_cache(name, {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)});
     return words;
+}
+
+std::string preprocess_shader(const ShaderSource& source) {
+    std::string text;
+    with_glslang(source, ExpandedShader(source), [&](glslang::TShader& shader) {
+        glslang::TShader::ForbidIncluder none;
+        return shader.preprocess(GetDefaultResources(), 460, ENoProfile, false, false, messages, &text, none);
+    });
+    return text;
 }
 
 }  // namespace lab

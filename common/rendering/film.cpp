@@ -38,7 +38,8 @@ Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_win
 Binding Film::binding() const {
     return {.index = BINDING_FILM,
             .type = vk::DescriptorType::eStorageBufferDynamic,
-            .buffers = {{buffer_.handle(), 0, window_size_}}};
+            .buffers = {{buffer_.handle(), 0, window_size_}},
+            .host = buffer_.mapped<std::byte>()};
 }
 
 FilmWindow Film::window_from(uint32_t block) const {

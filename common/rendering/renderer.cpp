@@ -61,6 +61,7 @@ std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
                    const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
+      is_on_host_(acceleration_structure.is_on_host()),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
@@ -68,7 +69,7 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
-    if (are_pixels_shared(parameters.image_size)) {
+    if (are_pixels_shared(parameters.image_size) && !is_on_host_) {
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
@@ -134,8 +135,10 @@ bool Renderer::advance(uint32_t target_samples) {
     const auto counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = Clock::now();
-    device_seconds_ += device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
+    const double device_seconds =
+        device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
     const double seconds = seconds_since(start);
+    device_seconds_ += is_on_host_ ? seconds : device_seconds;
     for (const uint32_t counter : counters) rays_ += counter;
 
     // Blocks differ in cost, so the rate follows the last dispatch and grows by a bounded factor.

@@ -52,6 +52,7 @@ class Renderer {
     void record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const;
 
     const Device* device_;
+    bool is_on_host_;  // the tracer works while it records
     Buffer parameters_;
     std::optional<Buffer> samples_;  // of shared pixels, not yet added to the film
     Buffer ray_counters_;

@@ -7,6 +7,7 @@ namespace lab {
 std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& device, const GpuScene& scene);
 std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device, const GpuScene& scene);
 std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene);
+std::unique_ptr<AccelerationStructure> build_native_backend(const GpuScene& scene);
 
 // A shader of shaders/ compiled for this scene and estimator.
 ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator);

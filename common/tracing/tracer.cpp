@@ -76,6 +76,7 @@ std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend back
     require_support(backend, device.description());
     if (backend == Backend::pipeline) return build_pipeline_backend(device, scene);
     if (backend == Backend::query) return build_query_backend(device, scene);
+    if (backend == Backend::native) return build_native_backend(scene);
     return build_compute_backend(device, scene);
 }
 

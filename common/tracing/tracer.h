@@ -53,8 +53,9 @@ class AccelerationStructure {
     // `bindings`: render parameters, film, ray counters, and samples of shared pixels. Throws UserError if the estimator does not
     // compile.
     virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator, std::span<const Binding> bindings) const = 0;
-    virtual size_t bytes() const = 0;          // of device memory
-    virtual double build_seconds() const = 0;  // on the CPU or the device
+    virtual bool is_on_host() const { return false; }  // whether tracers do their work in record(), on the CPU
+    virtual size_t bytes() const = 0;                  // of device memory
+    virtual double build_seconds() const = 0;          // on the CPU or the device
 };
 
 // Device and scene must outlive the result. Throws DeviceError if the device lacks the backend.

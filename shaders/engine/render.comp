@@ -6,8 +6,10 @@
 layout(scalar, push_constant) uniform DispatchParametersBlock { DispatchParameters dispatch; };
 
 #include "world/ray.glsl"
-#ifdef BACKEND_QUERY
+#if defined(BACKEND_QUERY)
 #include "engine/trace_ray/query.glsl"
+#elif defined(BACKEND_EMBREE)
+#include "engine/trace_ray/embree.glsl"
 #else
 #include "engine/trace_ray/compute.glsl"
 #endif

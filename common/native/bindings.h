@@ -1,0 +1,42 @@
+// What a translated shader gets from the program that runs it. Both are compiled with this header.
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace lab::native {
+
+// An image. Its texels have four channels, of bytes that stand for [0,1] or of floats.
+struct Texture {
+    const void* texels;
+    int width, height;
+    bool is_float;
+};
+
+struct RayHit {
+    uint32_t instance, triangle;
+    float barycentrics[2];
+    float distance;
+};
+
+struct Bindings {
+    // By the shaders' binding number: an array, or the `Texture`s of images.
+    struct Range {
+        std::byte* data;
+        size_t bytes;
+    } ranges[64];
+    std::byte* push_constants;
+    const std::atomic<bool>* is_stopped;  // loops of the shader end where this is true
+
+    // Rays by Embree: the closest hit nearer than t_max, or with a null `hit` whether there is any.
+    const void* scene;
+    bool (*trace)(const void* scene, const float* origin, const float* direction, float t_max, RayHit* hit);
+};
+
+// How a workgroup has ended.
+enum class Outcome { finished, stopped, failed };
+// Runs a workgroup. Of an error it leaves a line of text.
+using RunGroup = Outcome (*)(const Bindings& bindings, uint32_t group, char* error, size_t error_size);
+inline constexpr const char* run_group_name = "lab_run_group";
+
+}  // namespace lab::native

@@ -1,0 +1,197 @@
+#include "native/module.h"
+
+#ifdef _WIN32
+
+namespace lab::native {
+std::vector<std::string> missing_tools() { return {"Linux or macOS"}; }
+RunGroup load(const std::string&, Mode) { return nullptr; }
+void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
+}  // namespace lab::native
+
+#else
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <condition_variable>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "clock.h"
+#include "error.h"
+#include "files/cache.h"
+#include "files/file.h"
+#include "files/project_folder.h"
+#include "native/translator.h"
+#include "parallel.h"
+#include "platform.h"
+
+extern char** environ;
+
+namespace lab::native {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The first of the usual names on the PATH, or $CXX; empty if there is none.
+fs::path find_compiler() {
+    std::vector<std::string> names{"c++", "g++", "clang++"};
+    if (const char* chosen = std::getenv("CXX"); chosen && *chosen) names.insert(names.begin(), chosen);
+    const char* path = std::getenv("PATH");
+    for (const std::string& name : names) {
+        std::istringstream folders(path ? path : "");
+        for (std::string folder; std::getline(folders, folder, ':');)
+            if (access((fs::path(folder) / name).c_str(), X_OK) == 0) return fs::path(folder) / name;
+    }
+    return {};
+}
+
+fs::path header_folder() { return project_folder() / "common"; }
+
+std::vector<std::string> compiler_arguments(Mode mode) {
+    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-g",
+                                       "-fno-finite-loops", "-ffp-contract=off", "-w",    "-I" + header_folder().string()};
+    if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
+    if (mode == Mode::fast)
+        arguments.insert(arguments.end(), {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG"});
+    if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-DNDEBUG"});
+    if (mode == Mode::checked)
+        arguments.insert(arguments.end(), {"-O1", "-DLAB_CHECKED", "-fsanitize=undefined", "-fno-sanitize-recover=undefined"});
+    return arguments;
+}
+
+// The CPU, since code for one may not run on another that has the same home folder.
+std::string processor() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("flags") || line.starts_with("Features")) return line;
+    return {};
+}
+
+// Runs a program with its output in `log`. False if it fails.
+bool run_program(const std::vector<std::string>& arguments, const fs::path& log) {
+    std::vector<char*> pointers;
+    for (const auto& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
+    pointers.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_adddup2(&actions, 1, 2);
+    pid_t process = 0;
+    int status = -1;
+    const bool is_started = posix_spawn(&process, pointers[0], &actions, nullptr, pointers.data(), environ) == 0;
+    posix_spawn_file_actions_destroy(&actions);
+    if (!is_started) return false;
+    while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+    }
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+// The compiler's first error as "file:line: text".
+std::string first_error(std::istream& log) {
+    std::string first, line;
+    while (std::getline(log, line)) {
+        if (first.empty()) first = line;
+        const size_t error = line.find("error: ");
+        if (error != std::string::npos) return line.substr(0, line.find(':', line.find(':') + 1)) + ": " + line.substr(error + 7);
+    }
+    return first.empty() ? "it says nothing" : first;
+}
+
+// Compiles C++ to a shared library in the cache.
+void compile(const std::string& text, Mode mode, const std::string& name) {
+    const fs::path place = cache_file(name + "-" + std::to_string(process_id()));
+    const auto with = [&](const char* ending) { return fs::path(place.string() + ending); };
+    write_file(with(".cpp"), text);
+    auto command = compiler_arguments(mode);
+    command.insert(command.begin(), find_compiler().string());
+    command.insert(command.end(), {"-o", with(".so").string(), with(".cpp").string()});
+    const bool is_compiled = run_program(command, with(".log"));
+    std::ifstream log(with(".log"));
+    const std::string error = first_error(log);
+    if (is_compiled) write_cache(name, read_file(with(".so"), UINT64_MAX));
+    std::error_code ignored;
+    for (const char* ending : {".cpp", ".so", ".log"}) fs::remove(with(ending), ignored);
+    if (!is_compiled)
+        throw UserError("the backend native: " + command.front() + " does not compile the shader: " + error +
+                        ": use another backend, such as --backend compute");
+}
+
+// A crash in a shader returns to the thread that runs it.
+thread_local sigjmp_buf* way_back = nullptr;
+void return_from_crash(int signal) {
+    if (way_back) siglongjmp(*way_back, signal);
+    std::signal(signal, SIG_DFL);
+    raise(signal);
+}
+
+}  // namespace
+
+std::vector<std::string> missing_tools() {
+    std::vector<std::string> missing;
+    if (find_compiler().empty()) missing.emplace_back("a C++ compiler (c++)");
+    if (!fs::exists(header_folder() / "native/glsl.h")) missing.emplace_back("the lab's sources (common/)");
+    if (!fs::exists(fs::path(LAB_GLM_FOLDER) / "glm/glm.hpp")) missing.emplace_back("the headers of GLM (libglm-dev)");
+    return missing;
+}
+
+RunGroup load(const std::string& preprocessed_glsl, Mode mode) {
+    const std::string text = translate(preprocessed_glsl);
+    std::string key = text + find_compiler().string() + processor();
+    for (const auto& argument : compiler_arguments(mode)) key += " " + argument;
+    for (const char* header : {"native/glsl.h", "native/bindings.h"}) key += read_file(header_folder() / header, UINT64_MAX);
+    const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
+    const fs::path file = cache_file(name);
+    if (file.empty()) throw UserError("the backend native has no folder for its code: set XDG_CACHE_HOME to one");
+    if (!read_cache(name)) compile(text, mode, name);
+    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library)
+        throw UserError(std::string("the backend native cannot load its code: ") + dlerror() +
+                        ": set XDG_CACHE_HOME to a folder that allows programs");
+    return reinterpret_cast<RunGroup>(dlsym(library, run_group_name));
+}
+
+void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
+    static const bool handles_crashes = [] {
+        for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, return_from_crash);
+        return true;
+    }();
+    (void)handles_crashes;
+    std::atomic<bool> is_stopped = false;
+    bindings.is_stopped = &is_stopped;
+    // Interrupts are seen while a shader runs, since it may never end.
+    const std::jthread watch([&](const std::stop_token& finished) {
+        std::mutex mutex;
+        std::unique_lock lock(mutex);
+        std::condition_variable_any changed;
+        while (!changed.wait_for(lock, finished, std::chrono::milliseconds(50), [] { return is_interrupted(); }) &&
+               !finished.stop_requested()) {
+        }
+        is_stopped = is_interrupted();
+    });
+    in_parallel(end - first, 1, [&](size_t begin, size_t) {
+        sigjmp_buf here;
+        char error[512];
+        way_back = &here;
+        const int signal = sigsetjmp(here, 1);
+        const Outcome outcome =
+            signal == 0 ? run(bindings, first + static_cast<uint32_t>(begin), error, sizeof error) : Outcome::failed;
+        way_back = nullptr;
+        if (outcome != Outcome::failed) return;
+        is_stopped = true;
+        throw DeviceFailure(signal == 0 ? std::string(error)
+                                        : std::string("the shader crashed (") + strsignal(signal) +
+                                              "), as it does for an index outside of an array: --sanitize tells where");
+    });
+}
+
+}  // namespace lab::native
+#endif

@@ -1,0 +1,27 @@
+// Shaders as machine code for the CPU: translated to C++, compiled by the system's compiler, and loaded.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "native/bindings.h"
+
+namespace lab::native {
+
+// What this computer lacks for that, as --list-devices says it.
+std::vector<std::string> missing_tools();
+
+enum class Mode {
+    fast,
+    debug,    // for a debugger
+    checked,  // stops at undefined behaviour and at indices outside of their arrays
+};
+
+// A compute shader as code, which stays loaded. It comes from the cache if possible. Throws UserError if the compiler refuses
+// what translate() makes of it.
+RunGroup load(const std::string& preprocessed_glsl, Mode mode);
+
+// Runs workgroups on all processors. Interrupts of the program stop them. Throws UserError for what a checked shader finds, and
+// DeviceFailure if the code crashes.
+void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end);
+
+}  // namespace lab::native

@@ -1,0 +1,19 @@
+// trace_ray() by Embree, for the backend `native` alone: a GLSL compiler does not know the functions native_…(), which
+// common/native/glsl.h has.
+
+// Closest hit nearer than t_max.
+bool trace_ray(Ray ray, float t_max, out Hit hit) {
+    ++ray_count;
+    if (!native_closest_hit(ray.origin, ray.direction, t_max, hit.instance, hit.triangle, hit.barycentrics, hit.distance))
+        return false;
+#ifdef FEATURE_DIELECTRICS
+    hit.material_class = get_material_class(hit.triangle);
+#endif
+    return true;
+}
+
+// Whether anything is hit nearer than t_max. Any hit will do.
+bool is_occluded(Ray ray, float t_max) {
+    ++ray_count;
+    return native_any_hit(ray.origin, ray.direction, t_max);
+}
