@@ -9,7 +9,7 @@ from importlib import import_module
 import project
 
 TOOLS = {  # name: module
-    "assets": "assets.make", "benchmark": "docs.benchmark", "book": "book.build", "bug": "course.bug", "check": "check.command",
+    "ages": "docs.ages", "assets": "assets.make", "benchmark": "docs.benchmark", "book": "book.build", "bug": "course.bug", "check": "check.command",
     "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout", "package": "package.make", "peer": "references.peer",
     "reference": "references.make", "report": "report.make", "rooms": "docs.rooms", "sample": "lesson.sample", "tables": "docs.tables",
     "windows": "package.windows_programs",

@@ -25,7 +25,7 @@ RECORD = """import sys
 sys.path.insert(0, sys.argv.pop(1))
 import project
 from report import make, studies
-make.study_cases = lambda: [case for case in studies.study_cases() if not case["reference"]]
+make.study_cases = lambda: [case for case in studies.study_cases() if case["case"].startswith("splitting factor") and case["scene"] == "cornell_box_6"]
 project.run_tool(make)"""
 # A chapter that loses its device at seed 2 as long as the file `broken` is there.
 LOSES_DEVICE = """#!/bin/sh

@@ -1,5 +1,6 @@
 """What the pages get from records and sources: tables that compare with peers, whose truth is known, and blocks of code."""
 
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -7,9 +8,10 @@ from unittest import mock
 
 import tools_path  # noqa: F401  (first: it finds the others)
 from book import code_blocks
-from docs import best_table, peer_table
+import project
+from docs import ages, best_table, confusion_table, peer_table, result_plots, tables
 from project import UserError
-from report import studies
+from report import sources, studies
 
 SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}
 
@@ -79,6 +81,90 @@ class BestTableTest(unittest.TestCase):
                  self.chapter("strategy both", 0.1), self.chapter("chapter 5", 1.0, "heart_4")]
         self.assertEqual(list(best_table.among_chapters({"cases": cases})),
                          [(("box", 128, 128), ["chapter 3", "16 (16 – 16)"]), (("heart", 128, 128), ["chapter 5", "1"])])
+
+
+class NoRayTracingCoresTest(unittest.TestCase):
+    def test_is_said_wherever_times_on_such_a_device_are_compared(self):
+        for page in tables.PAGES:
+            text = page.read_text(encoding="utf-8")
+            if "NVIDIA H200" in text and page.name != "numerics.md":  # which has errors, no times
+                self.assertTrue(tables.NO_RAY_TRACING_CORES in text, page)
+
+    def test_plots_say_it(self):
+        self.assertEqual(result_plots.short_device("NVIDIA H200"), "NVIDIA H200 (without ray tracing cores)")
+        self.assertEqual(result_plots.short_device("NVIDIA GeForce RTX 4090"), "NVIDIA GeForce RTX 4090")
+        self.assertEqual(result_plots.short_device("llvmpipe (LLVM 15.0.6, 256 bits)"), "llvmpipe")
+
+
+def luminance(colour):
+    """Of #rrggbb, relative to white (Web Content Accessibility Guidelines 2.1)."""
+    channels = [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]
+    return sum(weight * (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4) for weight, c in zip((0.2126, 0.7152, 0.0722), channels))
+
+
+class ResultPlotsTest(unittest.TestCase):
+    def test_colours_are_seen_on_white_and_on_black(self):
+        for file in (tables.DOCS / "pictures").glob("*.svg"):
+            text = file.read_text(encoding="utf-8")
+            colours = set(re.findall(r"#[0-9a-f]{6}", text))
+            self.assertTrue(colours <= {*result_plots.COLOURS, result_plots.GREY}, f"{file}: {colours}")
+            self.assertEqual(len(re.findall("<text", text)), len(re.findall("<text style=\"[^\"]*fill: #", text)), f"{file}: text without a colour is black")
+        for colour in result_plots.COLOURS:
+            for background in ("#ffffff", "#0d1117"):
+                dark, light = sorted(map(luminance, (colour, background)))
+                self.assertGreaterEqual((light + 0.05) / (dark + 0.05), 3, f"{colour} on {background}")
+
+    def test_other_numbers_make_a_plot_stale(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "plot.svg"
+            result_plots.write_plot(file, "results_check")
+            self.assertTrue(result_plots.is_fresh(file, "results_check"))
+            with mock.patch.object(result_plots, "rates", lambda record: confusion_table.rates({"trials": dict(list(record["trials"].items())[:50])})):
+                self.assertFalse(result_plots.is_fresh(file, "results_check"))
+
+
+class AgesTest(unittest.TestCase):
+    RECORD = '{"program": "05_russian_roulette"}'
+
+    def test_comments_and_other_chapters_do_not_count(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(sources, "ROOT", Path(folder)), mock.patch.object(project, "ROOT", Path(folder)):
+            files = {name: Path(folder) / name for name in ("shaders/a.glsl", "chapters/05_russian_roulette/path_trace.glsl",
+                     "chapters/05_russian_roulette/chapter.json", "chapters/04_splitting/path_trace.glsl")}
+            for file in files.values():
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text("a = 1;  // one\n")
+            before = sources.measured(self.RECORD)
+            self.assertEqual(list(before), ["renderer", "russian_roulette"])
+            record = {"measured": before}
+            self.assertEqual(sources.changed_since(record), [])
+            for name, text, changed in (("shaders/a.glsl", "a =  1; // two\n", []), ("shaders/a.glsl", "a = 2;", ["renderer"]),
+                                        ("chapters/04_splitting/path_trace.glsl", "b", []),
+                                        ("chapters/05_russian_roulette/path_trace.glsl", "b", ["russian_roulette"])):
+                kept = files[name].read_text()
+                files[name].write_text(text)
+                self.assertEqual(sources.changed_since(record), changed, (name, text))
+                files[name].write_text(kept)
+
+    def test_records_without_a_digest_are_older(self):
+        self.assertEqual(ages.state({}), "older: it does not say what it measured")
+
+    def test_a_stamped_record_is_up_to_date(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "record.json"
+            file.write_text(self.RECORD)
+            ages.stamp(file)
+            record = project.read_json(file)
+            self.assertEqual(ages.state(record), "up to date")
+            self.assertRegex(ages.when(record), r"20..-..-.., commit ")
+            record["measured"]["renderer"] = record["measured"]["russian_roulette"] = "0"
+            self.assertEqual(ages.state(record), "older: renderer, russian_roulette changed since")
+
+
+class Ages_all(unittest.TestCase):
+    def test_pages_tell_which_records_are_older(self):
+        for file, told, state in ages.ages():
+            print(f"{file.relative_to(project.RECORDS)}: {told}: {state}")
+        tables.write_pages(is_check=True, checks_ages=True)
 
 
 class CodeBlockTest(unittest.TestCase):

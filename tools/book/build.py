@@ -19,7 +19,7 @@ SECTIONS = {  # of the navigation; pages that do not exist are left out
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
     "Explore": ["docs/window.md", "docs/scenes.md"],
     "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/numerics.md", "docs/cluster.md"],
-    "Results": ["docs/results.md", "docs/measuring.md"],
+    "Results": ["docs/results.md", *(f"docs/results/{path.name}" for path in sorted((ROOT / "docs/results").glob("*.md"))), "docs/measuring.md"],
     "For teachers": ["docs/teaching.md", "docs/grading/README.md"],
 }
 START = ["README.md", "docs/first_steps.md"]

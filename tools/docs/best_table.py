@@ -1,4 +1,4 @@
-"""The first table of docs/results.md: for each scene, the chapter that reaches the same error in the least time."""
+"""For each scene, the chapter that reaches the same error in the least time."""
 from docs.peer_table import gains_of
 from project import load_records, scene_of, table
 from report.numbers import errors, paired_ratio, with_interval
@@ -15,15 +15,20 @@ def among_chapters(record):
         yield key, [best["case"], "1" if best is cases[0] else with_interval(paired_ratio(first, errors(best, "device_seconds")))]
 
 
-def against_peers(record):
-    """[best chapter, Mitsuba at its best, gain over that] of each scene and size of a device, from a record of peers."""
+def best_and_peers(record):
+    """(scene, best chapter, {peer: its gain over it}) of each scene and size of a device, from a record of peers."""
     for scene in record["scenes"]:
         ours = {pair: gain for pair, gain in gains_of(scene).items() if gain[0] and pair[0].startswith("chapter ")}
         if ours:
-            # Our best chapter is the same against all peers; the best peer is the one over which it gains least.
-            best = max(ours, key=lambda pair: ours[pair][0])[0]
-            peer = min((pair for pair in ours if pair[0] == best), key=lambda pair: ours[pair][0])[1]
-            yield (scene_of(scene["scene"]), scene["width"], scene["height"]), [best, peer, with_interval(ours[best, peer])]
+            best = max(ours, key=lambda pair: ours[pair][0])[0]  # the same against all peers
+            yield scene, best, {peer: gain for (case, peer), gain in ours.items() if case == best}
+
+
+def against_peers(record):
+    """[best chapter, Mitsuba at its best, gain over that] of each scene and size of a device: the peer over which it gains least."""
+    for scene, best, gains in best_and_peers(record):
+        peer = min(gains, key=lambda peer: gains[peer][0])
+        yield (scene_of(scene["scene"]), scene["width"], scene["height"]), [best, peer, with_interval(gains[peer])]
 
 
 def best_table():

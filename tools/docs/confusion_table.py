@@ -1,4 +1,4 @@
-"""The part of docs/results.md on ./lab check: how often it finds mistakes and names them correctly."""
+"""The tables of docs/results/check.md on ./lab check: how often it finds mistakes and names them correctly."""
 from project import CHAPTERS, name_of, table
 from scipy.stats import binomtest
 

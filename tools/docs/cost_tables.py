@@ -1,4 +1,4 @@
-"""The part of docs/results.md on the cost of features and its growth, from records of build/bin/cost_record."""
+"""The part of docs/results/ on the cost of features and its growth, from records of build/bin/cost_record."""
 import math
 from statistics import linear_regression, median
 
@@ -27,8 +27,8 @@ def time_text(row, base):
     return with_range([b / a for a, b in zip(row["paths_per_second"], base["paths_per_second"])])
 
 
-def device_heading(record):
-    return (f"\n### {record['device']}\n\nDriver {record['driver']}, Vulkan {record['api_version']}, {record['cpu_threads']} "
+def device_line(record):
+    return (f"Driver {record['driver']}, Vulkan {record['api_version']}, {record['cpu_threads']} "
             f"threads of the CPU, {record['size']} x {record['size']} pixels.\n")
 
 
@@ -45,7 +45,7 @@ def feature_table(record):
         for backend in measured:
             cells += [str(backend["rows"][i]["instructions"]), time_text(backend["rows"][i], backend["rows"][0])]
         rows.append(cells)
-    return device_heading(record) + "\n" + table(head, rows, left=2) + "\n" + scene_table(record)
+    return device_line(record) + "\n" + table(head, rows, left=2) + "\n" + scene_table(record)
 
 
 def buffers_text(sizes):
@@ -98,7 +98,7 @@ def growth_table(measured):
 
 
 def growth_tables(record):
-    text = device_heading(record)
+    text = device_line(record)
     for quantity in dict.fromkeys(growth["quantity"] for growth in record["growth"]):
         text += "\n" + growth_table([growth for growth in record["growth"] if growth["quantity"] == quantity])
         if quantity == "triangles":

@@ -1,16 +1,19 @@
 """Draws the figures of the pages from images, reports and points of samplers."""
+import math
 import shutil
 
 import matplotlib
 
 matplotlib.use("agg")
 import numpy as np
+from docs.result_plots import finish_axis, lines, new_figure, plain
 from lesson import sample
 from lesson.sample_plots import save_point_sets, scatter
 from matplotlib import font_manager, image, pyplot
 from PIL import Image, ImageDraw, ImageFont
-from project import BINARIES, ROOT, UserError, run_program
-from report.plots import COLOURS, LABEL, MARKERS, QUALITY, encode_srgb, right_and_wrong, save_figure, sheet, style_axis
+from project import BINARIES, ROOT, UserError, run_program, write_bytes
+from report.numbers import Series
+from report.plots import COLOURS, LABEL, QUALITY, encode_srgb, right_and_wrong, save_figure, sheet, style_axis, svg_text
 
 
 def plot(path, size, draw, **labels):
@@ -106,20 +109,22 @@ def first_steps(folder, renders):
 
 
 def convergence(folder, renders):
-    """Error against samples and against seconds; means of all runs of a chapter."""
-    figure, axes = pyplot.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
+    """Error against samples and against seconds, with 95 % bars from the runs of each chapter."""
+    figure, axes = new_figure(360, columns=2, sharey=True)
     runs = {}
     for render in renders:
         runs.setdefault(int(render.chapter[:2]), []).append(render.report["rows"])
-    for (number, rows), colour, marker in zip(runs.items(), COLOURS, MARKERS):
-        columns = {key: np.mean([[row[key] for row in run] for run in rows], axis=0) for key in ("samples", "seconds", "rel_mse")}
+    for index, (number, rows) in enumerate(runs.items()):
+        errors = [Series(dict(enumerate(math.sqrt(row["rel_mse"]) for row in step))).interval() for step in zip(*rows)]
         for axis, key in zip(axes, ("samples", "seconds")):
-            axis.plot(columns[key], np.sqrt(columns["rel_mse"]), marker + "-", color=colour, markersize=4, label=f"chapter {number}")
+            lines(axis, [np.mean([row[key] for row in step]) for step in zip(*rows)], errors, index, f"chapter {number}")
     for axis, label in zip(axes, ("samples per pixel", "seconds")):
-        style_axis(axis, xscale="log", yscale="log", xlabel=label)
+        finish_axis(axis, xscale="log", yscale="log", xlabel=label)
+        axis.xaxis.set_major_formatter(plain)
+        axis.yaxis.set_major_formatter(plain)
     axes[0].set_ylabel("relative error (root of rel_mse)")
-    axes[0].legend(frameon=False, fontsize=9)
-    save_figure(figure, folder / "convergence.png")
+    axes[0].legend(loc="lower left")
+    write_bytes(folder / "convergence.svg", svg_text(figure).encode())
 
 
 # ---------------------------------------------------------------------------------------------- of points

@@ -1,4 +1,4 @@
-"""The comparison with Mitsuba in docs/results.md, from the report.json of ./lab report --peer mitsuba."""
+"""The comparison with Mitsuba in docs/results/, from the report.json of ./lab report --peer mitsuba."""
 import math
 
 from project import scene_of, table
@@ -59,5 +59,5 @@ def peer_table(report):
         if scene["gains"]:
             sizes.setdefault((scene["width"], scene["height"]), []).append(scene)
     environment, first = report["environment"], next(iter(sizes.values()))[0]["cases"][0]
-    return (f"\n### {environment['device']}, `{first['backend']}`\n\n{environment['peer']}.\n"
+    return (f"{environment['device']}, `{first['backend']}`, and {environment['peer']}.\n"
             + "".join(map(size_table, sizes.values())))

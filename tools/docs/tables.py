@@ -13,13 +13,15 @@ import re
 from pathlib import Path
 
 from book.code_blocks import fill
+from docs.ages import age_table
 from docs.best_table import among_chapters, best_table
 from docs.bug_blocks import bug_block
 from docs.confusion_table import confusion_table
 from docs.cost_tables import feature_table, growth_tables, seconds_text
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
-from project import ROOT, Parser, UserError, load_records, scene_of, table
+from docs.result_plots import PLOTS, is_fresh, write_plot
+from project import RECORDS, ROOT, Parser, UserError, load_records, read_json, scene_of, table
 from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
 from report.studies import examples
 
@@ -58,8 +60,9 @@ COLUMNS = ["rays per sample", "time per sample", "error of one sample", "error Ã
 
 
 def chapter_tables(record):
-    """The Markdown tables of one device for docs/results.md."""
-    text = f"\n### {record['environment']['device']}, `{record['cases'][0]['backend']}`\n\n"
+    """The Markdown tables of one device."""
+    environment = record["environment"]
+    text = f"{environment['device']}, {environment['driver']}, backend `{record['cases'][0]['backend']}`.\n"
     sizes = {case["scene"]: case for case in record["cases"]}
     for (_, scene), rows in kind_tables(record).items():
         case = sizes[scene]
@@ -138,50 +141,76 @@ def backend_table(record):
              f"{rates['bare_rays_per_second'] / 1e6:.4g}", over_bare(rates),
              f"{rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s"]
             for scene in record["scenes"] for name, rates in scene["backends"].items()]
-    return (f"\n### {record['device']}\n\nDriver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x "
-            f"{record['size']} pixels.\n\n" + table(head, rows, left=3))
+    return f"Driver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x {record['size']} pixels.\n\n" + table(head, rows, left=3)
 
 
-def of_records(folder, text_of):
-    """A function that joins the texts of all records of a folder."""
-    return lambda: "".join(map(text_of, load_records(folder)))
-
-
+# Tables of docs/results/DEVICE.md: from docs/records/FOLDER/DEVICE.json.
+DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table),
+                 "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
-    # Tables of docs/results.md are for all devices.
-    "best chapters": best_table, "chapters": of_records("chapters", chapter_tables), "backends": of_records("backends", backend_table),
-    "peers": of_records("peers", peer_table), "features": of_records("cost", feature_table), "growth": of_records("cost", growth_tables),
-    "check": of_records("check", confusion_table), **examples(),
+    "best chapters": best_table, "check": lambda: confusion_table(load_records("check")[0]), **examples(),
 }
+AGES = "ages of records"
+# Wherever times on such a device are compared.
+NO_RAY_TRACING_CORES = """
+> **An NVIDIA H200 has no ray tracing cores.** There the driver, our tree and Mitsuba's OptiX all trace rays in software. GPUs with such
+> cores trace rays several times faster in hardware, and Mitsuba gains from that as well. No ratio measured here holds for them.
+
+"""
+
+
+def device_table(name, stem):
+    """A table of the page of a device."""
+    folder, text_of = DEVICE_TABLES[name]
+    file = RECORDS / folder / f"{stem}.json"
+    return "\n" + text_of(read_json(file)) if file.is_file() else "\nNot measured on this device.\n"
 
 
 def page_tables(name, page):
     """The text of a table: its own, or that of the first device with its explanation."""
     if name in OWN_TABLES:
         return OWN_TABLES[name]()
+    if name == AGES:
+        return age_table(page)
+    if name == "no ray tracing cores":
+        return NO_RAY_TRACING_CORES
+    if name in DEVICE_TABLES and page.parent == DOCS / "results":
+        return device_table(name, page.stem)
     if name.startswith("bug "):
         return bug_block(name.removeprefix("bug "))
-    results = os.path.relpath(DOCS / "results.md", page.parent)
-    first, *others = load_records("chapters")
-    names = ", ".join(record["environment"]["device"] for record in others)
-    return (f"Measured on {first['environment']['device']}. [The columns]({results}#what-the-numbers-mean) are explained in the results, "
-            f"which also show {names}. Below 1 means that it pays.\n\n{page_table(name, first)}\n")
+    results = os.path.relpath(DOCS / "results", page.parent)
+    first = load_records("chapters")[0]
+    return (f"Measured on {first['environment']['device']}; [what the columns mean]({results}.md#what-the-numbers-mean), "
+            f"[other devices]({results}.md#all-numbers).\n\n{page_table(name, first)}\n")
 
 
-def write_pages(is_check=False):
-    """Writes all pages, or only checks that they are up to date."""
+def without_ages(text):
+    return TABLE.sub(lambda match: "" if match[2] == AGES else match[0], text)
+
+
+def write_pages(is_check=False, checks_ages=False):
+    """Writes all pages and plots, or only checks that they are up to date. Whether records are old is checked apart: else each change of
+    a shader would ask for other pages."""
     for page in PAGES:
         before = page.read_text(encoding="utf-8")
         text = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3], before)
         text = fill(text, page.relative_to(ROOT))
         if not is_check:
             page.write_text(text, encoding="utf-8")
-        elif text != before:
+        elif text != before and (checks_ages or without_ages(text) != without_ages(before)):
             raise UserError(f"{page.relative_to(ROOT)} is not what the records and the sources say: run `python3 tools tables`")
+    for name in PLOTS:
+        file = DOCS / f"pictures/{name}.svg"
+        if not is_fresh(file, name):
+            if is_check:
+                raise UserError(f"{file.relative_to(ROOT)} does not show the records: run `python3 tools tables`")
+            write_plot(file, name)
 
 
 def main():
     parser = Parser("tools/tables", __doc__)
     parser.add_argument("--check", action="store_true", help="write nothing; say which page is not up to date")
-    write_pages(parser.parse_args().check)
+    parser.add_argument("--ages", action="store_true", help="with --check: what the pages say of the age of the records, too")
+    options = parser.parse_args()
+    write_pages(options.check, options.ages)

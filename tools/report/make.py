@@ -53,11 +53,11 @@ def make_record(options, settings):
         raise UserError("--record measures a fixed list of cases: no scenes, chapters or peers go with it")
     measurement = Measurement(options.record, study_cases(), settings)
     measurement.measure()
-    measurement.record["is_complete"] = True
+    measurement.finish()
     for run in (run for case in measurement.record["cases"] for run in case["runs"]):
         del run["rows"][:-1]  # the others are not shown there
     measurement.save()
-    print(f"{options.record}: complete; python3 tools tables fills docs/results.md from records in docs/records/chapters")
+    print(f"{options.record}: complete; python3 tools tables fills docs/results/ from records in docs/records/chapters")
 
 
 def make_report(options, settings):
@@ -65,7 +65,7 @@ def make_report(options, settings):
     measurement = Measurement(folder / "record.json", chosen_cases(options), settings, folder / "pictures")
     try:
         measurement.measure()
-        measurement.record["is_complete"] = True
+        measurement.finish()
     finally:
         if any(case["runs"] for case in measurement.record["cases"]):
             write_report(measurement.record, folder)

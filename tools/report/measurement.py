@@ -16,6 +16,7 @@ from pathlib import Path
 from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, commit, failure_text, has_low_discrepancy,
                      program_file, read_json, run_program, show_progress, write_json)
 from references.images import averaged, read_reference, read_rgb, rel_mse
+from report.sources import measured
 
 PILOT_PART = 0.3  # of a run's seconds: a pilot tells how many samples a run takes
 DEVICE_LOST = 3  # exit code
@@ -155,7 +156,7 @@ def digest_of_sources(cases):
     digest = hashlib.sha256()
     for path in sorted(set(files)):
         if path.is_file() and path.suffix != ".md":
-            digest.update(str(path).encode() + path.read_bytes())
+            digest.update(relative(path).encode() + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -175,6 +176,10 @@ class Measurement:
 
     def save(self):
         write_json(self.file, self.record)
+
+    def finish(self):
+        """Marks the record as complete, and keeps what it measured."""
+        self.record |= {"is_complete": True, "measured": measured(" ".join(case["program"] for case in self.record["cases"]))}
 
     def run_seconds(self):
         """Rendering time of one run."""

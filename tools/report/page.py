@@ -155,6 +155,6 @@ def page(record, scenes, folder):
 def write_report(record, folder):
     """All files; pictures are in folder/pictures."""
     scenes = summarize(record)
-    content = {"settings": record["settings"], "environment": record["environment"], "scenes": scenes}
+    content = {key: record[key] for key in ("settings", "environment", "measured") if key in record} | {"scenes": scenes}
     write_json(folder / "report.json", content)
     (folder / "index.html").write_text(page(record, scenes, folder / "pictures"), encoding="utf-8")

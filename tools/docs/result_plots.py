@@ -1,0 +1,236 @@
+"""Draws the plots of docs/results.md from the records: SVG files that are legible on white and on black.
+
+Each function of PLOTS returns a figure and the numbers that it shows. The file keeps a digest of these numbers, by which
+`python3 tools tables --check` finds plots that are older than the records. Intervals hold with a probability of 95 %.
+"""
+import hashlib
+import json
+import re
+
+from docs.best_table import best_and_peers
+from docs.confusion_table import CONDITIONS, rates
+from matplotlib import pyplot, ticker
+from project import load_records, scene_of, write_bytes
+from report.numbers import Series, errors, paired_ratio
+from report.plots import svg_text
+from scipy.stats import binomtest
+
+GREY = "#787d83"
+# Blue, orange, purple, green and grey: seen on white and on black, and told apart by their lightness or by their markers.
+COLOURS, MARKERS = ["#2f7de1", "#c96a00", "#9b62d6", "#2c8f4e", GREY], "osD^X"
+WIDTH, ROW, FONT = 640, 19, 12  # pixels: of a plot, of a row with bars, of letters
+STYLE = {"svg.fonttype": "none", "svg.hashsalt": "lab", "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans", "Verdana"],
+         "font.size": FONT, "figure.constrained_layout.w_pad": 0.16, "savefig.transparent": True, "legend.frameon": False, "legend.fontsize": FONT - 1} | {
+             f"{name}color": GREY for name in ("text.", "axes.edge", "axes.label", "xtick.", "ytick.", "grid.")}
+
+
+def new_figure(height, rows=1, columns=1, **options):
+    """A figure of the pages' width; lengths are in pixels."""
+    pyplot.rcParams.update(STYLE)
+    return pyplot.subplots(rows, columns, figsize=(WIDTH / 72, height / 72), layout="constrained", **options)
+
+
+def finish_axis(axis, **labels):
+    axis.set(**labels)
+    axis.grid(linewidth=0.5, alpha=0.5)
+    axis.set_axisbelow(True)
+    axis.spines[["top", "right"]].set_visible(False)
+
+
+def bars(axis, values, places, index, label, is_horizontal=True):
+    """Points [value, low, high] with their intervals; those without a value are left out."""
+    shown = [(place, value) for place, value in zip(places, values) if value and value[0]]
+    x = [value[0] for _, value in shown]
+    spread = [[value[0] - (value[1] or value[0]) for _, value in shown], [(value[2] or value[0]) - value[0] for _, value in shown]]
+    y = [place for place, _ in shown]
+    data, error = ((x, y), {"xerr": spread}) if is_horizontal else ((y, x), {"yerr": spread})
+    axis.errorbar(*data, **error, fmt=MARKERS[index], color=COLOURS[index], markersize=5, elinewidth=1.6, capsize=2.5, label=label)
+
+
+def lines(axis, x, values, index, label):
+    """A line with bars; from the sixth on they are dashed."""
+    bars(axis, values, x, index % len(COLOURS), label, is_horizontal=False)
+    axis.plot(x, [value[0] for value in values], color=COLOURS[index % len(COLOURS)], linewidth=1.2, linestyle="-" if index < len(COLOURS) else "--")
+
+
+def forest(axis, rows, series):
+    """A row for each name, with a bar of each series {name of the row: [value, low, high]} in it. A row that is None is a gap."""
+    places = {name: -place for place, name in enumerate(rows) if name is not None}
+    for index, (label, values) in enumerate(series.items()):
+        offset = (index - (len(series) - 1) / 2) * -0.7 / len(series)
+        bars(axis, [values.get(name) for name in places], [place + offset for place in places.values()], index, label)
+    axis.set_yticks(list(places.values()), [name[-1] if isinstance(name, tuple) else name for name in places])
+    axis.set_ylim(0.4 - len(rows), 0.6)
+
+
+def legend_above(axis, columns):
+    """A legend above the axis, under a title if there is one."""
+    axis.legend(loc="lower center", bbox_to_anchor=(0.4, 1), ncols=columns, handletextpad=0.2, columnspacing=1)
+
+
+def plain(value, _=None):
+    return f"{value:,.0f}" if value >= 1 else f"{value:g}"
+
+
+def thousands(value, _=None):
+    return next((f"{value / factor:g} {unit}" for factor, unit in ((1e6, "M"), (1e3, "k")) if value >= factor), f"{value:g}")
+
+
+def devices(folder):
+    """Name of a device -> its record."""
+    return {record.get("device") or record["environment"]["device"]: record for record in load_records(folder)}
+
+
+def short_device(name):
+    """The device without its driver, and with what counts for its rays."""
+    return name.split(" (")[0] + without_cores(name, " (without ray tracing cores)")
+
+
+def without_cores(name, text):
+    """The text if this device traces rays in software."""
+    return text if re.search(r"\b[AH][12]00\b", name) else ""
+
+
+# ---------------------------------------------------------------------------------------------- the plots
+def ideas():
+    """Does each idea pay? Error × time of each chapter over that of the chapter before, by scene."""
+    shown = {}
+    for device, record in devices("chapters").items():
+        before, values = {}, shown.setdefault(short_device(device), {})
+        for case in record["cases"]:
+            if not case["case"].startswith("chapter "):
+                continue
+            cost, scene = errors(case, "device_seconds"), scene_of(case["scene"])
+            if scene in before:
+                name, base = before[scene]
+                values[f"{case['case'].removeprefix('chapter ')} over {name}", f"{scene}"] = paired_ratio(cost, base)
+            before[scene] = case["case"].removeprefix("chapter "), cost
+    steps = sorted({step for values in shown.values() for step, _ in values}, key=lambda step: [int(n) for n in step.split(" over ")])
+    rows = []
+    for step in steps:
+        scenes = dict.fromkeys(row for values in shown.values() for row in values if row[0] == step)
+        rows += [*scenes, None]
+    figure, axis = new_figure(ROW * len(rows) + 90)
+    forest(axis, rows[:-1], shown)
+    for step in steps:
+        inside = [-place for place, row in enumerate(rows) if row and row[0] == step]
+        axis.text(1.01, (inside[0] + inside[-1]) / 2, f"chapter {step}", transform=axis.get_yaxis_transform(), va="center", fontsize=FONT - 1)
+    axis.axvline(1, color=GREY, linewidth=1.5)
+    finish_axis(axis, xscale="log", xlabel="error × time, relative to the chapter before (left of 1: it pays)")
+    axis.xaxis.set_major_formatter(plain)
+    legend_above(axis, 2)
+    return figure, {device: [[*row, *value] for row, value in values.items()] for device, values in shown.items()}
+
+
+def backends_of(grown):
+    """Rays per second of a backend by triangles: {count: [million, low, high]}."""
+    return {row["count"]: Series({i: row["rays_per_path"] * rate / 1e6 for i, rate in enumerate(row["paths_per_second"])}).interval()
+            for row in grown["rows"]}
+
+
+def backends():
+    """Which backend is the fastest, by the number of triangles?"""
+    found = devices("cost")
+    shown = {short_device(device): {grown["backend"]: backends_of(grown) for grown in record["growth"] if grown["quantity"] == "triangles"}
+             for device, record in found.items()}
+    figure, axes = new_figure(300, columns=len(shown), squeeze=False)
+    order = ["compute", "pipeline", "query"]
+    for axis, (device, by_name) in zip(axes[0], shown.items()):
+        for name, values in by_name.items():
+            index = order.index(name) if name in order else len(order)
+            lines(axis, list(values), list(values.values()), index, name)
+        finish_axis(axis, xscale="log", yscale="log", xlabel="triangles")
+        axis.set_title(device.replace(" (", "\n("), fontsize=FONT)
+        axis.yaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.yaxis.set_major_formatter(plain)
+        axis.yaxis.set_minor_formatter(ticker.NullFormatter())
+        axis.xaxis.set_major_formatter(thousands)
+        axis.legend()
+    axes[0][0].set_ylabel("million rays per second")
+    return figure, {device: {name: list(values.items()) for name, values in by_name.items()} for device, by_name in shown.items()}
+
+
+def mitsuba():
+    """How many times faster than each variant and sampler of Mitsuba is our best chapter, by scene?"""
+    shown = {}
+    for device, record in devices("peers").items():
+        if any(scene["gains"] for scene in record["scenes"]):
+            shown[short_device(device)] = {f"{scene_of(scene['scene'])}, {scene['width']}²": gains
+                                           for scene, best, gains in best_and_peers(record)}
+    heights = [44 * len(scenes) + 70 for scenes in shown.values()]
+    figure, axes = new_figure(sum(heights), len(shown), sharex=True, squeeze=False, height_ratios=heights)
+    for axis, (device, scenes) in zip(axes[:, 0], shown.items()):
+        peers = dict.fromkeys(peer for gains in scenes.values() for peer in gains)
+        forest(axis, list(scenes), {peer: {name: gains.get(peer) for name, gains in scenes.items()} for peer in peers})
+        axis.axvline(1, color=GREY, linewidth=1.5)
+        finish_axis(axis, xscale="log")
+        axis.text(1, 0.02, device, transform=axis.transAxes, ha="right", va="bottom", fontweight="bold")
+        axis.xaxis.set_major_formatter(plain)
+        legend_above(axis, 2)
+    axes[-1, 0].set_xlabel("times faster than Mitsuba to the same error (right of 1: the chapter is)")
+    return figure, shown
+
+
+def features():
+    """What does a feature of a scene cost on each backend? Time per path relative to the scene without it."""
+    shown, rows = {}, []
+    for device, record in devices("cost").items():
+        for backend in record["features"]:
+            base = backend["rows"][0]["paths_per_second"]
+            rows = [row["feature"] for row in backend["rows"][1:]]
+            shown[f"{backend['backend']}, {short_device(device).split(' (')[0]}"] = {
+                row["feature"]: Series({i: a / b for i, (a, b) in enumerate(zip(base, row["paths_per_second"]))}).interval()
+                for row in backend["rows"][1:]}
+    figure, axis = new_figure(36 * len(rows) + 110)
+    forest(axis, rows, shown)
+    axis.axvline(1, color=GREY, linewidth=1.5)
+    finish_axis(axis, xlabel="time per path, relative to the scene without the feature")
+    legend_above(axis, 3)
+    return figure, shown
+
+
+def check():
+    """How often does ./lab check find a mistake, and name it?"""
+    conditions = rates(load_records("check")[0])
+    rows = [words for key, words in CONDITIONS.items() if key in conditions]
+    measures = {"large mistakes found": lambda rate: (rate.found_of_large, rate.large), "named right": lambda rate: (rate.right, rate.found),
+                "named right where it is sure": lambda rate: (rate.right_of_sure, rate.sure), "refused though correct": lambda rate: (0, 0)}
+    shown = {label: {} for label in measures}
+    for key, words in CONDITIONS.items():
+        rate = conditions.get(key)
+        for label, counts in measures.items():
+            count, of = counts(rate) if rate and key != "correct" else (0, 0)
+            if key == "correct" and label == "refused though correct" and rate:
+                count, of = rate.found, rate.tried
+            if of:
+                interval = binomtest(count, of).proportion_ci()
+                shown[label][words] = [max(100 * count / of, 1e-9), 100 * interval.low, 100 * interval.high]
+    figure, axis = new_figure(56 * len(rows) + 100)
+    forest(axis, rows, shown)
+    finish_axis(axis, xlabel="% of the trials", xlim=(-2, 102))
+    legend_above(axis, 2)
+    return figure, shown
+
+
+PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, features, check)}
+
+
+# ---------------------------------------------------------------------------------------------- files
+def digest(numbers):
+    """Of the numbers of a plot, to six digits: other versions of SciPy round the last ones differently."""
+    text = json.dumps(numbers, default=str)
+    return hashlib.sha256(re.sub(r"-?\d+\.\d+(?:e-?\d+)?", lambda match: f"{float(match[0]):.6g}", text).encode()).hexdigest()[:16]
+
+
+def write_plot(file, name):
+    figure, numbers = PLOTS[name]()
+    title = PLOTS[name].__doc__.split("\n")[0]
+    text = svg_text(figure).replace(">", f">\n<title>{title}</title>\n<desc>numbers {digest(numbers)}</desc>", 1)
+    write_bytes(file, text.encode())
+
+
+def is_fresh(file, name):
+    """Whether a plot shows the numbers of the records."""
+    figure, numbers = PLOTS[name]()
+    pyplot.close(figure)
+    return file.is_file() and f"<desc>numbers {digest(numbers)}</desc>" in file.read_text(encoding="utf-8")

@@ -1,0 +1,38 @@
+"""Digests of what a record measured: the renderer with its tree and shaders, and each chapter. A record keeps them as "measured", so
+that pages can tell which numbers are older than the sources.
+
+Comments and blanks do not count, and neither do chapters that a record does not name: none of these changes a number.
+"""
+import hashlib
+import re
+
+from project import CHAPTERS, ROOT, shaders_of
+
+# What decides about a picture and how long it takes; the window, messages and image formats do not.
+RENDERER = ["shaders", "common/film", "common/gpu", "common/rendering", "common/scene", "common/tracing"]
+COMMENT_OR_BLANKS = re.compile(r"//[^\n]*|/\*.*?\*/|\s+", re.DOTALL)
+
+
+def digest(files):
+    """Of the code in these files and their names, wherever the project lies."""
+    found = hashlib.sha256()
+    for path in sorted(set(files)):
+        found.update(f"{path.relative_to(ROOT).as_posix()}\n{COMMENT_OR_BLANKS.sub(' ', path.read_text(encoding='utf-8'))}\n".encode())
+    return found.hexdigest()[:12]
+
+
+def measured(text):
+    """{"renderer": digest, chapter's name: digest} for the chapters that the text of a record names."""
+    renderer = [path for folder in RENDERER for path in (ROOT / folder).rglob("*") if path.suffix != ".md" and path.is_file()]
+    named = {folder[3:]: number for number, folder in CHAPTERS.items() if re.search(rf"\b(?:\d\d_)?{folder[3:]}\b", text)}
+    return {"renderer": digest(renderer)} | {
+        name: digest([*shaders_of(number), ROOT / "chapters" / CHAPTERS[number] / "chapter.json"]) for name, number in named.items()}
+
+
+def changed_since(record):
+    """What has changed since a record was measured: names as in measured(), or None where the record does not say what it measured."""
+    then = record.get("measured")
+    if then is None:
+        return None
+    now = measured(" ".join(then))
+    return [name for name in then if now.get(name) != then[name]]
