@@ -22,7 +22,7 @@ class Page:
         """is_included(path) tells whether a page of this path may be linked."""
         self.path, self.is_included = Path(path), is_included
         self.linked = []  # pages and sources
-        text = re.sub(r"<!-- .*? -->\n?", "", (ROOT / path).read_text(encoding="utf-8"))
+        text = re.sub(r"<!-- .*? -->\n?|^\[!\[.*\]\(\.\./\.\./actions/.*\n", "", (ROOT / path).read_text(encoding="utf-8"), flags=re.MULTILINE)  # no badges
         text = text.replace("<details>", '<details markdown="1">')  # else MkDocs leaves its text as it is
         self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
         self.text = self.with_comparison(with_lists(LINK.sub(self.link, text)))

@@ -123,7 +123,7 @@ def convergence(folder, renders):
         axis.xaxis.set_major_formatter(plain)
         axis.yaxis.set_major_formatter(plain)
     axes[0].set_ylabel("relative error (root of rel_mse)")
-    axes[0].legend(loc="lower left")
+    axes[1].legend(loc="upper right")
     write_bytes(folder / "convergence.svg", svg_text(figure).encode())
 
 

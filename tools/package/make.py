@@ -1,19 +1,23 @@
 """Packs programs, shaders, scenes, pages and tools for machines without a compiler: output/path_tracing_lab-SYSTEM.
 
 windows: a .zip to unpack and run on Windows 10 or 11, built here. linux: a .tar.xz for the distribution of this machine.
-The same sources make the same archive.
+release: both, the book, checksums and what is new, as output/release. The same sources make the same archive.
 """
+import hashlib
 import io
 import lzma
 import os
+import re
+import shutil
 import tarfile
 import tempfile
 import zipfile
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from book import build as book
 from package import windows_programs
-from project import BINARIES, CHAPTERS, ROOT, Parser, run_to_end
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, run_to_end
 
 HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
@@ -103,8 +107,39 @@ def pack(system, archive, tree=ROOT):
     print(f"{archive}: {archive.stat().st_size / 1e6:.1f} MB, {len(chapters)} chapters")
 
 
+def version():
+    return re.search(r"^project\(.* VERSION ([\d.]+) ", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"), re.MULTILINE)[1]
+
+
+def changes(number):
+    """What CHANGELOG.md says of a version."""
+    sections = re.split(r"^## (.*)\n", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
+    found = dict(zip(sections[1::2], sections[2::2]))
+    if number not in found:
+        raise UserError(f"CHANGELOG.md has no heading '## {number}', which is the version in CMakeLists.txt")
+    return found[number].strip() + "\n"
+
+
+def release(folder):
+    """All files of a release; the archives have the book in them."""
+    number = version()
+    notes = changes(number)
+    book.build(BOOK, is_teacher=False)
+    shutil.rmtree(folder, ignore_errors=True)
+    for system in SYSTEMS:
+        pack(system, folder / f"{NAME}-{number}-{system}{SYSTEMS[system][2]}")
+    files = {path.relative_to(BOOK).as_posix(): path.read_bytes() for path in BOOK.rglob("*") if path.is_file()}
+    write_zip(folder / f"{NAME}-{number}-book.zip", f"{NAME}-{number}-book", files)
+    sums = "".join(f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}\n" for file in sorted(folder.iterdir()))
+    (folder / "SHA256SUMS").write_text(sums, encoding="utf-8")
+    (folder / "notes.md").write_text(notes, encoding="utf-8")
+    print(f"{folder}: version {number}\n{sums}", end="")
+
+
 def main():
     parser = Parser("./lab package", __doc__)
-    parser.add_argument("system", choices=SYSTEMS)
+    parser.add_argument("system", choices=[*SYSTEMS, "release"])
     system = parser.parse_args().system
+    if system == "release":
+        return release(ROOT / "output/release")
     pack(system, ROOT / "output" / f"{NAME}-{system}{SYSTEMS[system][2]}")
