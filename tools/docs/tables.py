@@ -56,6 +56,7 @@ def kind_tables(record):
     return tables
 
 
+ALL_COLUMNS = " with all columns"  # ends the name of a table of a page; others have only what counts
 COLUMNS = ["rays per sample", "time per sample", "error of one sample", "error × rays", "error × time"]
 
 
@@ -73,6 +74,7 @@ def chapter_tables(record):
 
 def page_table(name, record):
     """The table of a page for one device: all cases of a kind, or for "chapter N" that chapter and the row before it."""
+    name, is_wide = name.removesuffix(ALL_COLUMNS), name.endswith(ALL_COLUMNS)
     kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
     tables, rows = kind_tables(record), []
     if kind not in {other for other, _ in tables}:
@@ -86,8 +88,8 @@ def page_table(name, record):
                 chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
             if number and chosen:  # the other is compared with the first row
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
-            rows += [[f"`{scene_of(scene)}`" if i == 0 else "", row[0], *row[2:]] for i, row in enumerate(chosen)]
-    return table(["scene", "", *COLUMNS], rows, left=2)
+            rows += [[f"`{scene_of(scene)}`" if i == 0 else "", row[0], *row[2 if is_wide else -2:]] for i, row in enumerate(chosen)]
+    return table(["scene", "", *(COLUMNS if is_wide else COLUMNS[-2:])], rows, left=2)
 
 
 def expected_table():
