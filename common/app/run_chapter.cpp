@@ -6,6 +6,7 @@
 #include "error.h"
 #include "files/file.h"
 #include "gpu/device.h"
+#include "native/module.h"
 #include "platform.h"
 #include "rendering/build.h"
 #include "rendering/settings.h"
@@ -102,7 +103,23 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }
 
+// Renders a single pixel, whose shader a debugger stops in.
+void debug_pixel(Build& build, uvec2 pixel) {
+    const uvec2 size = build.job.parameters.image_size;
+    if (pixel.x >= size.x || pixel.y >= size.y)
+        throw UserError("--debug-pixel " + std::to_string(pixel.x) + "," + std::to_string(pixel.y) +
+                        " is outside of the image of " + size_text(size) + " pixels");
+    while (build.renderer->advance(1)) {
+    }
+    const FilmPixel& sum = build.renderer->film().read().pixels[size_t{pixel.y} * size.x + pixel.x];
+    std::printf("pixel          %u,%u sample %u: %g %g %g\n", pixel.x, pixel.y, build.job.record.first_sample, sum.sum.r,
+                sum.sum.g, sum.sum.b);
+}
+
 void run(const Chapter& chapter, Options options) {
+    native::set_mode(options.run.sanitize      ? native::Mode::checked
+                     : options.run.debug_pixel ? native::Mode::debug
+                                               : native::Mode::fast);
     choose_outputs(options.run);
     check_outputs(options.run);
     const auto scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
@@ -116,7 +133,10 @@ void run(const Chapter& chapter, Options options) {
     const Device device({options.run.device, options.run.validation});
     Build build = make_build(device, chapter, std::move(job));
     if (!options.run.quiet) print_start(chapter, device, build);
-    render_headless(build);
+    if (options.run.debug_pixel)
+        debug_pixel(build, *options.run.debug_pixel);
+    else
+        render_headless(build);
     check_validation(device, options.run);
 }
 

@@ -4,7 +4,8 @@
 
 namespace lab::native {
 std::vector<std::string> missing_tools() { return {"Linux or macOS"}; }
-RunGroup load(const std::string&, Mode) { return nullptr; }
+void set_mode(Mode) {}
+RunGroup load(const std::string&) { return nullptr; }
 void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 }  // namespace lab::native
 
@@ -41,6 +42,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Mode mode = Mode::fast;
+
 // The first of the usual names on the PATH, or $CXX; empty if there is none.
 fs::path find_compiler() {
     std::vector<std::string> names{"c++", "g++", "clang++"};
@@ -56,8 +59,8 @@ fs::path find_compiler() {
 
 fs::path header_folder() { return project_folder() / "common"; }
 
-std::vector<std::string> compiler_arguments(Mode mode) {
-    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-g",
+std::vector<std::string> compiler_arguments() {
+    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-fvisibility=hidden", "-g",
                                        "-fno-finite-loops", "-ffp-contract=off", "-w",    "-I" + header_folder().string()};
     if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
     if (mode == Mode::fast)
@@ -107,11 +110,11 @@ std::string first_error(std::istream& log) {
 }
 
 // Compiles C++ to a shared library in the cache.
-void compile(const std::string& text, Mode mode, const std::string& name) {
+void compile(const std::string& text, const std::string& name) {
     const fs::path place = cache_file(name + "-" + std::to_string(process_id()));
     const auto with = [&](const char* ending) { return fs::path(place.string() + ending); };
     write_file(with(".cpp"), text);
-    auto command = compiler_arguments(mode);
+    auto command = compiler_arguments();
     command.insert(command.begin(), find_compiler().string());
     command.insert(command.end(), {"-o", with(".so").string(), with(".cpp").string()});
     const bool is_compiled = run_program(command, with(".log"));
@@ -143,15 +146,17 @@ std::vector<std::string> missing_tools() {
     return missing;
 }
 
-RunGroup load(const std::string& preprocessed_glsl, Mode mode) {
+void set_mode(Mode wanted) { mode = wanted; }
+
+RunGroup load(const std::string& preprocessed_glsl) {
     const std::string text = translate(preprocessed_glsl);
     std::string key = text + find_compiler().string() + processor();
-    for (const auto& argument : compiler_arguments(mode)) key += " " + argument;
+    for (const auto& argument : compiler_arguments()) key += " " + argument;
     for (const char* header : {"native/glsl.h", "native/bindings.h"}) key += read_file(header_folder() / header, UINT64_MAX);
     const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
     const fs::path file = cache_file(name);
     if (file.empty()) throw UserError("the backend native has no folder for its code: set XDG_CACHE_HOME to one");
-    if (!read_cache(name)) compile(text, mode, name);
+    if (!read_cache(name)) compile(text, name);
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library)
         throw UserError(std::string("the backend native cannot load its code: ") + dlerror() +

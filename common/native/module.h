@@ -16,9 +16,12 @@ enum class Mode {
     checked,  // stops at undefined behaviour and at indices outside of their arrays
 };
 
+// How all shaders are compiled that are loaded from now on; `fast` without a call.
+void set_mode(Mode mode);
+
 // A compute shader as code, which stays loaded. It comes from the cache if possible. Throws UserError if the compiler refuses
 // what translate() makes of it.
-RunGroup load(const std::string& preprocessed_glsl, Mode mode);
+RunGroup load(const std::string& preprocessed_glsl);
 
 // Runs workgroups on all processors. Interrupts of the program stop them. Throws UserError for what a checked shader finds, and
 // DeviceFailure if the code crashes.

@@ -136,7 +136,7 @@ class Translator {
         for (const auto& name : macros_) macros += "#undef " + name + "\n";
         return "#include \"native/glsl.h\"\n" + macros + "namespace lab::native {\nstruct Shader : ShaderBase {\n" + usings_ +
                text +
-               "\n};\n}\nextern \"C\" lab::native::Outcome lab_run_group(const lab::native::Bindings& bindings, uint32_t group, "
+               "\n};\n}\nextern \"C\" __attribute__((visibility(\"default\"))) lab::native::Outcome lab_run_group(const lab::native::Bindings& bindings, uint32_t group, "
                "char* "
                "error, size_t size) {\n    return lab::native::run_group<lab::native::Shader>(bindings, group, error, "
                "size);\n}\n";

@@ -97,6 +97,15 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
            "--time-limit, --save-every or --quiet is given")
         ->excludes(headless);
     app.add_flag("--validation", run.validation, "Check the use of Vulkan; any complaint is an error");
+    app.add_flag("--sanitize", run.sanitize, "Stop at indices outside of their arrays, with the backend native");
+    app.add_option_function<std::array<uint32_t, 2>>(
+           "--debug-pixel",
+           [&run](const auto& given) {
+               run.debug_pixel = {given[0], given[1]};
+           },
+           "Compute only the first sample of this pixel, with the backend native: for debuggers, see ./lab debug")
+        ->delimiter(',')
+        ->type_name("X,Y");
     app.add_flag("--quiet", run.quiet, "Print errors only");
 }
 
@@ -178,6 +187,12 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
         throw UserError(
             "--window does not go with --report, --reference, --target-error, --time-limit or "
             "--save-every: leave one of them out");
+    if (options.run.sanitize || options.run.debug_pixel) {
+        if (options.run.backend != "auto" && options.run.backend != "native")
+            throw UserError("--sanitize and --debug-pixel do not go with --backend " + options.run.backend + ": leave it out");
+        options.run.backend = "native";
+    }
+    if (options.run.debug_pixel) options.run.window = WindowChoice::never;
     options.scene.file = find_scene(scene);
     for (const auto& known : views())
         if (known.name == view) options.image.view = &known;

@@ -86,6 +86,8 @@ struct RunOptions {
     std::optional<double> save_every;  // seconds
     WindowChoice window = WindowChoice::automatic;
     bool validation = false;
+    bool sanitize = false;
+    std::optional<uvec2> debug_pixel;  // the only one to render, for a debugger
     bool quiet = false;
 };
 

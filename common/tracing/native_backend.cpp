@@ -184,7 +184,7 @@ class NativeBackend : public AccelerationStructure {
         bound.ranges[BINDING_TEXTURES] = range_of(std::span<const native::Texture>(textures_));
         bound.ranges[BINDING_LIGHT_PROBE] = range_of(std::span<const native::Texture>(&probe_, 1));
         tree_.bind(bound);
-        return std::make_unique<NativeTracer>(native::load(preprocess_shader(shaders(estimator).front()), native::Mode::fast),
+        return std::make_unique<NativeTracer>(native::load(preprocess_shader(shaders(estimator).front())),
                                               bound);
     }
 

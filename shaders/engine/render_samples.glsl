@@ -59,6 +59,9 @@ void render_pixel(uint invocation) {
     uint block = group / dispatch.threads_per_pixel;
     uvec2 position = get_pixel_position(dispatch.first_block + block, index, parameters.image_size);
     if (any(greaterThanEqual(position, parameters.image_size))) return;
+#ifdef ONLY_PIXEL  // that a debugger looks at
+    if (position != ONLY_PIXEL) return;
+#endif
     uint pixel_index = position.y * parameters.image_size.x + position.x;
     uint film_index = pixel_index - dispatch.first_film_pixel;
 
