@@ -1,5 +1,7 @@
 #include "platform.h"
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <string>
@@ -43,6 +45,15 @@ void install_interrupt_handler() {
     };
     std::signal(SIGINT, handler);
     std::signal(SIGTERM, handler);
+#ifndef _WIN32
+    std::signal(SIGALRM, handler);
+#endif
+}
+
+void interrupt_after([[maybe_unused]] double seconds) {
+#ifndef _WIN32
+    alarm(static_cast<unsigned>(std::min(std::ceil(seconds), 1e9)));
+#endif
 }
 
 bool is_interrupted() { return interrupted != 0; }

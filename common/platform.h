@@ -49,5 +49,7 @@ extern const char* const vulkan_driver;
 // From now on the first Ctrl-C or SIGTERM makes is_interrupted() true; the second ends the program.
 void install_interrupt_handler();
 bool is_interrupted();
+// The same after this many seconds, where the operating system can.
+void interrupt_after(double seconds);
 
 }  // namespace lab

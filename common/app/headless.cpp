@@ -74,6 +74,9 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
+        // The limit is looked at between dispatches. A shader on the CPU may never end one.
+        constexpr double patience = 2;
+        if (options_.time_limit && acceleration_structure_.is_on_host()) interrupt_after(*options_.time_limit + patience);
         start_ = last_save_ = Clock::now();
         try {
             sample();

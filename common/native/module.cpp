@@ -67,7 +67,7 @@ std::vector<std::string> compiler_arguments() {
         arguments.insert(arguments.end(), {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG"});
     if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-DNDEBUG"});
     if (mode == Mode::checked)
-        arguments.insert(arguments.end(), {"-O1", "-DLAB_CHECKED", "-fsanitize=undefined", "-fno-sanitize-recover=undefined"});
+        arguments.insert(arguments.end(), {"-O1", "-DLAB_CHECKED", "-fsanitize=undefined"});
     return arguments;
 }
 
@@ -84,13 +84,18 @@ bool run_program(const std::vector<std::string>& arguments, const fs::path& log)
     std::vector<char*> pointers;
     for (const auto& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
     pointers.push_back(nullptr);
+    std::vector<char*> environment;  // with messages in English
+    for (char** variable = environ; *variable; ++variable)
+        if (std::strncmp(*variable, "LC_ALL=", 7) != 0) environment.push_back(*variable);
+    char english[] = "LC_ALL=C";
+    environment.insert(environment.end(), {english, nullptr});
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_adddup2(&actions, 1, 2);
     pid_t process = 0;
     int status = -1;
-    const bool is_started = posix_spawn(&process, pointers[0], &actions, nullptr, pointers.data(), environ) == 0;
+    const bool is_started = posix_spawn(&process, pointers[0], &actions, nullptr, pointers.data(), environment.data()) == 0;
     posix_spawn_file_actions_destroy(&actions);
     if (!is_started) return false;
     while (waitpid(process, &status, 0) < 0 && errno == EINTR) {

@@ -310,10 +310,10 @@ class Translator {
         const std::string type = take();
         const auto sizes = dimensions();
         declared_.clear();
+        std::string previous;
         do {
-            if (peek() == ",") text += skip() + ";";
-            const std::string name = peek();
-            const std::string variable = take();
+            const std::string separator = peek() == "," ? skip() : "";
+            const std::string name = peek(), variable = take();
             if (is_global) globals_.insert(name);
             declared_.insert(name);
             auto all = dimensions();
@@ -325,13 +325,15 @@ class Translator {
                 value = take();
                 value += peek() == "{" ? braces() : assignment().text;
                 for (size_t i = begin; i + 1 < at_; ++i)
-                    is_constant &= tokens_[i + 1].text != "(" || !is_name(tokens_[i].text) ||
-                                   scalar_types.contains(tokens_[i].text) || is_vector_type(tokens_[i].text);
+                    is_constant &= tokens_[i + 1].text != "(" || !is_name(tokens_[i].text) || scalar_types.contains(tokens_[i].text) ||
+                                   is_vector_type(tokens_[i].text);
             }
             const std::string before = is_global && is_const ? (is_constant ? "static constexpr " : "inline static const ")
                                        : is_const            ? "const "
                                                              : "";
-            text += before + array_type(type, all) + variable + value;
+            const std::string declared = before + array_type(type, all);
+            text += separator + (previous == declared ? "," : (previous.empty() ? "" : ";") + declared) + variable + value;
+            previous = declared;
         } while (peek() == ",");
         declared_.clear();
         return text;
@@ -387,8 +389,11 @@ class Translator {
             (void)is_const;
         }
         text += take();
+        // GLSL's own functions of this name stay.
+        if (!functions_.contains(name))
+            usings_ += "template <typename B = Builtins, typename... T> static constexpr auto " + spelled(name) +
+                       "(const T&... x) requires requires { B::" + spelled(name) + "(x...); } { return B::" + spelled(name) + "(x...); }\n";
         functions_[name].push_back(outs);
-        if (builtin_overloads_.insert(name).second) usings_ += "";
         if (peek() == ";") {  // a prototype: members of a struct know each other
             skip();
             std::string lines;
@@ -627,7 +632,7 @@ class Translator {
 
     std::vector<Token> tokens_;
     size_t at_ = 0;
-    Names structs_, fields_, globals_, macros_, builtin_overloads_;
+    Names structs_, fields_, globals_, macros_;
     Names declared_;  // names in the declaration that is being read: their initialisers still call functions of these names
     std::map<std::string, std::vector<std::vector<bool>>, std::less<>>
         functions_;  // of each overload: which parameters are `out`

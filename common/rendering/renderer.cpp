@@ -4,6 +4,7 @@
 
 #include "clock.h"
 #include "files/project_folder.h"
+#include "platform.h"
 
 namespace lab {
 namespace {
@@ -138,6 +139,7 @@ bool Renderer::advance(uint32_t target_samples) {
     const double device_seconds =
         device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
     const double seconds = seconds_since(start);
+    if (is_on_host_ && is_interrupted()) return true;  // within blocks; what their pixels have is in the film
     device_seconds_ += is_on_host_ ? seconds : device_seconds;
     for (const uint32_t counter : counters) rays_ += counter;
 

@@ -1,0 +1,160 @@
+// Shaders as C++: what the translator makes of GLSL, compiled and run, gives the numbers that GLSL defines.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "error.h"
+#include "native/module.h"
+#include "native/translator.h"
+
+namespace lab {
+namespace {
+
+// The numbers that a shader writes to results[]. `code` stands before main(), `body` in it.
+std::vector<float> run_shader(const std::string& code, const std::string& body) {
+    const std::string glsl =
+        "#line 1 \"test.glsl\"\n" + code +
+        "\nlayout(scalar, set = 0, binding = 1) buffer Results { float results[]; };\n"
+        "layout(local_size_x = 1) in;\nint next = 0;\nvoid give(float x) { results[next++] = x; }\nvoid main() {\n" +
+        body + "\n}\n";
+    std::vector<float> results(16, -1000);
+    native::Bindings bindings{};
+    bindings.ranges[1] = {reinterpret_cast<std::byte*>(results.data()), results.size() * sizeof(float)};
+    native::run_groups(native::load(glsl), bindings, 0, 1);
+    while (!results.empty() && results.back() == -1000) results.pop_back();
+    return results;
+}
+
+using Numbers = std::vector<float>;
+
+TEST(Native, SwizzlesReadAndWrite) {
+    EXPECT_EQ(run_shader(
+                  "",
+                  "vec4 v = vec4(1, 2, 3, 4); v.zx = v.xy; v.yw += 10.0; v.xy = v.yx; give(v.x); give(v.y); give(v.z); give(v.w);"
+                  "give(v.wzyx.xy.x); give(v.rgb.b); vec2 t = v.st; give(t.t); mat3 m = mat3(2.0); m[1].zx = vec2(5, 6); "
+                  "give(m[1].x);"),
+              (Numbers{12, 2, 1, 14, 14, 1, 2, 6}));
+    EXPECT_EQ(run_shader("struct Pair { float st; vec2 xy; };", "Pair p = Pair(3.0, vec2(4, 5)); give(p.st); give(p.xy.y);"),
+              (Numbers{3, 5}));
+}
+
+TEST(Native, OutArgumentsAreCopiedInAndOut) {
+    const char* const code =
+        "float held = 1.0;\n"
+        "void add(inout float x, float y) { x += y; x += held; }\n"
+        "void halve(inout vec2 v) { v *= 0.5; }\n"
+        "void both(inout float a, inout float b) { a += 1.0; b += a; }\n"
+        "float split(float x, out float rest) { rest = fract(x); return floor(x); }";
+    // The global keeps its value until the call returns: 1 + 2 + 1.
+    EXPECT_EQ(run_shader(code, "add(held, 2.0); give(held);"), (Numbers{4}));
+    EXPECT_EQ(run_shader(code, "vec3 v = vec3(2, 4, 8); halve(v.zx); give(v.x); give(v.y); give(v.z);"), (Numbers{1, 4, 4}));
+    // Neither parameter sees what the other one does: 1 + 1 or 1 + 2, but not 4.
+    const Numbers alias = run_shader(code, "float x = 1.0; both(x, x); give(x);");
+    EXPECT_TRUE(alias == Numbers{2} || alias == Numbers{3}) << alias.front();
+    EXPECT_EQ(run_shader(code,
+                         "float r; give(split(2.75, r)); give(r); uint high, low; umulExtended(0x80000000u, 6u, high, low);"
+                         "give(float(high)); give(float(low)); vec2 v; v.y = modf(3.25, v.x); give(v.x); give(v.y);"),
+              (Numbers{2, 0.75, 3, 0, 3, 0.25}));
+}
+
+TEST(Native, OperandsAreEvaluatedFromLeftToRight) {
+    const char* const code =
+        "float draw(inout uint seed) { seed += 1u; return float(seed); }\nvec2 pair(float a, float b) { return vec2(a, b); }";
+    EXPECT_EQ(run_shader(code,
+                         "uint s = 0u; vec2 v = vec2(draw(s), draw(s)); give(v.x); give(v.y); give(draw(s) - 2.0 * draw(s));"
+                         "vec2 w = pair(draw(s), draw(s)); give(w.x); give(w.y); give(pair(float(s), draw(s)).x);"),
+              (Numbers{1, 2, 3 - 2 * 4, 5, 6, 6}));
+    EXPECT_EQ(run_shader(code, "uint s = 0u; float x = false && draw(s) > 0.0 ? draw(s) : 7.0; give(x); give(float(s));"),
+              (Numbers{7, 0}));
+}
+
+TEST(Native, ArraysAreValues) {
+    EXPECT_EQ(run_shader("const float TABLE[3] = float[3](1.0, 2.0, 4.0);\nfloat[2] twice(float[2] a) { a[0] *= 2.0; return a; }",
+                         "float a[2] = float[](3.0, 5.0); float b[2] = twice(a); give(a[0]); give(b[0]); give(float(a.length()));"
+                         "give(TABLE[2]); vec3 c[2] = {vec3(1), vec3(2)}; give(c[1].y); float[2] d = a, e = b; give(float(d == "
+                         "a)); give(float(d == e));"
+                         "float m[2][3]; m[1][2] = 9.0; give(m[1][2]); give(float(m.length()) + float(m[0].length()));"),
+              (Numbers{3, 6, 2, 4, 2, 1, 0, 9, 5}));
+}
+
+TEST(Native, NumbersAreConverted) {
+    EXPECT_EQ(run_shader("",
+                         "uvec2 u = uvec2(3, 4); vec2 v = u; give(v.y); give((u * 0.5).x); give((2 * u).y); give(max(v.x, 1)); "
+                         "give(vec3(true).z);"
+                         "give(float(uint(-1) >> 31)); give(mix(vec2(1), vec2(2), lessThan(v, vec2(3.5))).x); give(clamp(5, 0, "
+                         "2)); give(float(vec2(6, 7)));"
+                         "give(1e1 + .5 + 2.); give(pow(2, 3)); give(float(0xffu));"),
+              (Numbers{4, 1.5, 8, 3, 1, 1, 2, 2, 6, 12.5, 8, 255}));
+}
+
+TEST(Native, KnowsTheFunctionsOfGlsl) {
+    EXPECT_EQ(
+        run_shader(
+            "",
+            "give(float(any(not(bvec2(true, false))))); give(smoothstep(0.0, 1.0, 0.5)); give((mat2(1, 2, 3, 4) * vec2(1, 1)).x);"
+            "give(float(findMSB(8u))); give(float(bitCount(7u))); give(float(bitfieldReverse(1u) >> 31u)); "
+            "give(transpose(mat2(1, 2, 3, 4))[0].y);"
+            "give(determinant(mat2(1, 2, 3, 4))); give(uintBitsToFloat(floatBitsToUint(1.5))); give(fma(2.0, 3.0, 4.0)); "
+            "give(sign(-3.0));"
+            "give(length(vec2(3, 4))); give(float(true ^^ true)); give(atan(0.0, 1.0)); give(inversesqrt(4.0)); give(mod(-1.0, "
+            "4.0));"),
+        (Numbers{1, 0.5, 4, 3, 3, 1, 3, -2, 1.5, 10, -1, 5, 0, 0, 0.5, 3}));
+}
+
+TEST(Native, NamesMayBeThoseOfFunctionsAndOfCpp) {
+    EXPECT_EQ(run_shader("float area(float x) { return 2.0 * x; }\nfloat floor(int x) { return 1.0; }",
+                         "float distance = distance(vec2(0), vec2(3, 4)); give(distance); float area = area(3.0), new = 1.0, "
+                         "class_ = 2.0; give(area); give(new + class_);"
+                         "float NAN = 4.0; give(NAN); give(floor(2.5)); give(floor(2));"),
+              (Numbers{5, 6, 3, 4, 2, 1}));
+}
+
+TEST(Native, StatementsAreThoseOfGlsl) {
+    EXPECT_EQ(run_shader("float f(int i);\nfloat g(int i) { return f(i) + 1.0; }\nfloat f(int i) { switch (i) { case 0: return "
+                         "5.0; case 1: default: break; } return 7.0; }",
+                         "give(g(0)); give(g(1)); int n = 0; do { ++n; if (n == 2) continue; } while (n < 4); give(float(n)); "
+                         "while (n > 0) n -= 3; give(float(n));"
+                         "float sum = 0.0; for (int i = 0, j = 5; i < j; ++i, --j) sum += 1.0; give(sum); struct S { float a, "
+                         "b[2]; }; S s = S(1.0, float[2](2.0, 3.0)); give(s.b[1]);"
+                         "give(float(s == S(1.0, float[2](2.0, 3.0)))); { float a = 1.0, b = 2.0; a = b = 3.0; give(a); }"),
+              (Numbers{6, 8, 4, -2, 3, 3, 1, 3}));
+}
+
+TEST(Native, BlocksMayHaveNamesAndHeaders) {
+    EXPECT_EQ(
+        run_shader("layout(scalar, set = 0, binding = 2) readonly buffer Block { uint count; vec2 size; float rest[]; } block;\n",
+                   "give(7.0);"),
+        Numbers{7});
+}
+
+TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
+    try {
+        run_shader("", "give(1.0);\ngive(unknown_function(1.0));");
+        FAIL();
+    } catch (const UserError& error) {
+        EXPECT_NE(std::string(error.what()).find("test.glsl:8: 'unknown_function' was not declared"), std::string::npos)
+            << error.what();
+        EXPECT_NE(std::string(error.what()).find("--backend compute"), std::string::npos) << error.what();
+    }
+    EXPECT_THROW(native::translate("#line 1 \"test.glsl\"\nvoid main() { goto x; }"), UserError);
+}
+
+TEST(Native, CheckedShadersNameTheLineOfAWrongIndex) {
+    native::set_mode(native::Mode::checked);
+    std::string message;
+    try {
+        run_shader("", "float a[4];\nfor (int i = 0; i < 4; ++i) a[i] = 1.0;\ngive(a[next + 4]);");
+    } catch (const DeviceFailure& failure) {
+        message = failure.what();
+    }
+    native::set_mode(native::Mode::fast);
+    EXPECT_EQ(message, "test.glsl:9: index 4 of an array of 4 elements");
+}
+
+TEST(Native, ACrashIsAnErrorAndNotTheEndOfTheProgram) {
+    EXPECT_THROW(run_shader("", "give(results[1000000000 + next]);"), DeviceFailure);
+    EXPECT_EQ(run_shader("", "give(1.0);"), Numbers{1});
+}
+
+}  // namespace
+}  // namespace lab
