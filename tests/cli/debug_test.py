@@ -1,0 +1,184 @@
+"""./lab debug and the page that shows it: the searches of docs/debugging.md find what they say."""
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
+from debug import command
+from project import CHAPTERS
+
+PAGE = (PROJECT / "docs/debugging.md").read_text(encoding="utf-8")
+SHADER = "chapters/01_uniform_sampling/path_trace.glsl"
+
+
+class CopiedLab(ProgramTest):
+    """A tree of the lab with shaders of its own and the program of chapter 1."""
+
+    def setUp(self):
+        super().setUp()
+        program = BINARIES / CHAPTERS[1]
+        devices = subprocess.run([program, "--list-devices"], capture_output=True, encoding="utf-8").stdout
+        if not re.search(r"native +works", devices):
+            self.skipTest("no device has the backend native")
+        self.tree = self.folder / "lab"
+        for name in ("chapters", "shaders", "tools"):
+            shutil.copytree(PROJECT / name, self.tree / name)
+        for name in ("assets", "common"):
+            (self.tree / name).symlink_to(PROJECT / name)
+        (self.tree / "build/bin").mkdir(parents=True)
+        self.program = shutil.copy(program, self.tree / "build/bin")
+        self.shader = self.tree / SHADER
+
+    def plant(self, text):
+        """Makes the replacements that a text of the page asks for, from the shader as it is."""
+        code = (PROJECT / SHADER).read_text(encoding="utf-8")
+        for old, new in re.findall(r"replace\s+`([^`]+)`\s+by\s+`([^`]+)`", text):
+            self.assertEqual(code.count(old), 1, old)
+            code = code.replace(old, new)
+        self.shader.write_text(code, encoding="utf-8")
+
+    def execute(self, *words):
+        return subprocess.run(list(map(str, words)), cwd=self.tree, capture_output=True, encoding="utf-8", timeout=300, stdin=subprocess.DEVNULL,
+                              env=os.environ | {"LAB_BINARIES": str(self.tree / "build/bin")})
+
+    def debug(self, *words):
+        if not shutil.which("gdb"):
+            self.skipTest("gdb is not installed")
+        return self.execute(sys.executable, "-B", "tools", "debug", *words).stdout
+
+
+class DebugTest(CopiedLab):
+    def search(self, title):
+        """A section of the page with its blocks: the command, what gdb is to do, and what must be seen."""
+        section = re.search(rf"^## {title}.*?(?=^## )", PAGE, re.MULTILINE | re.DOTALL)[0]
+        blocks = dict(re.findall(r"^```(\w+)\n(.*?)^```", section, re.MULTILINE | re.DOTALL))
+        self.plant(section)
+        return re.search(r"^    \./lab (.*)$", section, re.MULTILINE)[1].split(), blocks
+
+    def assert_found(self, seen, blocks):
+        at = 0
+        for line in blocks["text"].splitlines():
+            self.assertIn(line, seen[at:])
+            at = seen.index(line, at) + len(line)
+
+    def test_the_searches_of_the_page(self):
+        for title in ("A breakpoint", "A watchpoint"):
+            with self.subTest(title):
+                words, blocks = self.search(title)
+                commands = [word for line in blocks["gdb"].splitlines() for word in ("-ex", line)]
+                self.assert_found(self.debug(*words[1:], "--", "-batch", *commands), blocks)
+        with self.subTest("A sanitizer"):
+            words, blocks = self.search("A sanitizer")
+            process = self.execute(self.program, *words[2:])
+            self.assert_found(process.stderr, blocks)
+            self.assertEqual(process.returncode, 3)
+
+    def test_it_stops_in_the_student_s_file_with_its_variables(self):
+        seen = self.debug(1, "--pixel", "20,30", "--width", 40, "--height", 40, "--sample", 3, "--", "-batch", "-ex", "info locals",
+                          "-ex", "up", "-ex", "print first", "-ex", "continue")
+        self.assertIn(f"{SHADER}:8", seen)
+        self.assertRegex(seen, r"throughput = \(.*, .*, .*\)")
+        self.assertRegex(seen, r"pixel +20,30 sample 3: ")
+
+    def test_visual_studio_code(self):
+        process = self.execute(sys.executable, "-B", "tools", "debug", "--vscode")
+        self.assertEqual(process.stdout.split(), [".vscode/launch.json", ".vscode/tasks.json"])
+        launch = json.loads((self.tree / ".vscode/launch.json").read_text(encoding="utf-8"))
+        [configuration] = launch["configurations"]
+        inputs = {found["id"] for found in launch["inputs"]}
+        self.assertEqual(set(re.findall(r"\$\{input:(\w+)\}", json.dumps(configuration))), inputs)
+        # Again is fine, and another's file is kept.
+        self.assertEqual(self.execute(sys.executable, "-B", "tools", "debug", "--vscode").returncode, 0)
+        (self.tree / ".vscode/launch.json").write_text("{}", encoding="utf-8")
+        refused = self.execute(sys.executable, "-B", "tools", "debug", "--vscode")
+        self.assertIn("launch.json is there already", refused.stderr)
+
+    def test_refusals(self):
+        self.assert_tool_refused(["debug"], "which chapter")
+        self.assert_tool_refused(["debug", 99], "no chapter 99")
+        self.assert_refused(["--debug-pixel", "64,3", "--width=64", "--height=64"], "64,3", "64x64")
+        self.assert_refused(["--sanitize", "--backend=compute"], "--backend compute")
+
+    def test_lldb_stops_at_the_same_place(self):
+        self.assertEqual(command.command_for("lldb", "program", ["a"], []),
+                         ["lldb", "-o", "breakpoint set --name path_trace", "-o", "process launch", "--", "program", "a"])
+
+
+class NativeFailures_all(CopiedLab):
+    """What can go wrong where shaders become programs."""
+    SIZE = ("--headless", "--width=32", "--height=32", "--samples=2")
+
+    def render(self, *arguments, backend="native", **environment):
+        return subprocess.run([self.program, *self.SIZE, f"--backend={backend}", "--output=picture.exr", *arguments], cwd=self.tree, capture_output=True, encoding="utf-8", timeout=120,
+                              env=os.environ | {"XDG_CACHE_HOME": str(self.tree / "cache")} | environment)
+
+    def assert_error(self, process, code, *words):
+        self.assertEqual(process.returncode, code, process.stderr)
+        self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
+        for word in words:
+            self.assertIn(word, process.stderr)
+
+    def compiler(self, script):
+        path = self.tree / "fake/c++"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("#!/bin/sh\n" + script, encoding="utf-8")
+        path.chmod(0o755)
+        return {"PATH": f"{path.parent}:{os.environ['PATH']}"}
+
+    def test_without_a_compiler(self):
+        self.assert_error(self.render(PATH=str(self.tree)), 2, "a C++ compiler", "these work on it", "compute")
+        process = subprocess.run([self.program, "--list-devices"], capture_output=True, encoding="utf-8", env=os.environ | {"PATH": ""})
+        self.assertRegex(process.stdout, r"native +lacks a C\+\+ compiler")
+
+    def test_a_compiler_that_fails(self):
+        self.assert_error(self.render(**self.compiler("echo broken; exit 1\n")), 1, "does not compile", "broken", "--backend compute")
+        self.assertEqual(list((self.tree / "cache/path_tracing_lab").glob("*.cpp")), [])
+
+    def test_a_cache_that_was_damaged_is_compiled_anew(self):
+        self.assertEqual(self.render().returncode, 0)
+        [code] = (self.tree / "cache/path_tracing_lab").glob("native-*")
+        good = code.read_bytes()
+        for bad in (b"", good[:1000], good[:-9] + b"x" + good[-8:]):
+            code.unlink()  # a program that runs it keeps its own
+            code.write_bytes(bad)
+            self.assertEqual(self.render().returncode, 0)
+            self.assertEqual(len(code.read_bytes()), len(good))
+        self.assertEqual(self.render(**self.compiler("exit 1\n")).returncode, 1)  # another compiler has other code
+
+    def test_two_that_compile_the_same(self):
+        command_line = [self.program, *self.SIZE, "--backend=native"]
+        environment = os.environ | {"XDG_CACHE_HOME": str(self.tree / "cache")}
+        both = [subprocess.Popen([*command_line, f"--output={i}.exr"], cwd=self.tree, env=environment) for i in range(2)]
+        self.assertEqual([process.wait(120) for process in both], [0, 0])
+        self.assertEqual([file.suffix for file in (self.tree / "cache/path_tracing_lab").glob("native-*")], [""])
+
+    def test_a_shader_that_never_ends(self):
+        old = "        Hit hit;\n"
+        code = self.shader.read_text(encoding="utf-8")
+        self.shader.write_text(code.replace(old, old + "        while (throughput.x > 0.0) throughput.y += 1.0;\n"), encoding="utf-8")
+        process = self.render("--time-limit=1")
+        self.assert_error(process, 1, "stopped before the first sample")
+
+    def test_a_crash_keeps_what_was_written(self):
+        self.assertEqual(self.render().returncode, 0)
+        before = (self.tree / "picture.exr").read_bytes()
+        code = self.shader.read_text(encoding="utf-8")
+        self.shader.write_text(code.replace(
+            "return radiance;", "return radiance * float(triangles[seed.x | 0x80000000u].x);"), encoding="utf-8")
+        self.assert_error(self.render(), 3, "crashed", "--sanitize")
+        self.assertEqual((self.tree / "picture.exr").read_bytes(), before)
+
+    def test_errors_of_a_shader_are_those_of_all_backends(self):
+        self.shader.write_text(self.shader.read_text(encoding="utf-8").replace("vec3 radiance = vec3(0.0);", "vec3 radiance = nothing;"),
+                               encoding="utf-8")
+        native, compute = self.render().stderr, self.render(backend="compute").stderr
+        self.assertIn("path_trace.glsl:8: 'nothing' : undeclared identifier", native)
+        self.assertEqual(native.splitlines()[0], compute.splitlines()[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
