@@ -21,6 +21,7 @@ from docs.cost_tables import feature_table, growth_tables, seconds_text
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from docs.result_plots import PLOTS, is_fresh, write_plot
+from docs.running import running_table
 from project import RECORDS, ROOT, Parser, UserError, load_records, read_json, scene_of, table
 from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
 from report.studies import examples
@@ -151,7 +152,7 @@ DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backend
                  "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
-    "best chapters": best_table, "check": lambda: confusion_table(load_records("check")[0]), **examples(),
+    "running": running_table, "best chapters": best_table, "check": lambda: confusion_table(load_records("check")[0]), **examples(),
 }
 AGES = "ages of records"
 # Wherever times on such a device are compared.
