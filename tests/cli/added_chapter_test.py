@@ -1,4 +1,4 @@
-"""A chapter is added by copying a folder and nothing else, as docs/teaching.md says: every command, the C++ tests, the book and the
+"""A chapter is added by copying a folder and nothing else, as docs/extending.md says: every command, the C++ tests, the book and the
 handout take it up. So they do with a folder that brings a technique and a material of its own."""
 
 import json

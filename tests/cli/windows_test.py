@@ -1,6 +1,6 @@
 """The programs for Windows, under Wine on a virtual display, do what those for Linux do: ./lab test --all.
 
-Wine hands Vulkan on to the driver of this machine. docs/teaching.md lists what only Windows itself can show.
+Wine hands Vulkan on to the driver of this machine. docs/installing.md lists what only Windows itself can show.
 """
 
 import os

@@ -18,9 +18,9 @@ SECTIONS = {  # of the navigation; pages that do not exist are left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
     "Explore": ["docs/window.md", "docs/scenes.md"],
-    "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/numerics.md", "docs/cluster.md"],
+    "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/extending.md", "docs/numerics.md", "docs/cluster.md", "CHANGELOG.md"],
     "Results": ["docs/results.md", *(f"docs/results/{path.name}" for path in sorted((ROOT / "docs/results").glob("*.md"))), "docs/measuring.md"],
-    "For teachers": ["docs/teaching.md", "docs/grading/README.md"],
+    "For teachers": ["docs/teaching.md", "docs/grading/README.md", "docs/installing.md"],
 }
 START = ["README.md", "docs/first_steps.md"]
 SOLUTIONS = "chapters/*/solutions/README.md"  # for teachers only

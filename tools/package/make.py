@@ -22,7 +22,7 @@ from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, run_to_end
 HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
 FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
-FILES = ["LICENSE", "README.md"]
+FILES = ["CHANGELOG.md", "LICENSE", "README.md"]
 # Solutions and what only teachers need, or what needs the sources.
 LEFT_OUT = ["tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/exercise.json",
             "chapters/*/mistakes.json", "chapters/*/other_scenes.json", "chapters/*/solutions/*", "chapters/*/variants/*", "*/__pycache__/*"]
