@@ -21,7 +21,7 @@ def sentences(text):
     text = re.sub(r"!?\[([^\[\]]*)\]\([^()]*\)", r"\1", text)
     for piece in ONE_WORD:
         text = re.sub(piece, lambda match: re.sub(r"[\s.!?]+", "_", match[0]), text)
-    text = re.sub(r"\*+|<[^<>]+>", "", text)
+    text = re.sub(r"\*+|</?[a-z][^<>]*>", "", text)
     # A list item is a paragraph of its own.
     paragraphs = re.split(r"\n\s*\n|(?:\A|\n)\s*(?:[-+]|\d+\.)\s+", text)
     found = [" ".join(sentence.split()) for paragraph in paragraphs
@@ -31,6 +31,11 @@ def sentences(text):
 
 def count_words(sentence):
     return sum(re.search(r"\w", word) is not None for word in sentence.split())
+
+
+def length(text):
+    """The words of all sentences of a page."""
+    return sum(map(count_words, sentences(text)))
 
 
 def measure(text):
