@@ -1,7 +1,7 @@
 """Measures what each command costs, from a fresh clone on: docs/records/running/NAME.json, for the table of docs/measuring.md.
 
 It clones the last commit into a temporary folder, and runs the commands there one after the other. What they need must be installed.
-Seconds of the CPU do not depend on what else runs; seconds by the clock do.
+The table shows seconds of the CPU, which depend little on what else runs. Building keeps all cores busy; most else is short.
 """
 import os
 import subprocess
@@ -44,11 +44,11 @@ def running_table():
     """What each command costs."""
     text = ""
     for record in load_records("running"):
-        rows = [[f"`./lab {row['command']}`", f"{row['cpu_seconds']:.0f}", f"{row['seconds']:.0f}", f"{row['largest_process_bytes'] / 2**20:.0f} MiB",
+        rows = [[f"`./lab {row['command']}`", f"{row['cpu_seconds']:.0f}", f"{row['largest_process_bytes'] / 2**20:.0f} MiB",
                  f"{row['disk_bytes'] / 2**20:.0f} MiB"] for row in record["commands"]]
-        text += (f"{record['processor']}, {record['cores']} cores, with a load of {record['load']:.1f} by other work; {record['date']}, commit "
+        text += (f"{record['processor']}, {record['cores']} cores, {record['date']}, commit "
                  f"{record['commit']}. The clone has {record['clone_bytes'] / 2**20:.0f} MiB.\n\n"
-                 + table(["command, in this order", "seconds of all cores", "by the clock", "largest process", "more on the disk"], rows))
+                 + table(["command, in this order", "seconds of one core", "memory of the largest process", "more on the disk"], rows))
     return text
 
 
