@@ -134,7 +134,7 @@ def backends():
     shown = {short_device(device): {grown["backend"]: backends_of(grown) for grown in record["growth"] if grown["quantity"] == "triangles"}
              for device, record in found.items()}
     figure, axes = new_figure(300, columns=len(shown), squeeze=False)
-    order = ["compute", "pipeline", "query"]
+    order = ["compute", "pipeline", "query", "native"]
     for axis, (device, by_name) in zip(axes[0], shown.items()):
         for name, values in by_name.items():
             index = order.index(name) if name in order else len(order)
