@@ -18,8 +18,8 @@ struct MemoryNeed {
 // Largest buffer of this usage that shaders can bind, in bytes.
 size_t largest_visible(const Device& device, vk::BufferUsageFlags usage);
 
-// Checks before anything is allocated. Throws DeviceFailure, with the numbers, if one is larger than the device allows, or all
-// are too many or exceed its memory.
+// Checks allocations before they are made. Throws DeviceFailure, with the numbers, if one is larger than the device allows, if
+// there are too many, or if together they exceed its memory.
 void require_memory(const Device& device, std::span<const MemoryNeed> needs);
 
 class Buffer {
@@ -49,7 +49,7 @@ class Buffer {
     void read(void* data, size_t size) const;
     void clear();  // to zeros
 
-    // Contents of a host buffer, and of any that the CPU sees; else empty.
+    // The contents of a buffer that the CPU can see; empty for others.
     template <typename T>
     std::span<T> mapped() const {
         return {static_cast<T*>(mapped_), mapped_ ? size_ / sizeof(T) : 0};
@@ -102,7 +102,7 @@ class StorageImage : public DeviceImage {
     uint32_t height_;
 };
 
-// All of a colour image: for views and barriers, and for copies and blits.
+// The whole of a colour image: for views and barriers, and for copies and blits.
 inline constexpr vk::ImageSubresourceRange whole_image{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
 inline constexpr vk::ImageSubresourceLayers whole_layer{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
 

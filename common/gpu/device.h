@@ -25,7 +25,7 @@ std::string to_string(Backend backend);
 struct DeviceOptions {
     std::string choice;       // index or part of the name as in --list-devices; empty: the fastest kind
     bool validation = false;  // needs the validation layer to be installed
-    // For a window; empty without one.
+    // Instance extensions that the window needs; empty without a window.
     std::vector<const char*> instance_extensions = {};
     std::function<VkSurfaceKHR(VkInstance)> make_surface = {};
 };

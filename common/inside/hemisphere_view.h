@@ -14,9 +14,9 @@ class HemisphereView {
     // The device and the acceleration structure must outlive it. Throws UserError if the estimator does not compile.
     HemisphereView(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator);
 
-    // Starts over at a vertex that a path has hit, seen from where the path came. The parameters are those of the render.
+    // Starts over at a vertex of a path, seen from where the path came. `parameters` are those of the render.
     void look_at(const PathVertex& vertex, const RenderParameters& parameters);
-    // One dispatch towards so many samples in each pixel; true while more are needed.
+    // Renders one dispatch. Returns true until every pixel has this many samples.
     bool advance(uint32_t samples) { return renderer_.advance(samples); }
     double samples() const { return renderer_.samples(); }
     void set_dispatch_seconds(double seconds) { renderer_.set_dispatch_seconds(seconds); }

@@ -15,7 +15,7 @@ struct LightSample {
     vec3 radiance{0};  // that it added: throughput included
 };
 
-// Where a ray has arrived, or where to it has left the scene.
+// Where a ray has hit something, or the direction in which it has left the scene.
 struct PathVertex {
     int parent = -1;  // vertex that the ray came from; -1: the camera. Where paths split, several have one.
     vec3 origin;      // of the ray
@@ -46,7 +46,7 @@ class PathRecorder {
     PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
                  uvec2 image_size);
 
-    // Of the sample with this index (as first_sample counts). The image size is that of the constructor. The numbers are those of
+    // Follows the sample with this index (counted as by first_sample), for the constructor's image size. The numbers are those of
     // a render with these parameters on the same backend.
     RecordedPath record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample);
 
@@ -57,7 +57,7 @@ class PathRecorder {
     std::unique_ptr<Tracer> tracer_;
 };
 
-// The estimator with everything in it that recording takes.
+// The estimator, instrumented for recording.
 Estimator recording(const Estimator& estimator);
 
 }  // namespace lab

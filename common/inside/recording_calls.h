@@ -1,4 +1,4 @@
-// Makes an estimator tell what it computes, without a trace of it in the chapters' shaders.
+// Instruments an estimator to record what it computes. The chapters' shaders stay as they are.
 #pragma once
 #include <string>
 

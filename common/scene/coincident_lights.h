@@ -1,4 +1,4 @@
-// Triangles in the same place of which one emits, so that chance decides which one rays find.
+// Finds triangles in the same place one of which emits: chance would decide which of them rays hit.
 #pragma once
 #include <array>
 #include <string>

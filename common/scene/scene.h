@@ -38,7 +38,7 @@ inline constexpr uint32_t path_length_limit = 1000000;
 // Most triangles of a mesh file, and of all instances together for the tree of `compute`.
 inline constexpr size_t max_triangle_count = (size_t{1} << 28) - 1;
 
-// Settings without a flag or a key of the scene.
+// Defaults, where neither a flag nor the scene says anything.
 struct RenderDefaults {
     uint32_t width = 512;
     uint32_t height = 512;

@@ -29,7 +29,7 @@ class SourceFiles {
 // Throws the UserError "<file>:<line>: <reason>"; lines count from 1.
 [[noreturn]] void fail_at_line(const std::string& file, size_t line, const std::string& reason);
 
-// Takes the first line off the text; ends of line are \n, \r\n or \r.
+// Removes the first line from the text and returns it. Lines end with \n, \r\n or \r.
 std::string_view take_line(std::string_view& text);
 
 // The words of a line, separated by spaces and tabs, up to a comment (#).
@@ -38,7 +38,7 @@ std::vector<std::string_view> words_of(std::string_view line);
 // The name that follows a line's keyword, without spaces and tabs around it. It may contain spaces and #.
 std::string_view name_in(std::string_view line);
 
-// The number that a whole word is. Nothing if it is none, infinite or NaN in 32 bits.
+// The word as a number. Nothing if it is no number, or if it is infinite or NaN in 32 bits.
 std::optional<float> to_number(std::string_view word);
 
 }  // namespace lab

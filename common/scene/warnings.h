@@ -1,4 +1,4 @@
-// Warnings about a scene: what it probably does not mean, or what is not computed.
+// Warnings about a scene: what its author probably did not intend, or what the renderer does not compute.
 #pragma once
 #include "scene/scene.h"
 

@@ -1,6 +1,5 @@
 #version 460
-// Adds the samples of pixels that several threads have shared to the film: one after the other, in the order of their
-// indices.
+// Adds the samples of pixels that several threads share to the film, in the order of their indices.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
 #include "blocks.glsl"
@@ -22,7 +21,7 @@ void main() {
     uint film_index = position.y * parameters.image_size.x + position.x - dispatch.first_film_pixel;
 
     FilmPixel pixel = film[film_index];
-    // Where render_samples.glsl has left the pixel's next sample.
+    // Where render_samples.glsl has stored the pixel's next sample.
     uint place = gl_WorkGroupID.x * dispatch.samples_per_pixel * BLOCK_SIZE + gl_LocalInvocationIndex;
     for (; pixel.sample_count < dispatch.target_samples; place += BLOCK_SIZE) add_sample(pixel, samples[place]);
     film[film_index] = pixel;

@@ -1,6 +1,6 @@
-// Blocks of pixels, numbered row by row of an image: what is next to each other is computed together.
+// Blocks of pixels, numbered row by row: neighbouring pixels are computed together.
 
-// Position of a pixel of a block: `index` counts them row by row. May lie outside the image at its right and lower edges.
+// The position of a pixel of a block; `index` counts row by row. It may lie outside the image at the right and lower edges.
 uvec2 get_pixel_position(uint block, uint index, uvec2 image_size) {
     uint blocks_per_row = (image_size.x + BLOCK_WIDTH - 1u) / BLOCK_WIDTH;
     uvec2 corner = uvec2(block % blocks_per_row, block / blocks_per_row) * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT);

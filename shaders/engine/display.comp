@@ -7,7 +7,7 @@
 layout(scalar, push_constant) uniform DisplayParametersBlock { DisplayParameters display; };
 layout(scalar, set = 0, binding = BINDING_FILM) readonly buffer Film { FilmPixel film[]; };
 layout(set = 0, binding = BINDING_PICTURE, rgba8) writeonly uniform image2D picture;
-// Bits of the largest value, which order as numbers that are not negative do.
+// The bits of the largest value. Those of non-negative floats compare like the floats.
 layout(scalar, set = 0, binding = BINDING_LARGEST_VALUE) buffer LargestValue { uint largest_value; };
 
 layout(local_size_x = BLOCK_SIZE) in;
@@ -22,7 +22,7 @@ void show_pixel(uvec2 position) {
     uint film_index = film_position.y * display.film_size.x + film_position.x - display.first_film_pixel;
     if (film_index >= film.length()) return;  // in another part of a large film; also where it lies before this one
     FilmPixel pixel = film[film_index];
-    // A picture that has just been begun replaces the one before pixel by pixel.
+    // A new picture replaces the one before pixel by pixel.
     if (pixel.sample_count == 0u) return;
     vec3 radiance = (pixel.sum + pixel.compensation) / float(pixel.sample_count);
 

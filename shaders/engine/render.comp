@@ -1,5 +1,5 @@
 #version 460
-// A path tracer in a compute shader: a workgroup renders samples of a block of pixels.
+// The path tracer as a compute shader: a workgroup renders samples of a block of pixels.
 #include "interface.h"
 #include "world/scene.glsl"
 

@@ -13,7 +13,7 @@ layout(scalar, set = 0, binding = BINDING_RECORDED_PATH) buffer RecordedPath {
 
 bool is_recording = false;
 
-// Whether to write an event, and where.
+// Whether events are recorded, and where the next one goes.
 bool add_event(uint kind, out uint index) {
     index = event_count;
     if (!is_recording) return false;

@@ -7,9 +7,9 @@ const uint MISS = 0xffffffffu;
 
 uint traversal_steps = 0u;  // nodes and triangles that this invocation has visited
 
-// The closest hit nearer than t_max, or with `any_hit` the first that turns up.
+// The closest hit nearer than t_max, or with `any_hit` the first one found.
 bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
-    // Boxes: the ray meets the plane x = p at p * inverse.x + offset.x. Zeros in the direction would give NaN.
+    // Boxes: the ray meets the plane x = p at t = p * inverse.x + offset.x. Zeros in the direction would give NaN.
     vec3 direction = mix(ray.direction, vec3(1e-18), lessThan(abs(ray.direction), vec3(1e-18)));
     precise vec3 inverse = 1.0 / direction;
     ivec3 near = ivec3(0, 2, 4) + ivec3(lessThan(direction, vec3(0.0)));

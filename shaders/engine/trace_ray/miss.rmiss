@@ -1,5 +1,5 @@
 #version 460
-// Miss shader of all rays: nothing is in the way.
+// The miss shader of all rays: nothing was hit.
 #include "world/ray.glsl"
 #include "engine/trace_ray/pipeline_payload.glsl"
 

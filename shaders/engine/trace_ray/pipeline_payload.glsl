@@ -1,4 +1,4 @@
-// What the shaders of the ray tracing pipeline agree on.
+// The payload that all shaders of the ray tracing pipeline share.
 #extension GL_EXT_ray_tracing : require
 
 // Of all rays: a second payload for shadow rays alone costs up to 15 % of the rays per second, see docs/backends.md.

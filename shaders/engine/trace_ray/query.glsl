@@ -12,7 +12,7 @@ bool trace_ray(Ray ray, float t_max, out Hit hit) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, acceleration_structure, gl_RayFlagsOpaqueEXT, 0xffu, ray.origin, 0.0, ray.direction,
                           t_max);
-    // All triangles are opaque: one call goes through the whole structure.
+    // All triangles are opaque, so a single call traverses the whole structure.
     rayQueryProceedEXT(query);
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) return false;
     hit.instance = rayQueryGetIntersectionInstanceCustomIndexEXT(query, true);

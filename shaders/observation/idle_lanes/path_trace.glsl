@@ -1,9 +1,9 @@
-// A view: the part of its time in which the thread of a pixel waits for others of its group while they trace rays, from 0
-// for never to 1 for always. Threads that execute the same instruction together are the lanes of a subgroup.
+// A view: the fraction of its time in which a pixel's thread waits while other threads of its group trace rays.
+// Threads that execute the same instruction together are the lanes of a subgroup.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
-// How often this thread traces a ray, and how often its group does while this thread is the first of those that do.
+// How many rays this thread traces, and how often its group traces with this thread as the first active one.
 uint own_steps = 0u, group_steps = 0u;
 
 bool count_and_trace_ray(Ray ray, float t_max, out Hit hit) {

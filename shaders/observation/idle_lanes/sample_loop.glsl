@@ -1,4 +1,4 @@
-// Each sample of the view runs a few samples of the same camera ray in the chapter's own loop, and tells the idle part of
+// Each sample of the view runs a few samples of one camera ray in the chapter's own loop, and returns the idle fraction of
 // that time.
 const uint OBSERVED_SAMPLES = 16u;
 
