@@ -12,6 +12,7 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path += [str(TESTS), str(TESTS.parent / "tools")]
 import project  # noqa: E402  (found by the line above)
 import test_report  # noqa: E402
+from docs.ages import stamped  # noqa: E402
 from docs.numerics import load_cases  # noqa: E402
 from project import BINARIES, RECORDS, ROOT, Parser, UserError, write_json  # noqa: E402
 
@@ -77,7 +78,7 @@ def main():
     for test in sorted(filter(is_python, cited)):
         measured[test] = {"": run_python(test)}
     name = re.sub(r"[^a-z0-9]+", "_", device["device"].split("(")[0].strip().lower())
-    write_json(RECORDS / "hard_cases" / f"{name}.json", {**device, "tests": dict(sorted(measured.items()))})
+    write_json(RECORDS / "hard_cases" / f"{name}.json", stamped({**device, "tests": dict(sorted(measured.items()))}))
 
 
 if __name__ == "__main__":

@@ -39,20 +39,18 @@ def age_table(page):
         [f"[{file.relative_to(RECORDS).with_suffix('')}]({os.path.relpath(file, page.parent)})", told, words] for file, told, words in found or ages()], left=3)
 
 
-def stamp(file):
-    """Writes what a record measured into it, with the date and the commit if it has none."""
-    record = read_json(file)
+def stamped(record):
+    """A record with what it measured, and with the date and the commit if it has none."""
     told = record.setdefault("environment", {}) if "environment" in record else record
     told.setdefault("commit", commit())
     told.setdefault("date", datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"))
-    record["measured"] = measured(json.dumps(record))
-    write_json(file, record)
+    return record | {"measured": measured(json.dumps(record))}
 
 
 def main():
     parser = Parser("python3 tools ages", __doc__)
     parser.add_argument("--stamp", nargs="+", type=Path, default=[], metavar="FILE")
     for file in parser.parse_args().stamp:
-        stamp(file.resolve())
+        write_json(file, stamped(read_json(file)))
     for file, told, words in ages():
         print(f"{file.relative_to(RECORDS).with_suffix('')!s:24} {told:42} {words}")

@@ -11,6 +11,7 @@ import time
 from datetime import datetime
 from pathlib import Path
 
+from docs.ages import stamped
 from project import RECORDS, ROOT, Parser, UserError, commit, load_records, run_to_end, show_progress, table, write_json
 
 # Each is what a reader would type. The first one builds the renderer, others what they need beyond it.
@@ -68,5 +69,5 @@ def main():
         for done, command in enumerate(commands, 1):
             record["commands"].append(measured(command, clone))
             show_progress(command, done, len(commands), started)
-    write_json(RECORDS / "running" / f"{options.name}.json", record)
+    write_json(RECORDS / "running" / f"{options.name}.json", stamped(record))
     print(f"{RECORDS / 'running' / options.name}.json: python3 tools tables fills docs/measuring.md", file=sys.stderr)

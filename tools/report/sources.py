@@ -24,7 +24,7 @@ def digest(files):
 def measured(text):
     """{"renderer": digest, chapter's name: digest} for the chapters that the text of a record names."""
     renderer = [path for folder in RENDERER for path in (ROOT / folder).rglob("*") if path.suffix != ".md" and path.is_file()]
-    named = {folder[3:]: number for number, folder in CHAPTERS.items() if re.search(rf"\b(?:\d\d_)?{folder[3:]}\b", text)}
+    named = {folder[3:]: number for number, folder in CHAPTERS.items() if re.search(rf"(?<![a-z]){folder[3:]}(?![a-z])", text)}
     return {"renderer": digest(renderer)} | {
         name: digest([*shaders_of(number), ROOT / "chapters" / CHAPTERS[number] / "chapter.json"]) for name, number in named.items()}
 
