@@ -25,6 +25,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
 from check.likely_mistake import candidates, noise_and_rays, read_signatures, signature, surprises  # noqa: E402
+from docs.ages import stamped  # noqa: E402
 from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
 from project import RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
 
@@ -210,7 +211,7 @@ def confusion(workshop, is_anew):
 
     workshop.map("naming", try_naming, [item for item in planned.items() if item[0] not in kept])
     record["trials"] = {key: record["trials"][key] for key in planned}
-    write_json(RECORD, record, DEPTH)
+    write_json(RECORD, stamped(record), DEPTH)
 
 
 def effect(result):
