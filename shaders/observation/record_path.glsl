@@ -60,7 +60,7 @@ void record_throughput(uint kind, float throughput) { record_value(kind, vec3(th
 void record_radiance(uint kind, vec3 radiance, uint variable) { record_value(kind, radiance, variable); }
 void record_survival(float probability) { record_value(EVENT_SURVIVAL, vec3(probability), 0u); }
 
-// Once for all hits, since drivers compile a function anew wherever it is called.
+// Once for all hits, since drivers compile a function again wherever it is called.
 void add_shading_data() {
     for (uint i = 0u; i < min(event_count, events.length()); ++i) {
         if (events[i].kind != EVENT_RAY || events[i].is_hit == 0u) continue;

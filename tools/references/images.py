@@ -59,7 +59,7 @@ def read_reference(path):
     height, width = mean.shape[:2]
     stated = attributes.get("width", str(width)), attributes.get("height", str(height))
     if stated != (str(width), str(height)):
-        raise UserError(f"{path}: has {width} x {height} pixels, but says {' x '.join(stated)}: make it anew")
+        raise UserError(f"{path}: has {width} x {height} pixels, but says {' x '.join(stated)}: render it again")
     return Reference(mean, variance, attributes)
 
 

@@ -1,7 +1,7 @@
 """Renders reference images of our scenes with Mitsuba 3, a renderer that shares no code with ours.
 
     ./lab reference SCENE --output FILE.exr   renders one scene, also one of your own
-    ./lab reference --all                     renders those in assets/references anew whose scenes have changed
+    ./lab reference --all                     renders those in assets/references again whose scenes have changed
 
 A reference is an EXR file with the mean of all samples in R, G and B, the variance of that mean, estimated from
 independent batches, in variance.R, variance.G and variance.B, and its settings as attributes. Path lengths

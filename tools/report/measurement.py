@@ -120,7 +120,7 @@ def run_case(case, settings, arguments):
             measure_large(case, report["rows"], arguments[arguments.index("--output") + 1])
     if case["reference"] and report["scene_hash"] != case["reference"]["scene_hash"]:
         raise UserError(f"{case['reference_file']}: is of another version of {case['scene_file']}: "
-                        f"make it anew with ./lab reference {case['scene_file']}")
+                        f"render it again with ./lab reference {case['scene_file']}")
     return report | {"command_seconds": seconds - report.get("discarded_seconds", 0)}
 
 
@@ -149,7 +149,7 @@ def find_device(program, settings):
 
 
 def digest_of_sources(cases):
-    """A digest of all sources that affect a run: when they change, a measurement starts anew."""
+    """A digest of all sources that affect a run: when they change, a measurement starts over."""
     files = [path for folder in ("common", "shaders", "assets") for path in (ROOT / folder).rglob("*")]
     files += [path for name in ("*.glsl", "chapter.json") for path in ROOT.glob(f"chapters/*/{name}")]
     files += [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
