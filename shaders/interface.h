@@ -44,7 +44,10 @@ SHARED_CONSTANT BINDING_SAMPLES = 19u;
 SHARED_CONSTANT BINDING_OTHER_SIDES = 20u;
 SHARED_CONSTANT BINDING_PROBE_CELLS = 21u;
 SHARED_CONSTANT BINDING_TEXTURE_SIZES = 22u;
-SHARED_CONSTANT BINDING_COUNT = 23u;
+SHARED_CONSTANT BINDING_MICROFACETS = 23u;
+#ifdef __cplusplus
+SHARED_CONSTANT BINDING_COUNT = 24u;
+#endif
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -73,6 +76,18 @@ struct Material {
     float refractive_index;   // Ni of a smooth dielectric (d < 1), or 0 for an opaque surface
     vec3 absorption;          // sigma = -ln Tf per unit of world length inside a dielectric
     float light_density;      // with respect to area, of a light sample on it; set by build_light_table()
+};
+
+// Directions at which the albedo of microfacets is known: entry i of n belongs to the cosine (i / (n-1))².
+SHARED_CONSTANT MICROFACET_ALBEDO_COUNT = 64u;
+
+// The microfacets of a material, see common/scene/microfacets.h.
+struct Microfacets {
+    float roughness;   // α = Pr² of the GGX distribution; 0 for a material without microfacets
+    float metalness;   // Pm
+    float coat_index;  // refractive index of the coat on an opaque material
+    vec2 albedo[MICROFACET_ALBEDO_COUNT];  // the part of light that one bounce reflects: of the coat, and with F = 1
+    vec2 mean_albedo;                      // the same of light that comes evenly from all around
 };
 
 // One placement of a mesh in the world.

@@ -10,6 +10,7 @@
 #include "platform.h"
 #include "rendering/build.h"
 #include "rendering/settings.h"
+#include "scene/features.h"
 #include "viewer/viewer.h"
 
 namespace lab {
@@ -124,6 +125,9 @@ void run(const Chapter& chapter, Options options) {
     check_outputs(options.run);
     const auto scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
     RenderJob job = make_job(chapter, options, scene);
+    if (features_of(*scene).microfacets && !chapter.microfacets)
+        scene->warnings.push_back(scene->file.string() + ": has microfacets (Pr), which " + chapter.name +
+                                  " leaves out: use a chapter that has them, see ./lab run");
     for (const auto& warning : scene->warnings)
         if (!options.run.quiet) std::cerr << "note: " << warning << "\n";
     if (const auto window = open_window(chapter, options, job.parameters.image_size);

@@ -77,7 +77,7 @@ Chapter load_chapter(const std::string& name) {
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(content, file.string(), "the chapter",
                           {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics",
-                           "low_discrepancy", "options", "check"});
+                           "microfacets", "low_discrepancy", "options", "check"});
     // What ./lab check renders: tools/check/grading.py reads it.
     if (root.has("check")) root.object("check", {"samples", "references", "other_references", "gains_over"});
     const Chapter defaults;
@@ -88,6 +88,7 @@ Chapter load_chapter(const std::string& name) {
             .light_probe_sampling = root.boolean("light_probe_sampling").value_or(false),
             .unlimited_path_length = root.boolean("unlimited_path_length").value_or(false),
             .dielectrics = root.boolean("dielectrics").value_or(false),
+            .microfacets = root.boolean("microfacets").value_or(false),
             .low_discrepancy = root.boolean("low_discrepancy").value_or(false),
             .options = read_options(root)};
 }

@@ -29,6 +29,7 @@ struct Chapter {
     bool light_probe_sampling = false;          // light samples go to a probe, too
     bool unlimited_path_length = false;         // whatever the scene says; --max-path-length still limits it
     bool dielectrics = false;                   // whether its estimator handles them
+    bool microfacets = false;                   // the same of rough metal, plastic and glass (Pr)
     bool low_discrepancy = false;               // has points of its own, random_words.glsl, that depend on each other
     std::vector<ChapterOption> options = {};
 };

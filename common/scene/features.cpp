@@ -21,6 +21,7 @@ SceneFeatures features_of(const Scene& scene) {
     features.absorption = any_material([](const Material& material) { return material.absorption != vec3(0); });
     features.double_sided = !scene.double_sided.empty();
     features.transforms = std::any_of(scene.instances.begin(), scene.instances.end(), is_moved);
+    features.microfacets = !scene.microfacets.empty();
     return features;
 }
 

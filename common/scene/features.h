@@ -18,6 +18,7 @@ struct SceneFeatures {
     bool absorption = false;
     bool double_sided = false;  // some emissive triangle has another one as its back
     bool transforms = false;    // some instance is moved, turned or scaled
+    bool microfacets = false;   // the defines depend on the estimator, see GpuScene
 
     // FEATURE_VERTEX_NORMALS and so on, for those present.
     std::vector<std::string> defines() const;

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "image/image_checks.h"
 #include "scene/coincident_lights.h"
+#include "scene/microfacets.h"
 #include "scene/obj_file.h"
 
 namespace lab {
@@ -16,6 +17,8 @@ using glm::dvec3;
 
 // Larger exponents make lobes narrower than the rounding of 32-bit directions.
 constexpr float largest_exponent = 1e8f;
+
+constexpr size_t max_albedos = 1024;  // some seconds of work
 
 struct CornerHash {
     size_t operator()(const ObjCorner& corner) const {
@@ -153,6 +156,8 @@ class Assembly {
         limit_reflectance(obj, source.name, material);
         if (!source.albedo_texture.empty()) material.albedo_texture = add_texture(source.albedo_texture);
         scene_.materials.push_back(material);
+        scene_.microfacets.push_back(source.microfacets);
+        if (source.microfacets.coat_index > 0) add_albedo(obj, scene_.microfacets.back());
         return static_cast<uint32_t>(scene_.materials.size() - 1);
     }
 
@@ -167,6 +172,16 @@ class Assembly {
         constexpr double rounding = 1 - 0x1p-23;
         material.diffuse_albedo = vec3(dvec3(material.diffuse_albedo) / largest * rounding);
         material.specular_albedo = vec3(dvec3(material.specular_albedo) / largest * rounding);
+    }
+
+    // Materials often share their roughness, so that few albedos have to be integrated.
+    void add_albedo(const ObjFile& obj, Microfacets& microfacets) {
+        const auto [known, is_new] = albedos_.try_emplace({microfacets.roughness, microfacets.coat_index}, microfacets);
+        if (albedos_.size() > max_albedos)
+            throw UserError(obj.file + ": the materials have more than 1024 different pairs of Pr and Ni: round them");
+        if (is_new) integrate_albedo(known->second);
+        std::ranges::copy(known->second.albedo, microfacets.albedo);
+        microfacets.mean_albedo = known->second.mean_albedo;
     }
 
     int add_texture(const std::filesystem::path& file) {
@@ -186,6 +201,7 @@ class Assembly {
     bool ignored_specular_ = false;
     std::unordered_map<ObjCorner, uint32_t, CornerHash> vertices_;  // of the current file
     std::map<std::filesystem::path, int> textures_;
+    std::map<std::pair<float, float>, Microfacets> albedos_;
 };
 
 }  // namespace
@@ -194,6 +210,8 @@ std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool sp
     Assembly assembly(files, specular, sources, scene);
     std::vector<uint32_t> lines;
     for (const ObjFile& file : files) std::ranges::copy(assembly.add(file), std::back_inserter(lines));
+    const auto is_smooth = [](const Microfacets& microfacets) { return microfacets.roughness == 0; };
+    if (std::ranges::all_of(scene.microfacets, is_smooth)) scene.microfacets.clear();
     return lines;
 }
 

@@ -10,9 +10,12 @@
 #include <sstream>
 
 #include "error.h"
+#include "scene/microfacets.h"
 
 namespace lab {
 namespace {
+
+constexpr float default_coat_index = 1.5f;  // of plastic and lacquer
 
 constexpr uint64_t max_mtl_bytes = uint64_t{16} << 20;
 
@@ -23,17 +26,20 @@ struct Numbers {
 };
 constexpr float any = std::numeric_limits<float>::max();
 const std::map<std::string_view, Numbers> number_keywords = {
-    {"Kd", {3, any}}, {"Ke", {3, any}}, {"Ks", {3, any}}, {"Tf", {3, 1}}, {"Kt", {3, 1}},
-    {"Ns", {1, any}}, {"Ni", {1, any}}, {"d", {1, 1}},    {"Tr", {1, 1}},
+    {"Kd", {3, any}}, {"Ke", {3, any}}, {"Ks", {3, any}}, {"Tf", {3, 1}}, {"Kt", {3, 1}}, {"Ns", {1, any}},
+    {"Ni", {1, any}}, {"d", {1, 1}},    {"Tr", {1, 1}},   {"Pr", {1, 1}}, {"Pm", {1, 1}},
 };
 const std::set<std::string_view> other_keywords = {"newmtl", "map_Kd", "Ka", "illum"};
 
-// What tinyobjloader does not tell: the whole name (its releases differ after a space), and whether a material states its Kd and
-// Tf at all.
+// What tinyobjloader does not tell: the whole name (its releases differ after a space), and which of these keywords a material
+// has at all.
 struct Stated {
     std::string name;
     bool diffuse = false;
     bool transmittance = false;
+    bool refractive_index = false;
+    bool roughness = false;
+    bool metalness = false;
 };
 
 // Checks all numbers: tinyobjloader reads 0 where they are missing or nonsense. An element a material.
@@ -56,6 +62,9 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text, 
         }
         if (keyword == "Kd") materials.back().diffuse = true;
         if (keyword == "Tf" || keyword == "Kt") materials.back().transmittance = true;
+        if (keyword == "Ni") materials.back().refractive_index = true;
+        if (keyword == "Pr") materials.back().roughness = true;
+        if (keyword == "Pm") materials.back().metalness = true;
         if (keyword == "map_Kd" && words.size() > 1 && words[1].starts_with('-')) ignored.insert("options of map_Kd");
 
         if (const auto known = number_keywords.find(keyword); known != number_keywords.end()) {
@@ -105,6 +114,34 @@ void make_dielectric(const std::string& file, const tinyobj::material_t& source,
 
 vec3 to_vec3(const float (&values)[3]) { return {values[0], values[1], values[2]}; }
 
+// The microfacets that Pr states. What contradicts itself gets a warning that says what counts.
+Microfacets read_microfacets(const std::string& file, const tinyobj::material_t& source, const Stated& stated,
+                             std::vector<std::string>& warnings) {
+    const std::string subject = file + ": material " + in_quotes(stated.name) + ": ";
+    const bool is_dielectric = source.dissolve < 1, is_metal = stated.metalness && source.metallic > 0;
+    if (is_metal && !stated.roughness) warnings.push_back(subject + "Pm has no effect without Pr, the roughness");
+    Microfacets microfacets{};
+    if (!stated.roughness) return microfacets;
+    if (is_dielectric) {
+        if (is_metal) warnings.push_back(subject + "is transparent (d < 1), so that Pm has no effect");
+        // Nothing bends at an index of 1, however rough.
+        const bool is_smooth = source.roughness < smallest_roughness || source.ior == 1;
+        microfacets.roughness = is_smooth ? 0 : source.roughness * source.roughness;
+        return microfacets;
+    }
+    if (source.roughness < smallest_roughness)
+        warnings.push_back(subject + "Pr below 0.01 makes a lobe that 32 bits cannot tell from a mirror's: it becomes 0.01");
+    if (stated.transmittance && to_vec3(source.transmittance) != vec3(1))
+        warnings.push_back(subject + "is opaque (d is 1), so that Tf has no effect");
+    microfacets.coat_index = stated.refractive_index ? source.ior : default_coat_index;
+    if (!(microfacets.coat_index >= 1 && microfacets.coat_index <= 100))
+        throw UserError(subject + "has a coat (Pr) and needs a refractive index Ni from 1 to 100");
+    const float roughness = std::max(source.roughness, smallest_roughness);
+    microfacets.roughness = roughness * roughness;
+    if (stated.metalness) microfacets.metalness = source.metallic;
+    return microfacets;
+}
+
 }  // namespace
 
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::filesystem::path& texture_folder,
@@ -140,7 +177,9 @@ std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::
             if (!stated[i].diffuse) material.diffuse_albedo = vec3(1);
         }
         if (source.dissolve < 1) make_dielectric(name, source, stated[i], material);
-        materials.push_back({stated[i].name, material, texture});
+        const Microfacets microfacets = read_microfacets(name, source, stated[i], warnings);
+        if (stated[i].roughness) material.specular_albedo = vec3(0);  // they take the place of Phong's lobe
+        materials.push_back({stated[i].name, material, texture, microfacets});
     }
     return materials;
 }

@@ -74,7 +74,7 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     const nlohmann::json content = parse_json(name, files.read(file, max_json_bytes));
     const JsonObject root(
         content, name, "the scene",
-        {"description", "meshes", "camera", "background", "specular", "width", "height", "samples", "max_path_length"});
+        {"description", "meshes", "camera", "background", "specular", "multiple_scattering", "width", "height", "samples", "max_path_length"});
     SceneDescription result;
     result.scene.description = root.text("description").value_or("");
     for (const nlohmann::json& entry : root.array("meshes"))
@@ -84,6 +84,7 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     if (result.has_camera) result.scene.camera = read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
     if (root.has("background"))
         read_background(root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder, result);
+    result.scene.multiple_scattering = root.boolean("multiple_scattering").value_or(false);
     result.specular = root.boolean("specular").value_or(false);
 
     constexpr uint32_t max_count = 1'000'000'000;

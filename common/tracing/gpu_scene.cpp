@@ -35,7 +35,8 @@ std::string to_string(Strategy strategy) {
     return strategy == Strategy::both ? "both" : strategy == Strategy::light ? "light" : "bounces";
 }
 
-GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe) : scene_(&scene) {
+GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets)
+    : scene_(&scene) {
     const SceneFeatures features = features_of(scene);
     defines_ = features.defines();
     std::vector<Array> arrays;
@@ -67,6 +68,11 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, 
         defines_.emplace_back("FEATURE_LIGHT_PROBE_CELLS");
     }
     add("materials", BINDING_MATERIALS, lights.materials);
+    if (features.microfacets && handles_microfacets) {
+        add("microfacets", BINDING_MICROFACETS, scene.microfacets);
+        defines_.emplace_back("FEATURE_MICROFACETS");
+        if (scene.multiple_scattering) defines_.emplace_back("FEATURE_MULTIPLE_SCATTERING");
+    }
     if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);
     std::vector<uvec2> texture_sizes;
     if (features.textures) {

@@ -18,8 +18,10 @@ std::string to_string(Strategy strategy);
 class GpuScene {
   public:
     // The lights get tables to sample from, unless bounces alone find them; a light probe gets one if the estimator samples it.
+    // Materials have microfacets if the estimator handles them.
     // Throws DeviceFailure before it allocates anything if the device cannot hold the scene.
-    GpuScene(const Device& device, const Scene& scene, Strategy strategy = Strategy::both, bool samples_probe = false);
+    GpuScene(const Device& device, const Scene& scene, Strategy strategy = Strategy::both, bool samples_probe = false,
+             bool handles_microfacets = false);
 
     const Scene& scene() const { return *scene_; }
     const Buffer& positions() const { return buffers_[0]; }

@@ -37,6 +37,7 @@ std::map<std::string, std::filesystem::path> named_includes(const Estimator& est
     const auto chapter = (is_observed ? estimator.observed : estimator.file).parent_path();
     std::map<std::string, std::filesystem::path> names{
         {"path_trace.glsl", estimator.file},
+        {"brdf.glsl", own_or_default(chapter / "brdf.glsl", "world")},
         {"random_words.glsl", own_or_default(chapter / "random_words.glsl", "world")},
         {"sample_loop.glsl", own_or_default(estimator.file.parent_path() / "sample_loop.glsl", "engine")}};
     if (is_observed) {

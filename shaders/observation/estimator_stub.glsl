@@ -17,6 +17,9 @@ vec3 normals[6];
 uvec3 triangles[2] = {uvec3(0u, 1u, 2u), uvec3(3u, 4u, 5u)};  // the surface, and a light where a test needs one
 uint triangle_materials[2] = {0u, 1u};
 Material materials[2];
+#ifdef FEATURE_MICROFACETS
+Microfacets microfacets[2];
+#endif
 
 #include "world/light_probe.glsl"
 #include "world/background.glsl"

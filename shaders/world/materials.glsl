@@ -10,11 +10,5 @@ struct BsdfSample {
     float radiance_scale;   // the change of radiance at a refraction: 1/η², else 1
 };
 
-// The BRDF ρ(x, ω_i, ω_o) of an opaque surface, for unit directions that point away from it.
-vec3 get_brdf(ShadingData s, vec3 in_direction) {
-#ifdef FEATURE_SPECULAR
-    return s.diffuse_albedo / PI + get_phong_brdf(s, in_direction);
-#else
-    return s.diffuse_albedo / PI;
-#endif
-}
+// get_brdf(), unless the chapter's folder has a file of this name: its materials.
+#include "brdf.glsl"

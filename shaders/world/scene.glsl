@@ -12,6 +12,9 @@ layout(scalar, set = 0, binding = BINDING_TRIANGLE_MATERIALS) readonly buffer Tr
     uint triangle_materials[];
 };
 layout(scalar, set = 0, binding = BINDING_MATERIALS) readonly buffer Materials { Material materials[]; };
+#ifdef FEATURE_MICROFACETS
+layout(scalar, set = 0, binding = BINDING_MICROFACETS) readonly buffer MicrofacetsOfMaterials { Microfacets microfacets[]; };
+#endif
 #ifdef FEATURE_VERTEX_NORMALS
 layout(scalar, set = 0, binding = BINDING_NORMALS) readonly buffer Normals { vec3 normals[]; };
 #endif

@@ -17,6 +17,12 @@ struct ShadingData {
     bool is_dielectric;
     float relative_index;  // η of a dielectric: refractive index beyond the surface over that on the ray's side
     vec3 transmittance;    // of the medium between the ray's origin and x_k, for each colour
+#ifdef FEATURE_MICROFACETS
+    uint material;             // index into the scene's materials
+    float roughness;           // α of its microfacets, 0 if it has none
+    float metalness;           // how much of it is metal, in [0,1]
+    bool is_rough_dielectric;  // light goes through its microfacets; is_dielectric is false then
+#endif
 };
 
 // A point on a triangle, on a ray or on a light.
@@ -150,6 +156,14 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     // Beer's law: a ray that arrives at the back of a dielectric has travelled inside it.
     if (s.is_dielectric && !is_front) s.transmittance = exp(-material.absorption * hit.distance);
 #endif
+#ifdef FEATURE_MICROFACETS
+    s.material = triangle_materials[hit.triangle];
+    s.roughness = microfacets[s.material].roughness;
+    s.metalness = microfacets[s.material].metalness;
+    s.is_rough_dielectric = s.is_dielectric && s.roughness > 0.0;
+    if (!s.is_dielectric) s.relative_index = microfacets[s.material].coat_index;
+    s.is_dielectric = s.is_dielectric && !s.is_rough_dielectric;
+#endif
     return s;
 }
 
@@ -169,5 +183,9 @@ Ray get_ray_to_point(ShadingData s, vec3 point) {
 
 // Whether light can leave x along the unit direction: above the horizon of the shading normal and of the triangle.
 bool is_above_surface(ShadingData s, vec3 direction) {
+#ifdef FEATURE_MICROFACETS
+    // Through a rough dielectric it also leaves below both.
+    if (s.is_rough_dielectric) return dot(s.normal, direction) * dot(s.geometric_normal, direction) > 0.0;
+#endif
     return dot(s.normal, direction) > 0.0 && dot(s.geometric_normal, direction) > 0.0;
 }

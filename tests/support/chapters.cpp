@@ -31,6 +31,8 @@ bool weights_lights(const std::string& chapter) {
 
 bool handles_dielectrics(const std::string& chapter) { return load_chapter(chapter).dielectrics; }
 
+bool handles_microfacets(const std::string& chapter) { return load_chapter(chapter).microfacets; }
+
 bool has_option(const std::string& chapter, const std::string& option) {
     return std::ranges::count(load_chapter(chapter).options, option, &ChapterOption::name) > 0;
 }

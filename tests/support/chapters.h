@@ -17,6 +17,7 @@ std::string chapter_named(const std::string& name);
 bool samples_lights(const std::string& chapter);
 bool weights_lights(const std::string& chapter);  // light samples and bounces share the light
 bool handles_dielectrics(const std::string& chapter);
+bool handles_microfacets(const std::string& chapter);
 bool has_option(const std::string& chapter, const std::string& option);
 bool splits_paths(const std::string& chapter);
 bool has_roulette(const std::string& chapter);

@@ -39,13 +39,21 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
     return parameters;
 }
 
-bool samples_probe(const Estimator& estimator) {
+namespace {
+
+// What the chapter of an estimator can do; of other estimators nothing.
+Chapter chapter_of(const Estimator& estimator) {
     const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
-    return std::filesystem::exists(folder / "chapter.json") && load_chapter(folder.filename().string()).light_probe_sampling;
+    return std::filesystem::exists(folder / "chapter.json") ? load_chapter(folder.filename().string()) : Chapter{};
 }
 
+}  // namespace
+
+bool samples_probe(const Estimator& estimator) { return chapter_of(estimator).light_probe_sampling; }
+
 GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings) {
-    return {test_device(), scene, settings.strategy, samples_probe(settings.estimator)};
+    const Chapter chapter = chapter_of(settings.estimator);
+    return {test_device(), scene, settings.strategy, chapter.light_probe_sampling, chapter.microfacets};
 }
 
 SceneRenderer::SceneRenderer(const Scene& scene, const RenderSettings& settings)

@@ -33,6 +33,7 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
         EXPECT_EQ(has_strategy(Strategy::both), mentions("STRATEGY_LIGHT")) << name;
         EXPECT_EQ(chapter.light_probe_sampling, mentions("choose_probe_cell")) << name;
         EXPECT_EQ(chapter.dielectrics, mentions("is_dielectric")) << name;
+        EXPECT_EQ(chapter.microfacets, mentions("microfacets[")) << name;
         EXPECT_EQ(chapter.low_discrepancy, mentions("get_random_words(inout uvec2 seed) {")) << name;
         for (const auto& [option_name, option] : options) {
             std::string parameter = option_name.substr(2);

@@ -1,7 +1,9 @@
 // MTL files: what each keyword means, and what the loader refuses.
 #include <cmath>
+#include <cstring>
 
 #include "mesh_fixture.h"
+#include "scene/features.h"
 
 namespace lab {
 namespace {
@@ -101,8 +103,54 @@ TEST_F(MeshFile, DielectricTrianglesComeLast) {
 }
 
 TEST_F(MeshFile, KeywordsWithoutEffectAreNamed) {
-    const Scene scene = load_material("Ka 1 1 1\nillum 2\nKd 1 1 1\nmap_Bump b.png\nPr 0.5\nmap_Bump c.png");
-    EXPECT_EQ(count_warnings(scene, "without effect here: \"Pr\", \"map_Bump\""), 1u);
+    const Scene scene =
+        load_material("Ka 1 1 1\nillum 2\nKd 1 1 1\nmap_Bump b.png\nPs 0.5\nmap_Bump c.png\nmap_Pr r.png\nnorm n.png");
+    EXPECT_EQ(count_warnings(scene, "without effect here: \"Ps\", \"map_Bump\", \"map_Pr\", \"norm\""), 1u);
+}
+
+TEST_F(MeshFile, RoughnessMakesMicrofacets) {
+    const auto microfacets = [&](const std::string& lines) { return load_material(lines).microfacets.at(0); };
+    const Microfacets plastic = microfacets("Kd 0.5 0.5 0.5\nKs 0.5 0.5 0.5\nPr 0.5\nNi 1.45"),
+                      metal = microfacets("Pr 0.2\nPm 1");
+    EXPECT_FLOAT_EQ(plastic.roughness, 0.25f);
+    EXPECT_EQ(plastic.metalness, 0);
+    EXPECT_FLOAT_EQ(plastic.coat_index, 1.45f);
+    EXPECT_FLOAT_EQ(metal.roughness, 0.04f);
+    EXPECT_EQ(metal.metalness, 1);
+    EXPECT_EQ(metal.coat_index, 1.5f) << "of most plastics, where Ni is not stated";
+    EXPECT_EQ(load_material("Ks 1 1 1\nPr 0.5", true).materials.at(0).specular_albedo, vec3(0)) << "instead of Phong's lobe";
+
+    const Scene glass = load_material("d 0\nNi 1.5\nPr 0.5\nTf 0.5 1 1");
+    EXPECT_FLOAT_EQ(glass.microfacets.at(0).roughness, 0.25f);
+    EXPECT_FLOAT_EQ(glass.materials.at(0).absorption.x, std::log(2.0f));
+    EXPECT_TRUE(load_material("Kd 1 1 1\nKs 1 1 1\nNs 10", true).microfacets.empty());
+    EXPECT_FALSE(features_of(load_material("Kd 1 1 1")).microfacets);
+    EXPECT_TRUE(features_of(glass).microfacets);
+}
+
+TEST_F(MeshFile, SmoothGlassHasNoMicrofacets) {
+    const std::string glass = "d 0\nNi 1.5\nTf 0.5 1 1\n";
+    for (const char* roughness : {"Pr 0", "Pr 0.0001", "Pr 0\nPm 0"}) {
+        const Scene smooth = load_material(glass + roughness), plain = load_material(glass);
+        EXPECT_TRUE(smooth.microfacets.empty()) << roughness;
+        EXPECT_EQ(features_of(smooth).defines(), features_of(plain).defines());
+        EXPECT_EQ(std::memcmp(smooth.materials.data(), plain.materials.data(), sizeof(Material)), 0);
+    }
+    EXPECT_TRUE(load_material("d 0\nNi 1\nPr 0.5").microfacets.empty()) << "nothing bends";
+}
+
+TEST_F(MeshFile, MicrofacetsThatContradictThemselvesSaySo) {
+    const Scene mirror = load_material("Pr 0\nPm 1");
+    EXPECT_FLOAT_EQ(mirror.microfacets.at(0).roughness, 1e-4f);
+    EXPECT_EQ(count_warnings(mirror, "\"m\": Pr below 0.01"), 1u);
+    EXPECT_EQ(count_warnings(load_material("Pm 1"), "Pm has no effect without Pr"), 1u);
+    EXPECT_EQ(count_warnings(load_material("Pm 0"), "Pm"), 0u);
+    const Scene glass = load_material("d 0.5\nNi 1.5\nPr 0.5\nPm 1");
+    EXPECT_EQ(count_warnings(glass, "is transparent (d < 1), so that Pm has no effect"), 1u);
+    EXPECT_EQ(glass.microfacets.at(0).metalness, 0);
+    EXPECT_EQ(count_warnings(load_material("Pr 0.5\nTf 0.5 1 1"), "is opaque (d is 1), so that Tf has no effect"), 1u);
+    EXPECT_EQ(count_warnings(load_material("Pr 0.5\nTf 1 1 1"), "Tf"), 0u);
+    EXPECT_EQ(count_warnings(load_material("Tf 0.5 1 1"), "Tf"), 0u);
 }
 
 TEST_F(MeshFile, MaterialFileNamesMayHaveSpaces) {
@@ -136,6 +184,11 @@ TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
         {"d 0.5\nNi nan", "a.mtl:3: Ni"},
         {"d 0.5\nNi 0", "material \"m\": is transparent (d < 1) and needs a refractive index"},
         {"d 0.5\nNi 1.5\nTf 1 0 1", "material \"m\": Tf 0"},
+        {"Pr 1.01", "a.mtl:2: Pr \"1.01\": must be a number in [0,1]"},
+        {"Pr nan", "a.mtl:2: Pr \"nan\": must be a number in [0,1]"},
+        {"Pr -0.5", "a.mtl:2: Pr \"-0.5\""},
+        {"Pm 2", "a.mtl:2: Pm \"2\": must be a number in [0,1]"},
+        {"Pr 0.5\nNi 0.5", "material \"m\": has a coat (Pr) and needs a refractive index Ni from 1 to 100"},
         {"newmtl", "a.mtl:2: newmtl needs a name"},
         {"map_Kd missing.png", "missing.png: no such file"},
         {"map_Kd a.obj", "not a texture"},

@@ -60,9 +60,9 @@ def globe(material, columns, rows, point):
     return part
 
 
-def sphere(material, times_around=0):
+def sphere(material, times_around=0, columns=64):
     """The unit sphere."""
-    part = globe(material, 64, 32, lambda s, t: direction(math.pi * s, 2 * math.pi * t))
+    part = globe(material, columns, columns // 2, lambda s, t: direction(math.pi * s, 2 * math.pi * t))
     part.times_around = times_around
     part.normals = part.positions
     return part
@@ -81,6 +81,15 @@ def torus(material):
             c, d = (a + rows) % (columns * rows), (b + rows) % (columns * rows)
             part.triangles += [(a, c, d), (a, d, b)]
     return part
+
+
+def row_of_balls(materials, radius, distance, z):
+    """Balls of these materials from left to right on the floor."""
+    parts = [sphere(material, columns=48) for material in materials]
+    for i, part in enumerate(parts):
+        centre = (distance * (i - (len(parts) - 1) / 2), radius, z)
+        part.positions = [add(centre, scale(radius, position)) for position in part.positions]
+    return parts
 
 
 def smooth(part):

@@ -1,6 +1,7 @@
 """Our materials that Mitsuba 3 lacks, as its BSDFs."""
 import drjit as dr
 import mitsuba as mi
+import numpy as np
 
 
 def define_bsdfs():
@@ -96,5 +97,98 @@ def define_bsdfs():
             pdf = (1 - probability) * wo.z / dr.pi + probability * (self.exponent + 1) * lobe
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
 
+    def correlation(alpha, wi, wo):
+        """Height-correlated masking-shadowing over the product of both sides', which Mitsuba has."""
+        def term(w):
+            return 0.5 * (dr.sqrt(1 + alpha**2 * dr.maximum(1 / dr.square(w.z) - 1, 0)) - 1)
+        return (1 + term(wi)) * (1 + term(wo)) / (1 + term(wi) + term(wo))
+
+    class RoughGlass(ByEvalPdf):
+        """Mitsuba's rough dielectric, with height-correlated masking-shadowing where it reflects."""
+
+        def __init__(self, properties):
+            super().__init__(properties)
+            self.facets, self.alpha = properties["facets"], properties["alpha"]
+            self.m_components = [self.facets.flags(i) for i in range(self.facets.component_count())]
+            self.m_flags = self.facets.flags()
+
+        def correct(self, value, wi, wo):
+            return dr.select(wi.z * wo.z > 0, value * correlation(self.alpha, wi, wo), value)
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            sample, weight = self.facets.sample(ctx, si, sample1, sample2, active)
+            return sample, self.correct(weight, si.wi, sample.wo)
+
+        def eval_pdf(self, ctx, si, wo, active=True):
+            value, pdf = self.facets.eval_pdf(ctx, si, wo, active)
+            return self.correct(value, si.wi, wo), pdf
+
+    class RoughOpaque(ByEvalPdf):
+        """Rough metal, by Mitsuba's rough conductor without Fresnel, and a diffuse surface under a rough coat (Kelemen and
+        Szirmay-Kalos 2001), whose albedo is a sum over normals of facets."""
+
+        def __init__(self, properties):
+            super().__init__(properties)
+            self.diffuse, self.facets = properties.get_texture("diffuse"), properties["facets"]
+            self.metalness, self.index, self.alpha = properties["metalness"], properties["index"], properties["alpha"]
+            self.m_components = [mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide,
+                                 mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide]
+            self.m_flags = self.m_components[0] | self.m_components[1]
+            cosines = np.linspace(0, 1, 257) ** 2
+            albedo = np.array([self.coat_albedo(max(cosine, 1e-6)) for cosine in cosines])
+            self.mean_albedo = float(2 * np.trapezoid(albedo * cosines, cosines))
+            self.albedo = mi.Float(albedo.astype(np.float32)) if dr.is_array_v(mi.Float) else albedo.tolist()
+
+        def coat_albedo(self, cosine, count=200):
+            """Of normals that are chosen as D n m is."""
+            u, phi = np.meshgrid(1 - (1 - (np.arange(count) + 0.5) / count) ** 3, np.pi * (np.arange(count) + 0.5) / count)
+            tangent = self.alpha * np.sqrt(u / (1 - u))
+            m_z = 1 / np.sqrt(1 + tangent**2)
+            m_o = m_z * (tangent * np.cos(phi) * np.sqrt(1 - cosine**2) + cosine)
+            z = 2 * m_o * m_z - cosine
+            seen = (m_o > 0) & (z > 0)
+            m_o, z = np.where(seen, m_o, 1), np.where(seen, z, 1)
+            refracted = np.sqrt(self.index**2 - 1 + m_o**2)
+            fresnel = 0.5 * (((m_o - refracted) / (m_o + refracted)) ** 2
+                             + ((self.index**2 * m_o - refracted) / (self.index**2 * m_o + refracted)) ** 2)
+
+            def term(c):
+                return 0.5 * (np.sqrt(1 + self.alpha**2 * (1 / c**2 - 1)) - 1)
+            part = fresnel * m_o / (cosine * m_z * (1 + term(cosine) + term(z)))
+            return (np.where(seen, part, 0) * 3 * (1 - u) ** (2 / 3)).mean()
+
+        def absorbed(self, cosine):
+            """What the coat does not reflect of light from this direction."""
+            position = dr.sqrt(dr.clip(cosine, 0, 1)) * 256
+            if not dr.is_array_v(mi.Float):
+                return 1 - np.interp(position, np.arange(257), self.albedo)
+            i = dr.minimum(mi.UInt32(position), 255)
+            return 1 - dr.lerp(dr.gather(mi.Float, self.albedo, i), dr.gather(mi.Float, self.albedo, i + 1), position - i)
+
+        def sample(self, ctx, si, sample1, sample2, active=True):
+            is_facet = sample1 < 0.5 + 0.5 * self.metalness
+            facet_sample, _ = self.facets.sample(ctx, si, sample1, sample2, active)
+            sample = dr.zeros(mi.BSDFSample3f)
+            sample.wo = dr.select(is_facet, facet_sample.wo, mi.warp.square_to_cosine_hemisphere(sample2))
+            value, sample.pdf = self.eval_pdf(ctx, si, sample.wo, active)
+            sample.eta = 1
+            sample.sampled_type = mi.UInt32(+self.m_flags)
+            return sample, dr.select(sample.pdf > 0, value / dr.maximum(sample.pdf, 1e-20), 0)
+
+        def eval_pdf(self, ctx, si, wo, active=True):
+            active &= (si.wi.z > 0) & (wo.z > 0)
+            colour = self.diffuse.eval(si, active)
+            facets, facet_pdf = self.facets.eval_pdf(ctx, si, wo, active)
+            cosine = dr.dot(wo, dr.normalize(wo + si.wi))
+            coat = mi.fresnel(cosine, self.index)[0]
+            fresnel = dr.lerp(mi.Color3f(coat), colour + (1 - colour) * (1 - cosine) ** 5, self.metalness)
+            diffuse = self.absorbed(si.wi.z) * self.absorbed(wo.z) / (dr.pi * (1 - self.mean_albedo))
+            value = fresnel * facets * correlation(self.alpha, si.wi, wo) + (1 - self.metalness) * colour * diffuse * wo.z
+            probability = 0.5 + 0.5 * self.metalness
+            pdf = probability * facet_pdf + (1 - probability) * wo.z / dr.pi
+            return dr.select(active, value, 0), dr.select(active, pdf, 0)
+
+    mi.register_bsdf("rough_glass", RoughGlass)
+    mi.register_bsdf("rough_opaque", RoughOpaque)
     mi.register_bsdf("interpolated_normals", InterpolatedNormals)
     mi.register_bsdf("phong_lobe", Phong)

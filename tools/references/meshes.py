@@ -17,9 +17,12 @@ class Material:
     refractive_index: float = 0.0  # 0 for an opaque surface
     absorption: np.ndarray = field(default_factory=lambda: np.zeros(3))
     texture: Path | None = None
+    roughness: float = 0.0  # alpha of the GGX distribution; 0 without microfacets
+    metalness: float = 0.0
+    coat_index: float = 1.5  # of an opaque surface with microfacets
 
 
-NUMBERS = {"Kd": 3, "Ke": 3, "Ks": 3, "Tf": 3, "Kt": 3, "Ns": 1, "Ni": 1, "d": 1, "Tr": 1}
+NUMBERS = {"Kd": 3, "Ke": 3, "Ks": 3, "Tf": 3, "Kt": 3, "Ns": 1, "Ni": 1, "d": 1, "Tr": 1, "Pr": 1, "Pm": 1}
 
 
 def to_floats(words, count):
@@ -63,6 +66,11 @@ def read_mtl(path, texture_folder, files):
             material.refractive_index = float(stated.get("Ni", [1])[0])
             transmittance = stated.get("Tf", np.ones(3))
             material.absorption = np.maximum(0, -np.log(transmittance))
+        if "Pr" in stated and not (opacity < 1 and (stated["Pr"][0] < 0.01 or material.refractive_index == 1)):
+            material.roughness = max(float(stated["Pr"][0]), 0.01) ** 2
+            material.metalness = float(stated.get("Pm", [0])[0])
+            material.coat_index = float(stated.get("Ni", [1.5])[0])
+            material.specular = np.zeros(3)
         materials.setdefault(material.name, material)
     return materials
 

@@ -41,7 +41,16 @@ def make_diffuse_reflectance(material):
 
 def make_bsdf(surface, own_normals):
     material = surface.material
-    if material.refractive_index > 0:
+    if material.roughness > 0 and material.refractive_index > 0:
+        bsdf = {"type": "rough_glass", "alpha": material.roughness,
+                "facets": {"type": "roughdielectric", "distribution": "ggx", "alpha": material.roughness,
+                           "int_ior": material.refractive_index, "ext_ior": 1.0}}
+    elif material.roughness > 0:
+        bsdf = {"type": "twosided", "nested": {
+            "type": "rough_opaque", "diffuse": make_diffuse_reflectance(material), "metalness": material.metalness,
+            "index": material.coat_index, "alpha": material.roughness,
+            "facets": {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": material.roughness}}}
+    elif material.refractive_index > 0:
         bsdf = {"type": "dielectric", "int_ior": material.refractive_index, "ext_ior": 1.0}
     elif material.specular.any():
         bsdf = {"type": "twosided", "nested": {

@@ -1,0 +1,14 @@
+// What surfaces do with light: where the material has microfacets these decide, elsewhere it is as in the chapters before.
+#define get_brdf get_smooth_brdf
+#include "world/brdf.glsl"
+#undef get_brdf
+#include "microfacets.glsl"
+
+// ρ(x, ω_i, ω_o). Only rough glass has light from below the surface.
+vec3 get_brdf(ShadingData s, vec3 in_direction) {
+#ifdef FEATURE_MICROFACETS
+    if (s.is_rough_dielectric) return vec3(get_rough_dielectric_bsdf(s, in_direction));
+    if (s.roughness > 0.0) return get_opaque_brdf(s, in_direction);
+#endif
+    return get_smooth_brdf(s, in_direction);
+}

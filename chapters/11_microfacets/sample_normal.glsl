@@ -1,0 +1,43 @@
+// Three ways to sample a direction: by the normal of a visible facet, by that of any facet, and by the cosine alone.
+const uint SAMPLES_VISIBLE_NORMALS = 0u;
+const uint SAMPLES_NORMALS = 1u;
+const uint SAMPLES_COSINES = 2u;  // glass takes visible normals then, since it has no diffuse light
+#ifndef FACET_SAMPLING
+#define FACET_SAMPLING SAMPLES_VISIBLE_NORMALS
+#endif
+#ifdef FEATURE_MICROFACETS
+
+// A normal with density D(m) n·m, about the z-axis: tan² θ = α² u / (1 - u).
+vec3 sample_any_normal(float alpha, vec2 u) {
+    float cos_theta = sqrt((1.0 - u.x) / (1.0 - u.x + alpha * alpha * u.x));
+    float sin_theta = alpha * sqrt(u.x / (1.0 - u.x + alpha * alpha * u.x));
+    float phi = 2.0 * PI * u.y;
+    return vec3(cos(phi) * sin_theta, sin(phi) * sin_theta, cos_theta);
+}
+
+// A normal of the facets that are visible from ω_o. Squeezed by 1/α along the surface, GGX's facets are those of a sphere.
+// Its visible ones reflect light from ω_o evenly into the cap of directions z > -z_o, so that we sample a direction there,
+// and m lies halfway between (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023).
+vec3 sample_visible_normal(vec3 out_direction, float alpha, vec2 u) {
+    vec3 stretched = normalize(vec3(alpha * out_direction.xy, out_direction.z));
+    float one_minus_z = u.x * (1.0 + stretched.z);
+    float sin_theta = sqrt(one_minus_z * (2.0 - one_minus_z));
+    float phi = 2.0 * PI * u.y;
+    vec2 along = vec2(cos(phi), sin(phi)) * sin_theta + stretched.xy;
+    return normalize(vec3(alpha * along, (1.0 - u.x) * (1.0 + stretched.z)));
+}
+
+// A normal about the z-axis for a direction ω_o above, and the density of get_normal_density().
+vec3 sample_normal(vec3 out_direction, float alpha, vec2 u) {
+    if (FACET_SAMPLING == SAMPLES_NORMALS) return sample_any_normal(alpha, u);
+    return sample_visible_normal(out_direction, alpha, u);
+}
+
+// With respect to solid angle. Of a facet, a part G_1 is visible, and ω_o sees it ω_o·m / n·ω_o times as large.
+float get_normal_density(ShadingData s, Facet facet) {
+    float distribution = get_facet_distribution(s, facet.normal);
+    if (FACET_SAMPLING == SAMPLES_NORMALS) return distribution * dot(s.normal, facet.normal);
+    float cos_o = dot(s.normal, s.out_direction);
+    return distribution * 2.0 * facet.cos_o / (cos_o + get_smith_term(s, cos_o));
+}
+#endif

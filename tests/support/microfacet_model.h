@@ -1,0 +1,28 @@
+// The microfacet model in double, from its definitions: what the shaders are compared with.
+#pragma once
+#include <functional>
+#include <glm/glm.hpp>
+
+namespace lab {
+
+// The distribution of facets with respect to tan² θ_m, and Smith's Λ of a direction with this tangent.
+struct FacetModel {
+    // tan² θ_m of the facets below which a part u of D n·m lies.
+    std::function<double(double u)> tangent_square;
+    std::function<double(double tangent)> lambda;
+    // 1 / (1 + Λ_i + Λ_o), or the product of both sides' G_1.
+    bool is_correlated = true;
+};
+FacetModel ggx(double alpha);
+FacetModel beckmann(double alpha);  // with Λ by Walter's rational approximation
+
+// Fresnel's reflectance of a dielectric, 1 for total internal reflection.
+double dielectric_fresnel(double cosine, double index);
+
+// The part of light from this direction that the facets reflect: an integral over all facets, `fresnel` of ω·m.
+double integrate_reflected(const FacetModel& model, double cosine, const std::function<double(double)>& fresnel);
+
+// The part of light that goes through facets of glass whose other side has this index.
+double integrate_refracted(const FacetModel& model, double cosine, double index);
+
+}  // namespace lab
