@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "rendering/options.h"
+#include "scene/microfacets.h"
 #include "statistics/error_metrics.h"
 #include "support/expect_statistics.h"
 #include "support/render.h"
@@ -124,6 +125,25 @@ TEST(Efficiency, LowDiscrepancyPointsPay_all) {
                 measure_chapter("cornell_box", "low_discrepancy_points", 16, 4));
     expect_gain("low-discrepancy points against light probes, wide sun", measure_chapter("textured", "light_probes", 8, 2),
                 measure_chapter("textured", "low_discrepancy_points", 8, 2));
+}
+
+// A floor, a ball and a torus of metal in a studio. Light samples find the lamps in either case; the lobes show the rest.
+TEST(Efficiency, VisibleNormalsPay_all) {
+    Scene scene = load_shipped_scene("studio.json");
+    Microfacets metal{};
+    metal.roughness = 0.2f * 0.2f;
+    metal.metalness = 1;
+    metal.coat_index = 1.5f;
+    integrate_albedo(metal);
+    scene.microfacets.assign(scene.materials.size(), metal);
+    RenderSettings settings{.width = 64, .height = 64, .samples = 16, .max_path_length = 8, .seed = 11000};
+    settings.estimator = chapter_estimator(chapter_named("microfacets"));
+    const Cost visible = measure(scene, settings);
+    for (const char* sampling : {"SAMPLES_COSINES", "SAMPLES_NORMALS"}) {
+        settings.estimator.defines = {std::string("FACET_SAMPLING ") + sampling};
+        settings.seed += 100;
+        expect_gain(std::string("visible normals against ") + sampling, measure(scene, settings), visible);
+    }
 }
 
 }  // namespace

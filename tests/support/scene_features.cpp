@@ -1,5 +1,7 @@
 #include "support/scene_features.h"
 
+#include "scene/microfacets.h"
+
 namespace lab {
 namespace {
 
@@ -50,6 +52,14 @@ void add_absorption(Scene& scene) {
     scene.materials.back().absorption = vec3(1);
 }
 
+void add_microfacets(Scene& scene) {
+    Microfacets plastic{};
+    plastic.roughness = 0.25f;
+    plastic.coat_index = 1.5f;
+    integrate_albedo(plastic);
+    scene.microfacets.assign(scene.materials.size(), plastic);
+}
+
 void add_transform(Scene& scene) { scene.instances.front().object_to_world[3] += vec3(0, 1e-3f, 0); }
 
 }  // namespace
@@ -58,7 +68,8 @@ const std::vector<SceneFeature>& all_scene_features() {
     static const std::vector<SceneFeature> features{
         {"vertex normals", add_vertex_normals}, {"textures", add_texture},       {"sky", add_sky},
         {"light probe", add_light_probe},       {"area lights", add_area_light}, {"Phong lobe", add_phong_lobe},
-        {"dielectrics", add_dielectric},        {"absorption", add_absorption},  {"transforms", add_transform}};
+        {"dielectrics", add_dielectric},        {"absorption", add_absorption},  {"transforms", add_transform},
+        {"microfacets", add_microfacets}};
     return features;
 }
 
