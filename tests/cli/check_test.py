@@ -13,7 +13,7 @@ from unittest import mock
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
 import mistake
 import project
-from check import command, grading
+from check import command, diagnosis, grading
 from check.formats import as_github
 from course.mistakes import planted
 
@@ -41,7 +41,7 @@ class CheckTest(ProgramTest):
         super().setUp()
         self.judge = mock.Mock(side_effect=self.judge_once)
         # One render at a time: the others then need not compile its shader as well.
-        for where, what, stand_in in ((command, "judge", self.judge), (grading, "JOBS", 1)):
+        for where, what, stand_in in ((command, "judge", self.judge), (command, "diagnose", self.diagnose_once), (grading, "JOBS", 1)):
             patch = mock.patch.object(where, what, stand_in)
             patch.start()
             self.addCleanup(patch.stop)
@@ -56,6 +56,12 @@ class CheckTest(ProgramTest):
         for cases in early:
             watch(cases)
         return result | {"file": project.printable(file)}, pictures
+
+    def diagnose_once(self, chapter, file, settings, is_correct):
+        key = (file.read_bytes(), is_correct)
+        if key not in self.judged:
+            self.judged[key] = diagnosis.diagnose(chapter, file, settings, is_correct=is_correct)
+        return deepcopy(self.judged[key])
 
     def check(self, *arguments):
         """Exit code, standard output and standard error of the command, which runs in this process."""
@@ -96,8 +102,11 @@ class CheckTest(ProgramTest):
         box = result["scenes"][0]
         self.assertEqual((code, result["verdict"], box["verdict"]), (1, "biased", "biased"))
         self.assertTrue(all(test["is_biased"] and test["value"] > 0.5 for test in box["image"]), box["image"])
-        self.assertIn("area on the light", result["likely_mistake"]["mistakes"][0]["hint"])
-        self.assertNotIn("name", result["likely_mistake"]["mistakes"][0], "only for teachers")
+        found = result["diagnosis"]
+        self.assertIn("area on the light", found["mistakes"][0]["hint"])
+        self.assertNotIn("name", found["mistakes"][0], "only for teachers")
+        self.assertRegex("\n".join(found["facts"]), "light of a lamp after one bounce: [^\n]*follows the square of the distance")
+        self.assertIn("a lamp that the camera sees", found["right"])
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
 
     def test_a_teacher_gets_the_name_and_a_student_a_question(self):
@@ -153,6 +162,7 @@ class CheckTest(ProgramTest):
         expected |= {r"m\xfcller": "correct", r"m\xfdller": "correct"}
         code, out, err = self.check(*grade_all)
         self.assertEqual(code, 2, err)
+        self.assertRegex(out, r"what is wrong most often\n\d of 6: [^\n]*: chapters/[^\n]*/README.md, its exercises\n")
         table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
@@ -206,7 +216,7 @@ class CheckTest(ProgramTest):
         file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))
         with self.in_one_scene():
             code, result = self.check_few(file)
-        self.assertEqual((code, result["unfinished_line"], result["likely_mistake"]), (1, line, None))
+        self.assertEqual((code, result["unfinished_line"], result["diagnosis"]), (1, line, None))
 
     def test_more_noise_and_rays_than_needed_are_reported(self):
         # A path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
@@ -231,6 +241,14 @@ class CheckTest(ProgramTest):
             with mock.patch.dict(grading.SCENES, {8: (12, ["check_sky_4"])}):
                 code, out, err = self.check(8, "--runs", 5, "--json", self.planted(8, find, replace))
             self.assertEqual(code, 1, f"{replace}: {out}{err}")
+
+    def test_a_strategy_that_is_ignored_is_found_although_the_pictures_are_right(self):
+        file = self.planted(7, "STRATEGY == STRATEGY_LIGHT ? 0.0 : get_bsdf_density", "get_bsdf_density")
+        with mock.patch.dict(grading.SCENES, {7: (12, ["plates_3"])}):
+            code, out, err = self.check(7, "--runs", 4, "--json", file)
+        result = json.loads(out)
+        self.assertEqual((code, result["verdict"], result["scenes"][0]["verdict"]), (1, "biased", "correct"), err)
+        self.assertRegex("\n".join(result["diagnosis"]["facts"]), "--strategy light")
 
     def test_points_that_lose_what_the_chapter_gains_are_noisy(self):
         file = self.planted(9, "scramble_reversed(get_second_dimension(index), keys.y)", "scramble_reversed(index, keys.y)")

@@ -32,7 +32,7 @@ float later = 1.0;
 ```
 <!-- end of code -->
 """
-TEACHERS = ["exercise.json", "mistakes.json", "other_scenes.json", "solutions", "tests.json", "variants"]  # in a chapter's folder
+TEACHERS = ["exercise.json", "mistakes.json", "solutions", "tests.json", "variants"]  # in a chapter's folder
 FOR_TEACHERS = ["chapters/03_next_event_estimation/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
 
 

@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""Teaches ./lab check what the mistakes of the chapters do, and measures how often it names them right.
+"""Teaches ./lab check what the chapters' own shaders and the mistakes of the catalogue show, and measures how often it names them right.
 
-    tests/mistakes/learn.py learn      renders the chapters' own shaders and each mistake planted in them; writes
-                                       knowledge.json in the chapters' folders
-    tests/mistakes/learn.py confusion  plants each mistake again and lets it be named, with new seeds, on scenes that check does
-                                       not use and in the differently written shaders of their variants; checks correct
-                                       shaders as well; writes docs/records/check/confusion.json
+    tests/mistakes/learn.py learn      renders the chapters' own shaders in the scenes and experiments of ./lab check, and each mistake
+                                       planted in them in the experiments; writes knowledge.json in the chapters' folders
+    tests/mistakes/learn.py confusion  plants each mistake again and lets it be named, with new seeds, and in the differently
+                                       written shaders of their variants; checks correct shaders as well; writes
+                                       docs/records/check/confusion.json
 
 Both do only what has changed since the last time: a shader or what it is rendered with. So both go on where they were
 interrupted. --anew does everything again, which is needed where anything else has changed: shaders that chapters share, scenes,
-references, or how check judges and names.
+references, or how check judges and names. --chapters does those alone.
 """
 import hashlib
 import json
+import math
 import sys
 import tempfile
 import time
@@ -24,33 +25,38 @@ from threading import Lock
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
-from check.likely_mistake import candidates, noise_and_rays, read_signatures, signature, surprises  # noqa: E402
+from check.diagnosis import diagnose, observe, ratios_of, repeats_of  # noqa: E402
+from check.experiments import experiments_of, measure  # noqa: E402
 from docs.ages import stamped  # noqa: E402
-from planting import OTHER_SCENES, catalogue, own_shader, trials  # noqa: E402
-from project import RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
+from planting import catalogue, own_shader, trials  # noqa: E402
+from project import CHAPTERS, RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
-OTHER_KNOWLEDGE = "other_scenes.json"  # as grading.KNOWLEDGE, of OTHER_SCENES
 DEPTH = 2  # of what has a line in these files and in the record
 # Levels have the seeds of a check without --seed, see grading.first_seed(); the others have seeds that no check has.
-LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0), "factor": 1}
+LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0)}
 # The chapter that a chapter has less noise than with the same samples, where that is its lesson.
 GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in grading.DESCRIPTIONS.items()
               if "gains_over" in says.get("check", {})}
-LEARNING = {"runs": 5, "first_seed": 1001, "factor": 2}  # times the samples of a check
-TRYING = {"runs": grading.RUNS, "first_seed": 3001, "factor": 1}  # as a check does, with seeds that nothing was learnt from
+TRYING = {"runs": grading.RUNS, "first_seed": 3001}  # as a check does, with seeds that nothing was learnt from
+OWN_SEED, OWN_FACTOR, MISTAKE_SEED = 5001, 4, 6001  # of experiments; the chapter's own shader has so many times the samples
 
 
-def settings(chapter, plan, scenes=None):
+def settings(chapter, plan, samples, scenes=None):
     """What a verdict depends on besides the shader."""
-    samples, own_scenes = grading.SCENES[chapter]
-    return {"plan": plan, "samples": samples, "scenes": scenes or own_scenes, "options": grading.OPTIONS[chapter]}
+    return {"plan": plan, "samples": samples, "scenes": scenes or grading.SCENES[chapter][1], "options": grading.OPTIONS[chapter]}
 
 
-def level_digest(chapter, scenes):
+def level_digest(chapter):
     """Of what the levels of a chapter depend on."""
-    return digest(settings(chapter, LEVELS, scenes), *(own_text(number) for number in (chapter, GAINS_OVER.get(chapter)) if number))
+    return digest(settings(chapter, LEVELS, grading.SCENES[chapter][0]),
+                  *(own_text(number) for number in (chapter, GAINS_OVER.get(chapter)) if number))
+
+
+def experiment_digest(chapter, name):
+    """Of what an experiment depends on."""
+    return digest(repr(experiments_of(chapter)[name]), own_text(chapter))
 
 
 def own_text(chapter):
@@ -63,28 +69,20 @@ def digest(*parts):
 
 
 class Workshop:
-    """Judges shaders, several at a time."""
+    """Renders shaders, several at a time."""
 
     def __init__(self, options):
         self.options = options
 
-    def settings(self, chapter, plan, seed=0):
-        samples = grading.SCENES[chapter][0] * plan["factor"]
+    def settings(self, plan, seed=0):
         return {"backend": self.options.backend, "device": self.options.device, "time_limit": 600, "runs": plan["runs"],
-                "samples": samples, "first_seed": plan["first_seed"] + seed, "is_quiet": True}
+                "samples": None, "first_seed": plan["first_seed"] + seed, "is_quiet": True}
 
-    def judge(self, chapter, shader, text, plan, levels, scenes, seed=0):
-        """Judges a text in place of one of a chapter's shaders."""
-        with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "path_trace.glsl"
-            file.write_text(text, encoding="utf-8")
-            return grading.judge(chapter, file, self.settings(chapter, plan, seed), levels, scenes, shader=shader)[0]
-
-    def levels(self, chapter, scenes):
+    def levels(self, chapter):
         """Those of the chapter's own shader, with what it gains over the one that chapter.json names."""
         def levels_of(number):
-            cases = grading.render(number, own_shader(number), self.settings(chapter, LEVELS), scenes)
-            return {case["scene"]: grading.level(case) for case in cases}
+            plan = self.settings(LEVELS) | {"samples": grading.SCENES[chapter][0]}
+            return {case["scene"]: grading.level(case) for case in grading.render(number, own_shader(number), plan, grading.SCENES[chapter][1])}
 
         levels = levels_of(chapter)
         if chapter in GAINS_OVER:
@@ -92,6 +90,24 @@ class Workshop:
                 errors = [fmean(level["rel_mse"].values()) for level in (base, levels[scene])]
                 levels[scene]["gain"] = float(f"{errors[0] / errors[1]:.3g}")
         return levels
+
+    def own_sights(self, chapter, experiment):
+        """What the chapter's own shader shows in an experiment, in lists."""
+        kind = "factor" if repeats_of(chapter) == 1 else "repeats"  # more samples would have less noise each
+        sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, **{kind: OWN_FACTOR})
+        return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
+
+    def shown(self, bug, expected):
+        """What a mistake shows in experiments, as texts with a number for each point: brightness, noise and rays, where they are not the
+        chapter's own."""
+        with grading.program_with(CHAPTERS[bug.chapter], bug.text, bug.file) as program:
+            facts, sights = observe(bug.chapter, program, self.settings(LEVELS), expected, lambda *_: True, MISTAKE_SEED)
+        ratios = ratios_of(sights, expected)
+        return {"shows": {name: to_digits(r.value for r in seen.readings) for name, seen in facts.items() if not seen.is_right},
+                "noise": {name: to_digits((v for v, _ in those), 2) for name, those in ratios["noise"].items()
+                          if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)},
+                "rays": {name: to_digits((v for v, _ in those), 3) for name, those in ratios["rays"].items()
+                         if any(abs(v - 1) > 0.05 for v, _ in those)}}
 
     def map(self, what, function, items):
         """Calls a function for all items, with progress."""
@@ -101,116 +117,107 @@ class Workshop:
                 show_progress(what, done, len(items), started)
 
 
-def percentages(tests):
-    """Text with a number of three digits for each difference; 0 for what lies within 1.5 times the half of its 95 % interval."""
-    return " ".join(f"{100 * test['value']:+.3g}" if abs(test["value"]) > 1.5 * test["half_width"] else "0" for test in tests)
+def to_digits(values, digits=4):
+    """Text with so many significant digits of each number."""
+    return " ".join(f"{value:.{digits}g}" for value in values)
 
 
-def written(result):
-    """What a mistake does to each scene, as a person can read it: differences in percent, tiles as they lie in the picture."""
-    scenes = {}
-    for scene in result["scenes"]:
-        rows = [[tile for tile in scene["tiles"] if tile["row"] == row]
-                for row in range(scene["tiles"][-1]["row"] + 1)]
-        noise, rays = (float(f"{value:.3g}") for value in noise_and_rays(scene))
-        scenes[scene["scene"]] = {"noise": noise, "rays": rays, "image": percentages(scene["image"]), "tiles": list(map(percentages, rows))}
-    return scenes
-
-
-def read_knowledge(name, chapters):
-    """Chapter -> what the file with this name in its folder knows."""
-    files = {chapter: grading.knowledge_file(chapter, name) for chapter in chapters}
+def read_knowledge(chapters):
+    """Chapter -> what its knowledge.json says."""
+    files = {chapter: grading.knowledge_file(chapter) for chapter in chapters}
     return {chapter: read_json(file) for chapter, file in files.items() if file.exists()}
 
 
-def planned_knowledge(scenes, before):
-    """What is to be known of each chapter of `scenes`, names of references: the levels of its own shader and what its mistakes do.
-    What `before` has of it and was measured alike is there, the rest is empty. With it a list of what is to be rendered."""
-    knowledge, work = {}, []
-    for chapter, names in scenes.items():
+def planned_knowledge(chapters, before):
+    """What is to be known of chapters: levels and experiments of the own shader, and what its mistakes show. What `before` has of it and
+    was measured alike is there, the rest is empty."""
+    knowledge = {}
+    for chapter in chapters:
         known = before.get(chapter, {})
-        measured = level_digest(chapter, names)
-        levels = known["levels"] if known.get("measured") == measured else None
-        knowledge[chapter] = {"title": grading.DESCRIPTIONS[chapter]["title"], "measured": measured, "levels": levels, "mistakes": {}}
-    for bug in catalogue():
-        if bug.chapter in scenes:
-            name, chapter = bug.mistake["name"], knowledge[bug.chapter]
-            entry = {key: bug.mistake[key] for key in ("hint", "slide")}
-            entry["measured"] = digest(settings(bug.chapter, LEARNING, scenes[bug.chapter]), bug.text, chapter["measured"])
-            known = before.get(bug.chapter, {"mistakes": {}})["mistakes"].get(name, {})
-            entry["scenes"] = known["scenes"] if known.get("measured") == entry["measured"] else {}
-            chapter["mistakes"][name] = entry
-            if not entry["scenes"]:
-                work.append((bug, entry))
-    return knowledge, work
-
-
-def unmeasured(knowledge, scenes):
-    """What is missing or was measured with something else, as (chapter, name of a mistake or "levels")."""
-    planned, _ = planned_knowledge(scenes, knowledge)
-    missing = [(chapter, "levels") for chapter, entry in planned.items() if not entry["levels"]]
-    return missing + [(chapter, name) for chapter, entry in planned.items() for name, mistake in entry["mistakes"].items()
-                      if not mistake["scenes"]]
-
-
-def learn(workshop, name, scenes, is_anew):
-    """Fills the files of knowledge with this name with what they lack."""
-    knowledge, work = planned_knowledge(scenes, {} if is_anew else read_knowledge(name, scenes))
-
-    def write(chapter):
-        write_json(grading.knowledge_file(chapter, name), knowledge[chapter], DEPTH)
-
-    def learn_levels(chapter):
-        knowledge[chapter]["levels"] = workshop.levels(chapter, scenes[chapter])
-
-    workshop.map("levels", learn_levels, [chapter for chapter in scenes if not knowledge[chapter]["levels"]])
-    lock = Lock()
-
-    def learn_mistake(item):
-        bug, entry = item
-        levels = knowledge[bug.chapter]["levels"]
-        result = workshop.judge(bug.chapter, bug.file, bug.text, LEARNING, levels, scenes[bug.chapter])
-        with lock:
-            entry["scenes"] = written(result)
-            write(bug.chapter)
-
-    for chapter in scenes:
-        write(chapter)
-    workshop.map("signatures", learn_mistake, work)
+        measured = level_digest(chapter)
+        entry = {"title": grading.DESCRIPTIONS[chapter]["title"], "measured": measured,
+                 "levels": known["levels"] if known.get("measured") == measured else None, "experiments": {}, "mistakes": {}}
+        digests = {name: experiment_digest(chapter, name) for name in experiments_of(chapter)}
+        for name, now in digests.items():
+            old = known.get("experiments", {}).get(name, {})
+            entry["experiments"][name] = old if old.get("measured") == now else {"measured": now}
+        for bug in (bug for bug in catalogue() if bug.chapter == chapter):
+            now = digest(sorted(digests.values()), bug.text)
+            old = known.get("mistakes", {}).get(bug.mistake["name"], {})
+            seen = {key: old[key] for key in ("shows", "noise", "rays")} if old.get("measured") == now and "shows" in old else {}
+            entry["mistakes"][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")} | {"measured": now} | seen
+        knowledge[chapter] = entry
     return knowledge
 
 
-def planned_trials():
-    """Name -> a Trial, its scenes, and the digest of all that it depends on."""
-    planned = {}
-    for key, trial in trials().items():
-        scenes = OTHER_SCENES[trial.chapter] if trial.is_elsewhere else None
-        planned[key] = trial, scenes, digest(settings(trial.chapter, TRYING, scenes), trial.text, trial.seed, own_text(trial.chapter))
-    return planned
+def unmeasured(knowledge):
+    """What is missing or was measured with something else, as (chapter, name of an experiment or a mistake, or "levels")."""
+    planned = planned_knowledge(project.course(), knowledge)
+    missing = [(chapter, "levels") for chapter, entry in planned.items() if not entry["levels"]]
+    missing += [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["experiments"].items() if "mean" not in seen]
+    return missing + [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["mistakes"].items() if "shows" not in seen]
 
 
-def confusion(workshop, is_anew):
-    own = read_knowledge(grading.KNOWLEDGE, project.course())
-    others = learn(workshop, OTHER_KNOWLEDGE, OTHER_SCENES, is_anew)
+def learn(workshop, chapters, is_anew):
+    """Fills the files of knowledge with what they lack."""
+    knowledge, lock = planned_knowledge(chapters, {} if is_anew else read_knowledge(chapters)), Lock()
+
+    def write(chapter):
+        with lock:
+            write_json(grading.knowledge_file(chapter), knowledge[chapter], DEPTH)
+
+    def learn_levels(chapter):
+        knowledge[chapter]["levels"] = workshop.levels(chapter)
+        write(chapter)
+
+    def learn_experiment(item):
+        chapter, name = item
+        knowledge[chapter]["experiments"][name] |= workshop.own_sights(chapter, experiments_of(chapter)[name])
+        write(chapter)
+
+    def learn_mistake(bug):
+        knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] |= workshop.shown(bug, knowledge[bug.chapter]["experiments"])
+        write(bug.chapter)
+
+    workshop.map("levels", learn_levels, [chapter for chapter in chapters if not knowledge[chapter]["levels"]])
+    workshop.map("experiments", learn_experiment, [(chapter, name) for chapter in chapters
+                                                   for name, seen in knowledge[chapter]["experiments"].items() if "mean" not in seen])
+    workshop.map("mistakes", learn_mistake, [bug for bug in catalogue() if bug.chapter in chapters
+                                             and "shows" not in knowledge[bug.chapter]["mistakes"][bug.mistake["name"]]])
+    for chapter in chapters:
+        write(chapter)
+
+
+def planned_trials(chapters):
+    """Name -> a Trial and the digest of all that it depends on."""
+    return {key: (trial, digest(settings(trial.chapter, TRYING, grading.SCENES[trial.chapter][0]), trial.text, trial.seed,
+                                own_text(trial.chapter), [repr(e) for e in experiments_of(trial.chapter).values()]))
+            for key, trial in trials().items() if trial.chapter in chapters}
+
+
+def confusion(workshop, chapters, is_anew):
     done = read_json(RECORD)["trials"] if RECORD.exists() and not is_anew else {}
-    planned, lock = planned_trials(), Lock()
-    kept = {key: trial for key, trial in done.items() if key in planned and trial["measured"] == planned[key][-1]}
-    record = {"commit": commit(), "trials": kept}
+    everything, lock = planned_trials(project.course()), Lock()
+    record = {"commit": commit(), "trials": {key: trial for key, trial in done.items()
+                                             if key in everything and trial["measured"] == everything[key][-1]}}
 
     def try_naming(item):
-        key, (trial, scenes, measured) = item
-        knowledge = (others if scenes else own)[trial.chapter]
-        result = workshop.judge(trial.chapter, trial.shader, trial.text, TRYING, knowledge["levels"], scenes, TRYING["runs"] * trial.seed)
-        answer = {"mistake": trial.mistake, "verdict": result["verdict"], "named": [], "is_sure": False, "measured": measured, **effect(result)}
-        if result["verdict"] != "correct":
-            found = surprises(signature(result), read_signatures(knowledge["mistakes"]))
-            answer |= {"named": list(found)[:3], "is_sure": len(candidates(found)) == 1}
+        key, (trial, measured) = item
+        plan = workshop.settings(TRYING, TRYING["runs"] * trial.seed)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "path_trace.glsl"
+            file.write_text(trial.text, encoding="utf-8")
+            result = grading.judge(trial.chapter, file, plan, shader=trial.shader)[0]
+            answer = {"mistake": trial.mistake, "verdict": result["verdict"], "named": [], "facts": 0, "measured": measured, **effect(result)}
+            if result["verdict"] != "correct":
+                found = diagnose(trial.chapter, file, plan, trial.shader)
+                answer |= {"named": found["names"], "facts": len(found["facts"])}
         with lock:
             record["trials"][key] = answer
             write_json(RECORD, record, DEPTH)
 
-    workshop.map("naming", try_naming, [item for item in planned.items() if item[0] not in kept])
-    record["trials"] = {key: record["trials"][key] for key in planned}
+    workshop.map("naming", try_naming, [(key, everything[key]) for key in planned_trials(chapters) if key not in record["trials"]])
+    record["trials"] = {key: record["trials"][key] for key in everything if key in record["trials"]}
     write_json(RECORD, stamped(record), DEPTH)
 
 
@@ -226,13 +233,10 @@ def main():
     parser.add_argument("action", choices=["learn", "confusion"])
     parser.add_argument("--jobs", type=number(int, 1), default=1, help="shaders that are rendered at a time; default: 1")
     parser.add_argument("--anew", action="store_true", help="measure everything again")
+    parser.add_argument("--chapters", type=number(int, 1), nargs="+", default=project.course(), metavar="N", help="default: all")
     add_device_options(parser)
     options = parser.parse_args()
-    workshop = Workshop(options)
-    if options.action == "confusion":
-        confusion(workshop, options.anew)
-    else:
-        learn(workshop, grading.KNOWLEDGE, {n: grading.SCENES[n][1] for n in project.course()}, options.anew)
+    {"learn": learn, "confusion": confusion}[options.action](Workshop(options), options.chapters, options.anew)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,10 @@
 """Shaders with mistakes planted in them: those that ./lab check is to know, and those that it is tried with."""
 from dataclasses import dataclass
 from pathlib import Path
-from zlib import crc32
 
-from check.grading import DESCRIPTIONS
 from course.mistakes import catalogue, own_shader, plant
 from project import course, name_of, read_json
 
-# References of scenes that had no part in choosing the numbers in likely_mistake.py, of the chapters that name some.
-OTHER_SCENES = {chapter: says["check"]["other_references"] for chapter, says in DESCRIPTIONS.items()
-                if "other_references" in says.get("check", {}) and chapter in course()}
 CORRECT_CHECKS = 7  # of each correct shader, with other seeds
 
 
@@ -21,7 +16,6 @@ class Trial:
     text: str
     shader: Path
     seed: int = 0
-    is_elsewhere: bool = False  # on OTHER_SCENES
 
 
 def variants():
@@ -32,20 +26,12 @@ def variants():
             yield chapter, folder / variant["file"], folder.with_name(variant.get("shader", "path_trace.glsl")), variant["mistakes"]
 
 
-def is_tried_elsewhere(bug):
-    """Whether a mistake is tried on OTHER_SCENES: every fifth, chosen so that others may come and go."""
-    return bug.chapter in OTHER_SCENES and crc32(f"{name_of(bug.chapter)}/{bug.mistake['name']}".encode()) % 5 == 0
-
-
 def trials():
-    """What check is tried with: condition/chapter/mistake -> Trial. All mistakes with new seeds, every fifth on other scenes, those of
-    each variant, and each correct shader several times."""
+    """What check is tried with: condition/chapter/mistake -> Trial. All mistakes with new seeds, those of each variant, and
+    each correct shader several times."""
     result, correct = {}, [(chapter, "its own", own_shader(chapter), own_shader(chapter)) for chapter in course()]
-    for is_elsewhere, condition in enumerate(("new seeds", "other scenes")):
-        for bug in catalogue():
-            if not is_elsewhere or is_tried_elsewhere(bug):
-                result[f"{condition}/{name_of(bug.chapter)}/{bug.mistake['name']}"] = Trial(
-                    bug.chapter, bug.mistake["name"], bug.text, bug.file, is_elsewhere=bool(is_elsewhere))
+    for bug in catalogue():
+        result[f"new seeds/{name_of(bug.chapter)}/{bug.mistake['name']}"] = Trial(bug.chapter, bug.mistake["name"], bug.text, bug.file)
     for chapter, file, shader, mistakes in variants():
         text = file.read_text(encoding="utf-8")
         correct.append((chapter, file.stem, file, shader))

@@ -3,8 +3,9 @@
 Renders scenes that have a reference image, each several times. The means of the whole image and of its tiles are tested
 against the reference: a correct shader is called biased in about one of 1000 checks. Error and rays are compared with those of
 the chapter's own shader: too much is 1.5 times, unless the one pays for the other, and less where less noise is the lesson.
-What is wrong is compared with what common mistakes do to the pictures. The answer is a question to think about and the slide to
-read again; --teacher names the mistake as well. After a third of the renders a first verdict says what is sure by then.
+After a third of the renders a first verdict says what is sure by then. Where a shader is not correct, small experiments
+find out what is wrong and what is right: each varies one thing alone, an angle, a distance, the albedo. Where only one common
+mistake fits all that they show, there is a question to think about and the slide to read again, too; --teacher names it.
 
 --all grades each shader in a folder: files NAME.glsl, and shaders in folders of their own. It writes results.csv
 and a page with pictures, and goes on where it was interrupted. For autograders see docs/grading.
@@ -18,9 +19,9 @@ import traceback
 from pathlib import Path
 
 from check.formats import as_gradescope, as_github
+from check.diagnosis import diagnose
 from check.folder import UNGRADED, grade_all
 from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
-from check.likely_mistake import likely_mistake
 from check.words import explain, hint_lines, scene_words, tell_early
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable
 from report.measurement import relative
@@ -71,13 +72,17 @@ def check(options, file, picture=None):
     if not file.is_file():
         raise UserError(f"{printable(file)}: no such file")
     watch = (lambda cases: None) if options.is_quiet else tell_early
-    result, pictures = judge(options.chapter, file, vars(options) | {"first_seed": first_seed(options.seed)}, watch=watch)
+    settings = vars(options) | {"first_seed": first_seed(options.seed)}
+    result, pictures = judge(options.chapter, file, settings, watch=watch)
     is_correct = result["verdict"] == "correct"
     result["unfinished_line"] = None if is_correct else find_todo(file)
-    result["likely_mistake"] = None if is_correct or result["unfinished_line"] else likely_mistake(result)
-    if not options.teacher:
-        for mistake in (result["likely_mistake"] or {"mistakes": []})["mistakes"]:
-            del mistake["name"]
+    if not result["unfinished_line"]:
+        result["diagnosis"] = diagnose(options.chapter, file, settings, is_correct=is_correct)
+        if is_correct and result["diagnosis"]["is_beyond_doubt"]:  # where the pictures do not look
+            result["verdict"], is_correct = "biased", False
+        if not options.teacher:
+            for mistake in result["diagnosis"]["mistakes"]:
+                del mistake["name"]
     if picture or not is_correct:
         from check.pictures import draw  # only here: Matplotlib takes longer to begin than all other modules together
         name = f"check_{options.chapter}.png"
@@ -107,6 +112,8 @@ def report(options, result):
         print(json.dumps(result, indent=1))
     elif options.form == "gradescope":
         scenes = [(scene["scene"], scene["verdict"], ", ".join(scene_words(scene))) for scene in result.get("scenes", [])]
+        if result["verdict"] == "biased" and all(verdict == "correct" for _, verdict, _ in scenes):
+            scenes.append(("experiments", "biased", result["diagnosis"]["facts"][0]))
         hints = [f"{head}: {text}" for head, text in hint_lines(result)] if scenes else [result["error"]]
         print(json.dumps(as_gradescope(scenes, hints, options.points), indent=1))
     elif "error" not in result:

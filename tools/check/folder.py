@@ -6,17 +6,20 @@ import json
 import os
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
+from check.experiments import experiment_files, experiments_of
 from check.grading import knowledge_file
 from check.words import explain, hint_lines
-from project import ROOT, UserError, printable, read_json, write_json
+from project import CHAPTERS, ROOT, UserError, printable, read_json, write_json
 from report.measurement import digest_of_sources
 
 UNGRADED = 2  # exit code
-COLUMNS = ["submission", "verdict", "unfinished_line", "mistakes", "questions", "error", "seconds"]
+MOST_COMMON = 5  # facts that sum up a class
+COLUMNS = ["submission", "verdict", "unfinished_line", "facts", "mistakes", "questions", "error", "seconds"]
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
@@ -44,9 +47,11 @@ def grade_one(options, check, name, file, folder):
     started = time.monotonic()
     try:
         result = check(options, file, folder / f"{name}.png")
+        found = result["diagnosis"] or {}
         row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
                "text": explain(result), "questions": " ".join(text for head, text in hint_lines(result) if head in ("ask yourself", "or")),
-               "mistakes": " ".join(each.get("name", "") for each in (result["likely_mistake"] or {"mistakes": []})["mistakes"]), "error": ""}
+               "wrong": found.get("wrong", []), "facts": " | ".join(found.get("facts", [])), "mistakes": " ".join(each.get("name", "") for each in found.get("mistakes", [])),
+               "error": ""}
     except Exception as error:  # whatever it is, the next submission is graded
         row = {"verdict": "not graded", "error": printable(str(error)), "text": printable(str(error))}
     return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1)}
@@ -62,7 +67,19 @@ def write_page(options, rows, path):
     for row in rows:
         picture = f'<img src="{quote(row["picture"])}" alt="pictures and differences">' if row.get("picture") else ""
         parts.append(f"<h2>{html.escape(row['submission'])}: {row['verdict']}</h2>\n{picture}<pre>{html.escape(row['text'])}</pre>\n")
+    if common := common_facts(options.chapter, rows):
+        parts.insert(0, f"<h2>What is wrong most often</h2>\n<pre>{html.escape(chr(10).join(common))}</pre>\n")
     path.write_text(PAGE.substitute(title=f"Chapter {options.chapter}: {len(rows)} submissions", body="".join(parts)), encoding="utf-8")
+
+
+def common_facts(chapter, rows):
+    """What of a chapter's experiments is wrong in the most submissions, as lines: how many, what, and the chapter whose page and
+    exercises are about it."""
+    experiments = experiments_of(chapter)
+    owners = {name: number for number, file in experiment_files().items() for name in file.get("experiments", {})}
+    counts = Counter(name for row in rows for name in row.get("wrong", []) if name in experiments)
+    return [f"{count} of {len(rows)}: {experiments[name].subject}, as far as it depends on {experiments[name].varies}: "
+            f"chapters/{CHAPTERS[owners[name]]}/README.md, its exercises" for name, count in counts.most_common(MOST_COMMON)]
 
 
 def grade_all(options, check):
@@ -85,5 +102,6 @@ def grade_all(options, check):
             writer.writeheader()
             writer.writerows({key: in_a_table(value) for key, value in row.items()} for row in rows)
         write_page(options, rows, folder / "index.html")
+    print("\n".join(["what is wrong most often", *common_facts(options.chapter, rows)]))
     print(f"{folder / 'results.csv'}\n{folder / 'index.html'}", file=sys.stderr)
     return UNGRADED if any(row["verdict"] == "not graded" for row in rows) else 0

@@ -234,4 +234,4 @@ def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases:
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
     return {"chapter": chapter, "file": printable(file), "verdict": verdict, "runs": settings["runs"],
             "samples": settings["samples"] or SCENES[chapter][0], "first_seed": settings["first_seed"], "false_alarms": FALSE_ALARMS,
-            "too_much": TOO_MUCH, "picture": None, "likely_mistake": None, "scenes": results}, [case["picture"] for case in cases]
+            "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": results}, [case["picture"] for case in cases]

@@ -1,6 +1,10 @@
 """What a check tells about a shader, in words."""
 from check.grading import early_bias
-from project import CHAPTERS, scene_of
+from project import CHAPTERS
+
+MOST_QUESTIONS = 2
+NOTHING_SEEN = ("none of the experiments finds what is wrong in the pictures, so all that they look at is right: look at the places that the "
+                "picture of the differences frames")
 
 
 def percent(value):
@@ -40,20 +44,23 @@ def scene_words(scene):
 
 
 def hint_lines(result):
-    """Pairs of a word and what leads to the mistake."""
+    """Pairs of a word and what leads to the mistake: what the experiments have shown, and questions where few mistakes do that."""
     if result["unfinished_line"]:
         return [("unfinished", f"line {result['unfinished_line']} says TODO")]
-    if not result["likely_mistake"]:
+    found = result["diagnosis"]
+    if result["verdict"] == "correct" or not found:
         return []
-    found, lines = result["likely_mistake"], []
-    page = f"chapters/{CHAPTERS[result['chapter']]}/README.md"
-    for first, mistake in zip(("ask yourself", "or"), found["mistakes"]):
-        name = f"{mistake['name']}: " if "name" in mistake else ""
-        lines += [(first, name + mistake["hint"]), ("read again", f"{mistake['slide']} (docs/slides.md), {page}")]
-    if len(found["mistakes"]) > 1:
-        tell = found["tell_apart"]
-        lines.append(("tell apart", f"render {scene_of(tell['scene'])} and look {tell['place']}: there the first changes "
-                      f"the brightness by {' and the second by '.join(map(percent, tell['effects']))}; --runs 48 looks closer"))
+    lines = [("seen", fact) for fact in found["facts"]] or [("seen", NOTHING_SEEN)]
+    lines += [("right", "; ".join(found["right"]))] if found["right"] else []
+    page, mistakes = f"chapters/{CHAPTERS[result['chapter']]}/README.md", found["mistakes"]
+    if len(mistakes) <= MOST_QUESTIONS:
+        for first, mistake in zip(("ask yourself", "or"), mistakes):
+            name = f"{mistake['name']}: " if "name" in mistake else ""
+            lines += [(first, name + mistake["hint"]), ("read again", f"{mistake['slide']} (docs/slides.md), {page}")]
+    if len(mistakes) > 1:
+        lines.append(("not sure", f"{len(mistakes)} common mistakes show the same in all experiments"))
+    if found["next"] and len(mistakes) != 1:
+        lines.append(("next", f"see it with your shader in the chapter's folder: {found['next']}"))
     return lines
 
 

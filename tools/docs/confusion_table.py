@@ -1,22 +1,25 @@
-"""The tables of docs/results/check.md on ./lab check: how often it finds mistakes and names them correctly."""
-from project import CHAPTERS, name_of, table
+"""The tables of docs/results/check.md on ./lab check: how often it finds mistakes, and whether what it says of them is true."""
+from project import CHAPTERS, RECORDS, name_of, read_json, table
 from scipy.stats import binomtest
 
-CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "other scenes": "the same on other scenes",
-              "variants": "shaders written in another way", "correct": "correct shaders"}
+CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "variants": "shaders written in another way", "correct": "correct shaders"}
+SUBMISSIONS = {"development": "for development", "held_out": "not looked at before"}
 LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
 
 class Rate:
-    """Counts of trials. `right` counts the mistakes that were named first, `near` those among the first two names."""
+    """Counts of trials. `alone` counts those with a single name, `right` those where it is the mistake, `among` those where the mistake
+    is one of the names that fit, and `told` those with facts or names."""
 
     def __init__(self, trials):
         large = [trial for trial in trials if trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE]
         right = [trial for trial in trials if trial["named"][:1] == [trial["mistake"]]]
-        self.tried, self.large, self.right = len(trials), len(large), len(right)
+        self.tried, self.large = len(trials), len(large)
         self.found, self.found_of_large = (sum(trial["verdict"] != "correct" for trial in some) for some in (trials, large))
-        self.near = sum(trial["mistake"] in trial["named"][:2] for trial in trials)
-        self.sure, self.right_of_sure = (sum(trial["is_sure"] for trial in some) for some in (trials, right))
+        alone = [trial for trial in trials if len(trial["named"]) == 1]
+        self.alone, self.right = len(alone), sum(trial["named"] == [trial["mistake"]] for trial in alone)
+        self.among = sum(trial["mistake"] in trial["named"] for trial in trials)
+        self.told = sum(bool(trial["facts"] or trial["named"]) for trial in trials)
 
 
 def rates(record, key_of=lambda key: key.split("/")[0]):
@@ -36,15 +39,41 @@ def part(count, of):
 
 
 def row(words, rate):
-    return [words, str(rate.tried), part(rate.found_of_large, rate.large), str(rate.found), part(rate.right, rate.found),
-            part(rate.near, rate.found), part(rate.right_of_sure, rate.sure)]
+    return [words, str(rate.tried), part(rate.found_of_large, rate.large), str(rate.found), part(rate.told, rate.found),
+            part(rate.among, rate.found), part(rate.right, rate.alone)]
+
+
+def submission_row(words, submissions):
+    """Of shaders from outside. Whether what is told points at the mistake was judged by a person."""
+    wrong = [row for row in submissions if not row["is_right"]]
+    found = [row for row in wrong if row["verdict"] != "correct"]
+    alone = [row for row in found if len(row["named"]) == 1]
+    return [words, part(sum(row["verdict"] != "correct" for row in submissions if row["is_right"]), len(submissions) - len(wrong)),
+            part(len(found), len(wrong)), part(sum(bool(row["facts"] or row["named"]) for row in found), len(found)),
+            part(sum(not row["untrue"] for row in found), len(found)),
+            part(sum(bool(row["points"]) for row in found), len(found)), part(sum(bool(row["name_is_right"]) for row in alone), len(alone))]
+
+
+def submission_table():
+    """A table of the shaders that were written without a look at the catalogue, and a list of what was told of each."""
+    records = {key: RECORDS / f"check/{key}.json" for key in SUBMISSIONS}
+    rows, told = [], []
+    for key, file in records.items():
+        if file.exists():
+            submissions = read_json(file)["submissions"]
+            rows.append(submission_row(SUBMISSIONS[key], submissions.values()))
+            told += [[f"{name}, {SUBMISSIONS[key]}", row["mistake"] or "none", row["verdict"], ", ".join(row["named"]) or "-"]
+                     for name, row in submissions.items() if not row["is_right"] or row["verdict"] != "correct"]
+    head = ["submissions", "right ones refused", "wrong ones found", "not silent", "all facts true", "pointing at the mistake", "a single name is right"]
+    text = "\nShaders that others wrote, without a look at the catalogue:\n\n" + table(head, rows)
+    return text + "\n" + table(["submission", "mistake", "verdict", "names that fit"], told, left=4)
 
 
 def confusion_table(record):
     """A table of rates by condition, one by chapter, and a list of mistakes that were missed or misnamed."""
-    head = ["tried", "large ones found", "found", "named right", "among the first two", "right where it is sure"]
+    head = ["tried", "large ones found", "found", "not silent", "the mistake is one of the names that fit", "a single name is right"]
     conditions = rates(record)
-    correct = conditions.pop("correct")
+    correct = conditions.pop("correct", Rate([]))
     text = f"\nThe check refused correct shaders {part(correct.found, correct.tried)} times.\n\n"
     text += table(["", *head], [row(words, conditions[key]) for key, words in CONDITIONS.items() if key in conditions])
     numbers = {name_of(number): number for number in CHAPTERS}
@@ -53,10 +82,10 @@ def confusion_table(record):
         ["chapter", *head], [row(str(chapter), rate) for chapter, rate in sorted(chapters.items())])
     missed = []
     for key, trial in record["trials"].items():
-        if trial["mistake"] and trial["named"][:1] != [trial["mistake"]]:
+        if trial["mistake"] and trial["named"] != [trial["mistake"]]:
             condition, chapter, *variant, _ = key.split("/")
             place = ", ".join([f"chapter {numbers[chapter]}", *variant])
             effect = f"{100 * trial['bias']:.2g} %, × {trial['noise']:.2g}"
             missed.append([f"{place}, {condition}", trial["mistake"], effect, trial["verdict"], ", ".join(trial["named"]) or "-"])
     head = ["where", "mistake", "change of mean and error", "verdict", "named"]
-    return text + "\nNot found, or taken for another:\n\n" + table(head, missed, left=5)
+    return text + "\nNot found, not named alone, or taken for another:\n\n" + table(head, missed, left=5)

@@ -10,7 +10,7 @@ import re
 from docs.best_table import best_and_peers
 from docs.confusion_table import CONDITIONS, rates
 from matplotlib import pyplot, ticker
-from project import load_records, scene_of, write_bytes
+from project import RECORDS, load_records, read_json, scene_of, write_bytes
 from report.numbers import Series, errors, paired_ratio
 from report.plots import svg_text
 from scipy.stats import binomtest
@@ -191,10 +191,10 @@ def features():
 
 def check():
     """How often does ./lab check find a mistake, and name it?"""
-    conditions = rates(load_records("check")[0])
+    conditions = rates(read_json(RECORDS / "check/confusion.json"))
     rows = [words for key, words in CONDITIONS.items() if key in conditions]
-    measures = {"large mistakes found": lambda rate: (rate.found_of_large, rate.large), "named right": lambda rate: (rate.right, rate.found),
-                "named right where it is sure": lambda rate: (rate.right_of_sure, rate.sure), "refused though correct": lambda rate: (0, 0)}
+    measures = {"large mistakes found": lambda rate: (rate.found_of_large, rate.large), "not silent": lambda rate: (rate.told, rate.found),
+                "a single name is right": lambda rate: (rate.right, rate.alone), "refused though correct": lambda rate: (0, 0)}
     shown = {label: {} for label in measures}
     for key, words in CONDITIONS.items():
         rate = conditions.get(key)

@@ -16,7 +16,7 @@ from book.code_blocks import fill
 from docs.ages import age_table
 from docs.best_table import among_chapters, best_table
 from docs.bug_blocks import bug_block
-from docs.confusion_table import confusion_table
+from docs.confusion_table import confusion_table, submission_table
 from docs.cost_tables import feature_table, growth_tables, seconds_text
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
@@ -152,7 +152,9 @@ DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backend
                  "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
-    "running": running_table, "best chapters": best_table, "check": lambda: confusion_table(load_records("check")[0]), **examples(),
+    "running": running_table, "best chapters": best_table, "submissions": submission_table,
+    "check": lambda: confusion_table(read_json(RECORDS / "check/confusion.json")),
+    **examples(),
 }
 AGES = "ages of records"
 # Wherever times on such a device are compared.

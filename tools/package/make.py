@@ -25,7 +25,7 @@ FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
 FILES = ["CHANGELOG.md", "LICENSE", "README.md"]
 # Solutions and what only teachers need, or what needs the sources.
 LEFT_OUT = ["tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/exercise.json",
-            "chapters/*/mistakes.json", "chapters/*/other_scenes.json", "chapters/*/solutions/*", "chapters/*/variants/*", "*/__pycache__/*"]
+            "chapters/*/mistakes.json", "chapters/*/solutions/*", "chapters/*/variants/*", "*/__pycache__/*"]
 DATE = 1980, 1, 1, 0, 0, 0  # of all files: the same sources make the same archive
 BOOK = ROOT / "output/book"
 

@@ -1,0 +1,205 @@
+"""What ./lab check finds out about a shader that is not correct: experiments, facts, and the names that they leave."""
+
+import json
+import re
+import unittest
+
+from program import PROJECT  # first: it finds the tools
+import learn
+from check.diagnosis import names_of, right_ones, sentences
+from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged
+from check.facts import fact
+from check.grading import MOST_RUNS, RUNS, SEED_STEP, first_seed
+from docs.confusion_table import rates
+from planting import CORRECT_CHECKS, catalogue
+from project import course
+
+KNOWLEDGE_OF = learn.read_knowledge(course())
+KNOWN = {chapter: entry["mistakes"] for chapter, entry in KNOWLEDGE_OF.items()}
+LEAST = 8  # mistakes that are known of each chapter
+
+
+def sight(mean, error=0.001):
+    return Sight(mean, error * mean, 1.0, 0.1, 2.0, mean)
+
+
+def seen(values, quantity=None, x=(20.0, 40.0, 60.0, 75.0), expected=None, error=0.001, **details):
+    """The fact of an experiment whose points show multiples of what is right."""
+    points = [Point({}, f"at {x_i:g}", x_i) for x_i, _ in zip(x, values)]
+    expected = expected or [0.5] * len(values)
+    shown = [sight(value * (right or max(expected)), error) for value, right in zip(values, expected)]
+    of = Experiment(details.get("name", "angle"), details.get("subject", "light of a lamp"), details.get("varies", "the angle"), points, quantity or {})
+    return fact(of, shown, [sight(right, 0.0002) for right in expected])
+
+
+class FactsTest(unittest.TestCase):
+    def test_what_is_right_has_no_sentence(self):
+        found = seen([1.002, 0.998, 1.0])
+        self.assertTrue(found.is_right and found.is_surely_right)
+        self.assertEqual(found.sentence, "")
+        vague = seen([1.1, 0.95, 1.0], error=0.05)
+        self.assertTrue(vague.is_right)
+        self.assertFalse(vague.is_surely_right, "too vague to be called right")
+        self.assertEqual(right_ones({"angle": vague}), [])
+
+    def test_a_constant_factor_is_told_with_its_interval_and_its_name(self):
+        self.assertEqual(seen([3.1416] * 4).sentence,
+                         "light of a lamp: 3.14 ± 0.01 times as bright as it should be (as by a factor π), whatever the angle")
+        self.assertNotIn("factor", seen([1.23] * 4).sentence, "no well-known constant")
+        self.assertNotIn("factor", seen([3.1] * 4, error=0.1).sentence, "3 or π")
+
+    def test_a_power_law_is_told_of_the_quantity_that_it_follows(self):
+        angles = {"cos": "the cosine of this angle", "sin": "the sine of this angle"}
+        self.assertIn("follows 1 / the cosine of this angle;", seen([1.064, 1.305, 2.0, 3.864], angles).sentence)
+        self.assertIn("follows the sine of this angle times 1.57", seen([0.537, 1.01, 1.36, 1.517], angles).sentence)
+        self.assertNotIn("follows", seen([1.0, 3.0, 0.5, 1.0], angles).sentence)
+        odds = {"value": "q", "rest": "1 - q"}
+        self.assertIn("follows q times 1 / 1 - q".replace("1 - q", "(1 - q)"),
+                      seen([9.0, 2.333, 1.0, 0.4286], {"value": "q", "rest": "(1 - q)"}, (0.9, 0.7, 0.5, 0.3)).sentence, odds)
+        self.assertIn("a factor of 1.50 ± 0.03 with each bounce", seen([1.5, 2.25, 3.375], {"per": "with each bounce"}, (1, 2, 3)).sentence)
+
+    def test_light_where_none_should_be_and_light_that_is_missing(self):
+        leak = seen([1.0, 0.3], expected=[0.5, 0.0]).sentence
+        self.assertRegex(leak, "light where none should be: at 40 0.30 ± 0.01 times that of the brightest place")
+        self.assertIn("nothing of it is there", seen([0.0] * 3).sentence)
+        self.assertRegex(seen([0.0, 1.0]).sentence, "at 20 nothing; right at 40")
+
+    def test_the_same_factor_is_told_once(self):
+        facts = {"angle": seen([2.0] * 3), "distance": seen([2.0] * 3, varies="the distance"), "size": seen([1.0] * 3, varies="the size")}
+        told = sentences(facts)
+        self.assertEqual(len(told), 1)
+        self.assertRegex(told[0], r"2\.00 ± 0\.01 times as bright.*\(whatever the angle, the distance\)")
+        self.assertEqual(right_ones(facts), ["light of a lamp, whatever the size"])
+
+
+class NamesTest(unittest.TestCase):
+    KNOWN = {"twice": {"shows": {"angle": "2 2 2"}}, "twice-at-a-slant": {"shows": {"angle": "1 1 2"}},
+             "also-twice": {"shows": {"angle": "2 2 2", "size": "1 3 9"}}}
+
+    def names(self, values, size=(1.0, 1.0, 1.0)):
+        facts = {"angle": seen(values), "size": seen(size, name="size")}
+        return names_of(facts, {}, self.KNOWN, {})
+
+    def test_a_name_is_told_alone_where_one_mistake_fits(self):
+        self.assertEqual(self.names([2.01, 1.99, 2.0]), ["twice"])
+        self.assertEqual(self.names([2.0, 2.0, 2.0], (1.0, 3.0, 9.0)), ["also-twice"])
+
+    def test_what_no_mistake_shows_has_no_name(self):
+        self.assertEqual(self.names([3.0, 3.0, 3.0]), [])
+        self.assertEqual(self.names([2.0, 2.0, 2.5]), [])
+
+    def test_what_the_experiments_cannot_tell_apart_is_told_together(self):
+        facts = {"angle": seen([2.0] * 3)}
+        self.assertEqual(sorted(names_of(facts, {}, self.KNOWN, {})), ["also-twice", "twice"])
+
+
+class ExperimentsTest(unittest.TestCase):
+    def test_each_chapter_of_the_course_has_about_a_dozen_and_each_is_described_once(self):
+        files = experiment_files()
+        self.assertEqual(list(files), course())
+        names = [name for file in files.values() for name in file.get("experiments", {})]
+        self.assertEqual(len(names), len(set(names)))
+        for chapter in files:
+            self.assertGreaterEqual(len(experiments_of(chapter)), 11)
+            for one in experiments_of(chapter).values():
+                self.assertLessEqual(set(one.when), set(experiments_of(chapter)), (chapter, one.name))
+                self.assertTrue(one.subject and one.points and all(point.scene for point in one.points), (chapter, one.name))
+
+    def test_a_chapter_uses_only_what_it_or_an_earlier_one_describes(self):
+        """Otherwise a student's tree of the first chapters lacks it."""
+        described = set()
+        for chapter, file in experiment_files().items():
+            described |= set(file.get("experiments", {}))
+            self.assertLessEqual(set(file["uses"]), described, f"chapter {chapter}")
+
+    def test_points_differ_in_what_they_say(self):
+        made = experiment("x", {"subject": "s", "scene": {"lamp": {"size": 1, "emits": 2}, "plate": {"size": 3}}, "options": "--a 1",
+                                "points": [{"at": "one"}, {"at": "two", "scene": {"lamp": {"size": 4}, "plate": None}, "options": "--b 2"}]}, 8)
+        self.assertEqual([point.scene for point in made.points], [{"lamp": {"size": 1, "emits": 2}, "plate": {"size": 3}},
+                                                                  {"lamp": {"size": 4, "emits": 2}}])
+        self.assertEqual([point.options for point in made.points], ["--a 1", "--a 1 --b 2"])
+        self.assertEqual(merged({"a": 1}, {"a": 2, "b": {"c": 3}}), {"a": 2, "b": {"c": 3}})
+
+    def test_plates_face_where_they_say_and_boxes_outwards(self):
+        def normal(face):
+            a, b = ([q - p for p, q in zip(face[0], other)] for other in (face[1], face[2]))
+            return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+        for direction in ([0, 1, 0], [1, 0, 0], [0, 0, -1], [0.6, 0.8, 0]):
+            found = normal(faces_of({"centre": [1, 2, 3], "faces": direction, "size": [2, 1]})[0])
+            for got, expected in zip(found, direction):
+                self.assertAlmostEqual(got, 2 * expected)
+        lamp = faces_of({"polar": 30, "azimuth": 180, "distance": 2, "size": 0.5})[0]
+        centre = [sum(corner[i] for corner in lamp) / 4 for i in range(3)]
+        self.assertAlmostEqual(centre[0], -1)
+        self.assertLess(sum(c * n for c, n in zip(centre, normal(lamp))), 0, "towards the origin")
+        for shape, sign in (({"box": [1, 2, 3], "turn": 20}, 1), ({"ball": 1}, -1)):
+            for face in faces_of(shape):
+                middle = [sum(corner[i] for corner in face) / len(face) for i in range(3)]
+                self.assertGreater(sign * sum(c * n for c, n in zip(middle, normal(face))), 0, shape)
+
+
+class KnowledgeTest(unittest.TestCase):
+    def test_every_mistake_of_the_catalogue_is_known(self):
+        expected = {chapter: {} for chapter in course()}
+        for bug in catalogue():
+            expected[bug.chapter][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")}
+        known = {chapter: {name: {key: entry[key] for key in ("hint", "slide")} for name, entry in entries.items()}
+                 for chapter, entries in KNOWN.items()}
+        self.assertEqual(known, expected, "tests/mistakes/learn.py learn")
+        for chapter, entries in known.items():
+            self.assertGreaterEqual(len(entries), LEAST, f"chapter {chapter}")
+
+    def test_all_experiments_are_known_and_every_mistake_shows_in_one(self):
+        for chapter, entry in KNOWLEDGE_OF.items():
+            self.assertEqual(list(entry["experiments"]), list(experiments_of(chapter)), f"chapter {chapter}: tests/mistakes/learn.py learn")
+            for name, mistake in entry["mistakes"].items():
+                shown = mistake["shows"] or mistake["noise"] or mistake["rays"]
+                self.assertTrue(shown, f"chapter {chapter}: {name} shows in no experiment")
+
+    def test_nothing_was_learnt_from_the_seeds_of_a_check(self):
+        plan = learn.TRYING
+        seeds = list(range(plan["first_seed"], plan["first_seed"] + CORRECT_CHECKS * RUNS))
+        self.assertTrue(all(MOST_RUNS < seed <= SEED_STEP for seed in seeds), seeds)
+
+    def test_levels_have_the_seeds_of_a_check_so_that_renders_are_compared_one_by_one(self):
+        seeds = [str(first_seed(0) + run) for run in range(RUNS)]
+        for chapter, entry in KNOWLEDGE_OF.items():
+            for scene, level in entry["levels"].items():
+                self.assertEqual(list(level["rel_mse"]), seeds, (chapter, scene))
+
+    def test_every_slide_to_read_again_is_in_the_slide_map(self):
+        titles = re.findall(r"^### (.*)$", (PROJECT / "docs/slides.md").read_text(encoding="utf-8"), re.MULTILINE)
+        for entries in KNOWN.values():
+            for name, entry in entries.items():
+                self.assertIn(entry["slide"], titles, name)
+
+
+class FreshKnowledge_all(unittest.TestCase):
+    """What was measured is no older than the shaders. Measuring anew takes an hour on a CPU."""
+
+    def test_knowledge_was_measured_with_the_shaders_and_settings_of_the_code(self):
+        self.assertEqual(learn.unmeasured(KNOWLEDGE_OF), [], "stale: tests/mistakes/learn.py learn, then confusion")
+
+    def record(self):
+        return json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
+
+    def test_the_confusion_matrix_has_every_trial_of_the_code(self):
+        expected = {key: measured for key, (_, measured) in learn.planned_trials(course()).items()}
+        self.assertEqual({key: trial["measured"] for key, trial in self.record()["trials"].items()}, expected,
+                         "stale: measure anew with tests/mistakes/learn.py confusion")
+
+    def test_what_matters_is_found_and_named_and_nothing_correct_is_refused(self):
+        for condition, rate in rates(self.record()).items():
+            if condition == "correct":
+                self.assertGreaterEqual(rate.tried, 200)
+                self.assertEqual(rate.found, 0, "correct shaders")
+            else:
+                self.assertEqual(rate.found_of_large, rate.large, condition)
+                self.assertEqual(rate.told, rate.found, f"{condition}: never silent")
+                self.assertGreaterEqual(rate.right / rate.alone, 0.98, f"{condition}: no wrong name alone")
+                self.assertGreaterEqual(rate.among / rate.found, 0.9 if condition == "new seeds" else 0.8, condition)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Grades shaders that were written without a look at the catalogue of mistakes, and compares with what their authors say of them.
+
+    tests/mistakes/submissions.py FOLDER RECORD
+
+FOLDER has a folder for each submission, with a shader and submission.json. RECORD is the name of a file in docs/records/check. It
+gets the verdict, the facts and the names of each submission. Each fact is measured again with other random numbers and more samples:
+it is true where both agree. Whether the facts and names point at what the wrong line means, and whether a single name is right, is for a person to
+say: "points" and "name_is_right" in the record, true, false or null, stay as long as the same is told.
+"""
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Lock
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
+from check import grading  # noqa: E402  (found by the line above)
+from check.diagnosis import diagnose, known_sights, repeats_of  # noqa: E402
+from check.experiments import experiments_of, measure  # noqa: E402
+from check.facts import readings  # noqa: E402
+from project import CHAPTERS, RECORDS, Parser, UserError, add_device_options, commit, number, read_json, run_tool, show_progress, write_json  # noqa: E402
+
+GOES_ON = True
+SEED, FACTOR = 9001, 4  # of the second measurement, which has so many times the samples
+AGREE = 3.5  # standard errors between two measurements of the same
+ROUNDING = 0.005
+
+
+def settings(options, seed):
+    return {"backend": options.backend, "device": options.device, "time_limit": 600, "runs": grading.RUNS, "samples": None,
+            "first_seed": grading.first_seed(seed), "is_quiet": True}
+
+
+def untrue(chapter, file, found, those):
+    """What a second measurement contradicts of the numbers of wrong experiments: (experiment, point, number, number anew)."""
+    known, contradicted = read_json(grading.knowledge_file(chapter))["experiments"], []
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
+        program, _ = grading.make_tree(CHAPTERS[chapter], file, Path(folder))
+        for name, seen in found["readings"].items():
+            experiment = experiments_of(chapter)[name]
+            if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
+                continue
+            kind = "factor" if repeats_of(chapter) == 1 else "repeats"
+            anew = readings(experiment, measure(program, experiment.points, those, SEED, pool, **{kind: FACTOR}), known_sights(known[name]))
+            contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
+                             if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
+    return contradicted
+
+
+def grade(folder, options):
+    says = read_json(folder / "submission.json")
+    file = next(folder.glob("*.glsl"))
+    those = settings(options, options.seed)
+    started = time.monotonic()
+    result = grading.judge(says["chapter"], file, those)[0]
+    seconds = [round(time.monotonic() - started, 1)]
+    found = diagnose(says["chapter"], file, those, is_correct=result["verdict"] == "correct")
+    verdict = "biased" if result["verdict"] == "correct" and found["is_beyond_doubt"] else result["verdict"]
+    row = {"chapter": says["chapter"], "is_right": says["is_right"], "mistake": says["mistake"], "means": says["means"], "verdict": verdict,
+           "facts": found["facts"], "named": [each["name"] for each in found["mistakes"]], "next": found["next"],
+           "seconds": [*seconds, found["seconds"]]}
+    return row | ({"untrue": untrue(says["chapter"], file, found, those)} if verdict != "correct" else {"untrue": []})
+
+
+def main():
+    parser = Parser("tests/mistakes/submissions.py", __doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("record")
+    parser.add_argument("--jobs", type=number(int, 1), default=1, help="submissions that are graded at a time; default: 1")
+    parser.add_argument("--seed", type=number(int, 0), default=0, help="default: 0")
+    parser.add_argument("--only", nargs="+", default=[""], metavar="TEXT", help="submissions whose names begin so")
+    add_device_options(parser)
+    options = parser.parse_args()
+    path = RECORDS / f"check/{options.record}.json"
+    record = read_json(path) if path.exists() else {"submissions": {}}
+    folders = sorted(file.parent for file in options.folder.glob("*/submission.json") if file.parent.name.startswith(tuple(options.only)))
+    if not folders:
+        raise UserError(f"{options.folder}: has no folders with submission.json")
+    started, lock = time.monotonic(), Lock()
+
+    def grade_one(folder):
+        before, row = record["submissions"].get(folder.name, {}), grade(folder, options)
+        is_same = all(before.get(key) == row[key] for key in ("verdict", "named")) and len(before["facts"]) == len(row["facts"])
+        with lock:
+            record["submissions"][folder.name] = row | {key: before.get(key) if is_same else None for key in ("points", "name_is_right")}
+            record.update({"commit": commit(), "submissions": dict(sorted(record["submissions"].items()))})
+            write_json(path, record, 3)
+
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for done, _ in enumerate(pool.map(grade_one, folders), 1):
+            show_progress("submissions", done, len(folders), started)
+
+
+if __name__ == "__main__":
+    run_tool(sys.modules[__name__])

@@ -1,0 +1,187 @@
+"""The differential diagnosis of a shader that is not correct: facts first, and a name only where they leave one.
+
+The chapter's experiments run in their order, those with a condition (`when`) only where other experiments have shown what it asks for.
+knowledge.json in the chapter's folder has what its own shader shows in each of them, and what the mistakes of the catalogue do to it.
+"""
+import math
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from check.experiments import JOBS, Sight, experiments_of, measure, write_scene
+from check.facts import Fact, common_value, constant, fact, number
+from check.grading import DESCRIPTIONS, knowledge_file, make_tree
+from project import CHAPTERS, ROOT, UserError, read_json
+
+# Another student's shader has the same mistake but not quite the same numbers: parts of them, and the least.
+LOOSENESS, LEAST = 0.03, 0.01
+FITS, EXCLUDED = 3.5, 5.0  # standard errors: what fits, and what is so far from it that it is another mistake
+NOISE_LOOSENESS, RAYS_LOOSENESS = 0.25, 0.08  # of their logarithms
+MOST_NAMES = 2
+FIRST_SEED, REPEATS = 7001, 3
+PATIENCE = 15.0  # seconds for the picture of a point, of which an idle core takes a tenth of one
+
+
+def known_sights(entry):
+    """What the chapter's own shader shows, a list of Sight, from lists in knowledge.json."""
+    return [Sight(*values, typical=values[0]) for values in zip(*(entry[key] for key in ("mean", "error", "noise", "noise_error", "rays")))]
+
+
+def numbers(text):
+    return [float(word) for word in text.split()]
+
+
+def repeats_of(chapter):
+    """Pictures of each point: where the samples of a pixel depend on each other, those of pixels may do so, too."""
+    return REPEATS if DESCRIPTIONS[chapter].get("low_discrepancy") else 1
+
+
+def is_called_for(experiment, facts):
+    """Whether what it asks for is known, and so."""
+    return all(name not in facts or facts[name].is_right == is_right for name, is_right in experiment.when.items())
+
+
+def is_deciding(experiment, _):
+    return experiment.decides
+
+
+def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIRST_SEED):
+    """Name -> Fact, of the experiments of a chapter, and name -> list of Sight."""
+    facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
+    with ThreadPoolExecutor(JOBS) as pool:
+        for name, experiment in experiments_of(chapter).items():
+            if name not in expected or not chosen(experiment, facts):
+                continue
+            try:
+                sights[name] = measure(program, experiment.points, settings, seed, pool, repeats=repeats_of(chapter))
+                facts[name] = fact(experiment, sights[name], known_sights(expected[name]))
+            except UserError as error:  # an endless loop, for instance, that only this scene comes to
+                facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {error}")
+    return facts, sights
+
+
+# ---------------------------------------------------------------------------------------------- names
+def distance(shown, facts):
+    """How far what a mistake of the catalogue shows (name of an experiment -> text) is from the facts, in standard errors at the point
+    that contradicts it most."""
+    far = 0.0 if all(seen.readings for seen in facts.values()) else math.inf
+    for name, seen in facts.items():
+        for reading, known in zip(seen.readings, numbers(shown[name]) if name in shown else [r.expected for r in seen.readings]):
+            width = math.hypot(reading.error, LOOSENESS * max(abs(known), abs(reading.value)), LEAST)
+            far = max(far, abs(reading.value - known) / width)
+    return far
+
+
+def noise_distance(entry, ratios):
+    """The same of noise and rays, as multiples of those of the chapter's own shader."""
+    far = 0.0
+    for kind, looseness in (("noise", NOISE_LOOSENESS), ("rays", RAYS_LOOSENESS)):
+        for name, seen in ratios[kind].items():
+            for (value, error), known in zip(seen, numbers(entry.get(kind, {}).get(name, "")) or [1.0] * len(seen)):
+                far = max(far, abs(math.log(max(value, 0.01) / max(known, 0.01))) / math.hypot(error / max(value, 0.01), looseness))
+    return far
+
+
+def ratios_of(sights, expected):
+    """Noise and rays of what was seen, as multiples of the chapter's own, with errors; where it has none, 1."""
+    found = {"noise": {}, "rays": {}}
+    for name, seen in sights.items():
+        pairs = list(zip(seen, known_sights(expected[name])))
+        found["noise"][name] = [(now.noise / own.noise, math.hypot(now.noise_error / own.noise, now.noise * own.noise_error / own.noise**2))
+                                if own.noise > 1e-6 * own.mean**2 and now.noise > 0 else (1.0, 1.0) for now, own in pairs]
+        found["rays"][name] = [(now.rays / own.rays, 0.01) for now, own in pairs]
+    return found
+
+
+def names_of(facts, sights, known, expected):
+    """The names of the mistakes of the catalogue that the facts leave: those that fit and those that are not far enough away to be
+    excluded, the nearest first; empty where none fits."""
+    far = {name: distance(entry["shows"], facts) for name, entry in known.items() if "shows" in entry}
+    if all(seen.is_right for seen in facts.values()):
+        ratios = ratios_of(sights, expected)
+        far = {name: max(value, noise_distance(known[name], ratios)) for name, value in far.items()}
+    ordered = sorted(far, key=far.get)
+    return [name for name in ordered if far[name] <= EXCLUDED] if ordered and far[ordered[0]] <= FITS else []
+
+
+# ---------------------------------------------------------------------------------------------- words
+def sentences(facts):
+    """What is wrong, in the order of the experiments. What is wrong by the same factor in all its points is said together."""
+    groups, others = [], []
+    for name, seen in facts.items():
+        lit = [reading for reading in seen.readings if not reading.is_dark]
+        is_clear = lit and not seen.is_right and not seen.invalid and all(r.is_right for r in seen.readings if r.is_dark)
+        common = common_value(lit) if is_clear else None
+        if not common or any(reading.is_right for reading in lit) or common[0] == 0:
+            others += [] if seen.is_right else [seen.sentence]
+            continue
+        group = next((group for group in groups if common_value([*group["readings"], *lit])), None)
+        if not group:
+            groups.append(group := {"readings": [], "of": []})
+        group["readings"] += lit
+        group["of"].append(seen.experiment)
+    told = []
+    for group in groups:
+        value = common_value(group["readings"])
+        subjects = {}
+        for experiment in group["of"]:
+            subjects.setdefault(experiment.subject, []).append(experiment.varies)
+        words = [f"{subject} (whatever {', '.join(varies)})" for subject, varies in subjects.items()]
+        told.append(f"{number(*value)} times as bright as it should be{constant(*value)}: {'; '.join(words)}")
+    return told + others
+
+
+def right_ones(facts):
+    """What is right: subjects, or what does not matter to one of which not everything is."""
+    not_right = {seen.experiment.subject for seen in facts.values() if not seen.is_surely_right}
+    right = [seen.experiment for seen in facts.values() if seen.is_surely_right]
+    return list(dict.fromkeys(f"{each.subject}, whatever {each.varies}" if each.subject in not_right else each.subject for each in right))
+
+
+def noise_sentences(facts, sights, expected):
+    """Where a shader has more noise or traces more rays than the chapter's own."""
+    told = []
+    for kind, words in (("noise", "the variance of"), ("rays", "the rays of")):
+        for name, seen in ratios_of(sights, expected)[kind].items():
+            experiment = facts[name].experiment
+            much = [f"{point.at} {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if abs(value - 1) > 4 * error + 0.2]
+            if much:
+                told.append(f"{experiment.subject}: so many times {words} the chapter's own shader: {', '.join(much)}")
+    return told
+
+
+def next_step(chapter, facts):
+    """What the student can do to see the first thing that is wrong: the scene's file, which is written, and a command."""
+    seen = next((seen for seen in facts.values() if not seen.is_right and seen.readings), None)
+    if not seen:
+        return None
+    worst = max(range(len(seen.readings)), key=lambda i: abs(seen.readings[i].value - seen.readings[i].expected))
+    point, folder = seen.experiment.points[worst], ROOT / f"output/check_{chapter}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        scene = write_scene(point.scene, folder, seen.experiment.name)
+    except OSError:  # a checkout that is read-only, for instance
+        return None
+    return f"./lab run {chapter} {scene.relative_to(ROOT)} {point.options}".rstrip()
+
+
+def reason(chapter, facts, sights, known, is_correct):
+    """What facts say: sentences of what is wrong, subjects that are right, mistakes of the catalogue that fit, and a command that shows
+    the first of the facts."""
+    told = sentences(facts) or ([] if is_correct else noise_sentences(facts, sights, known["experiments"]))
+    names = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
+    return {"facts": told, "right": right_ones(facts), "next": next_step(chapter, facts),
+            "wrong": [name for name, seen in facts.items() if not seen.is_right],
+            "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
+            "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
+            "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()}}
+
+
+def diagnose(chapter, file, settings, shader=None, is_correct=False):
+    """What experiments show of a shader, see reason(). Of one whose pictures are correct only those run that decide as well."""
+    known, started = {"experiments": {}} | read_json(knowledge_file(chapter)), time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        program, _ = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
+        facts, sights = observe(chapter, program, settings, known["experiments"], is_deciding if is_correct else is_called_for)
+    return reason(chapter, facts, sights, known, is_correct) | {"seconds": round(time.monotonic() - started, 1)}

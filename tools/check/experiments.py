@@ -1,0 +1,214 @@
+"""Small experiments that isolate one thing each: what a chapter uses of them stands in experiments.json in its folder.
+
+An experiment has points: tiny scenes of a few plates, lamps or pieces of glass that differ in one thing alone. The camera looks at one
+small spot, so that all pixels show the same and a picture is one number: its mean, with an error by the spread of the pixels. It
+is compared with what the chapter's own shader finds there, which knowledge.json has.
+"""
+import json
+import math
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from project import CHAPTERS, ROOT, course, read_json
+from references.images import read_rgb
+from report.measurement import new_case, run_case
+
+EXPERIMENTS = "experiments.json"  # in the chapters' folders
+SIZE = 32  # pixels in a row and a column
+CAMERA = {"from": [0.0, 1.2, 1.2], "to": [0.0, 0.0, 0.0], "fov": 3.0}
+BLOCKS = 16  # of pixels: their spread tells the error of a variance
+JOBS = 2
+
+
+@dataclass
+class Point:
+    """One scene of an experiment, and how it is rendered."""
+    scene: dict
+    at: str  # what distinguishes it, in words
+    x: float = None  # the same as a number, if it is one
+    options: str = ""
+    samples: int = 64
+    channel: int = None  # of the colours, or all together
+
+
+@dataclass
+class Experiment:
+    name: str
+    subject: str  # what light it shows
+    varies: str  # what distinguishes its points
+    points: list
+    quantity: dict = field(default_factory=dict)  # functions of x that a law may follow, in words
+    when: dict = field(default_factory=dict)  # name of another experiment -> whether it must have been right
+    decides: bool = False  # whether it runs for shaders, too, in whose pictures nothing is wrong
+
+
+@dataclass
+class Sight:
+    """What a shader shows at a point."""
+    mean: float
+    error: float  # standard error of the mean
+    noise: float  # variance of a single sample
+    noise_error: float
+    rays: float  # of a sample
+    typical: float  # the median of the pixels
+    invalid: int = 0  # samples that are infinite or not a number
+
+
+def merged(base, change):
+    """A dictionary with what `change` says otherwise, at any depth; None takes an entry away."""
+    result = dict(base)
+    for key, value in change.items():
+        result[key] = merged(result.get(key, {}), value) if isinstance(value, dict) else value
+    return {key: value for key, value in result.items() if value is not None}
+
+
+def experiment_files():
+    """Chapter -> its experiments.json, of chapters that have one."""
+    files = {chapter: ROOT / "chapters" / CHAPTERS[chapter] / EXPERIMENTS for chapter in course()}
+    return {chapter: read_json(file) for chapter, file in files.items() if file.exists()}
+
+
+def experiments_of(chapter):
+    """Name -> Experiment, of those that a chapter uses, in its order. An experiment is described in one chapter only."""
+    files = experiment_files()
+    if chapter not in files:
+        return {}
+    described = {name: says for file in files.values() for name, says in file.get("experiments", {}).items()}
+    return {name: experiment(name, described[name], files[chapter].get("samples", 64)) for name in files[chapter]["uses"]}
+
+
+def experiment(name, says, samples):
+    points = [Point(merged(says["scene"], point.get("scene", {})), point["at"], point.get("x"),
+                    " ".join(filter(None, [says.get("options"), point.get("options")])), point.get("samples", says.get("samples", samples)), point.get("channel"))
+              for point in says["points"]]
+    rest = {key: says[key] for key in ("quantity", "when", "decides") if key in says}
+    return Experiment(name, says["subject"], says.get("varies", ""), points, **rest)
+
+
+# ---------------------------------------------------------------------------------------------- scenes
+def basis(normal):
+    """Two unit vectors that with a normal make a right-handed frame."""
+    normal = np.array(normal, float) / np.linalg.norm(normal)
+    tangent = np.cross([0.0, 0.0, 1.0] if abs(normal[2]) < 0.9 else [1.0, 0.0, 0.0], normal)
+    tangent /= np.linalg.norm(tangent)
+    return tangent, np.cross(normal, tangent), normal
+
+
+def plate(says):
+    """The corners of a rectangle. Given by angles (polar, azimuth in degrees) and a distance, it faces the origin, or is turned."""
+    if "polar" in says:
+        polar, azimuth = math.radians(says["polar"]), math.radians(says.get("azimuth", 0.0))
+        away = np.array([math.sin(polar) * math.cos(azimuth), math.cos(polar), math.sin(polar) * math.sin(azimuth)])
+        side = np.cross(away, [0.0, 0.0, 1.0])
+        turn = math.radians(says.get("turned", 0.0))
+        centre, normal = says["distance"] * away, -away * math.cos(turn) + side * math.sin(turn)
+    else:
+        centre, normal = np.array(says["centre"], float), says["faces"]
+    width, height = np.broadcast_to(says["size"], 2)
+    tangent, other, _ = basis(normal)
+    return [[centre + x * width / 2 * tangent + y * height / 2 * other for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]]
+
+
+def box(says):
+    """The six faces of a box, turned about the z-axis by so many degrees."""
+    size, centre, angle = np.array(says["box"], float), np.array(says.get("centre", [0, 0, 0]), float), math.radians(says.get("turn", 0.0))
+    turn = np.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
+    faces = []
+    for axis in range(3):
+        for sign in (-1, 1):
+            normal = sign * np.eye(3)[axis]
+            tangent, other, _ = basis(normal)
+            faces.append([centre + turn @ (size / 2 * (normal + x * tangent + y * other)) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    return faces
+
+
+def ball(says, rows=8, columns=16):
+    """The faces of a ball that is seen from within."""
+    def corner(row, column):
+        theta, phi = math.pi * row / rows, 2 * math.pi * column / columns
+        return says["ball"] * np.array([math.sin(theta) * math.cos(phi), math.cos(theta), math.sin(theta) * math.sin(phi)])
+
+    faces = [[corner(r, c), corner(r, c + 1), corner(r + 1, c + 1), corner(r + 1, c)] for r in range(rows) for c in range(columns)]
+    faces = [[p for i, p in enumerate(face) if not np.allclose(p, face[i - 1])] for face in faces]
+    return [face[::-1] for face in faces]
+
+
+def faces_of(says):
+    if "corners" in says:
+        return [np.array(face, float) for face in says["corners"]]
+    return (ball if "ball" in says else box if "box" in says else plate)(says)
+
+
+def colour(value):
+    return " ".join(f"{number:.9g}" for number in np.broadcast_to(value, 3))
+
+
+def write_scene(scene, folder, name):
+    """Writes a scene and its mesh; returns the scene's file."""
+    vertices, faces, materials = [], [], []
+    for index, (key, says) in enumerate(scene.items()):
+        if key in ("camera", "background", "specular"):
+            continue
+        materials += [f"newmtl m{index}", f"Kd {colour(0 if 'glass' in says else says.get('albedo', 0))}", f"Ke {colour(says.get('emits', 0))}"]
+        if "glass" in says:
+            materials += ["d 0", f"Ni {says['glass']}", f"Tf {colour(says.get('clear', 1))}"]
+        if "glossy" in says:
+            materials += [f"Ks {colour(says['glossy'])}", f"Ns {says['exponent']}"]
+        faces.append(f"usemtl m{index}")
+        for face in faces_of(says):
+            faces.append("f " + " ".join(str(len(vertices) + i) for i in range(1, len(face) + 1)))
+            vertices += [f"v {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in face]
+    (folder / f"{name}.mtl").write_text("\n".join(materials) + "\n")
+    (folder / f"{name}.obj").write_text("\n".join([f"mtllib {name}.mtl", *vertices, *faces]) + "\n")
+    camera = CAMERA | scene.get("camera", {})
+    up = [0, 1, 0] if camera["from"][0] != camera["to"][0] or camera["from"][2] != camera["to"][2] else [0, 0, 1]
+    background = scene.get("background", 0)
+    if isinstance(background, dict):
+        background = background | {"light_probe": str(ROOT / "assets/light_probes" / background["light_probe"])}
+    file = folder / f"{name}.json"
+    file.write_text(json.dumps({
+        "description": "An experiment of ./lab check", "meshes": [{"file": f"{name}.obj"}], "specular": scene.get("specular", False),
+        "camera": {"position": camera["from"], "target": camera["to"], "up": up, "vertical_fov": camera["fov"]},
+        "background": background if isinstance(background, dict) else {"radiance": [background] * 3}}))
+    return file
+
+
+# ---------------------------------------------------------------------------------------------- measuring
+def look(image, report, samples, channel=None):
+    """What a picture shows of a shader. Where a few bright pixels decide the variance, its upper bound counts."""
+    pixels = (image.mean(axis=2) if channel is None else image[..., channel]).ravel()
+    variance = float(pixels.var(ddof=1))
+    spread = float(np.std([block.var(ddof=1) for block in np.array_split(pixels, BLOCKS)], ddof=1) / math.sqrt(BLOCKS))
+    return Sight(float(pixels.mean()), math.sqrt((variance + 2 * spread) / pixels.size), variance * samples, spread * samples,
+                 report["rows"][-1]["rays"] / samples / pixels.size, float(np.median(pixels)), report["invalid_samples"])
+
+
+def together(sights):
+    """What several pictures of a point show. Their spread counts where it is larger than that of the pixels: pixels may err together."""
+    def mean(key):
+        return float(np.mean([getattr(sight, key) for sight in sights]))
+
+    count = len(sights)
+    spread = float(np.std([sight.mean for sight in sights], ddof=1)) if count > 1 else 0.0
+    return Sight(mean("mean"), max(mean("error"), spread) / math.sqrt(count), mean("noise"), mean("noise_error") / math.sqrt(count),
+                 mean("rays"), mean("typical"), sum(sight.invalid for sight in sights))
+
+
+def measure(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
+    """What a program shows at each of some points: a list of Sight. `factor` times as many samples as they say, in each of
+    `repeats` pictures."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [write_scene(point.scene, Path(folder), f"point_{index}") for index, point in enumerate(points)]
+
+        def render(item):
+            index, turn = item
+            case = new_case(files[index], None, points[index].at, program, points[index].options.split()) | {"width": SIZE, "height": SIZE}
+            picture, samples = Path(folder) / f"{index}_{turn}.exr", points[index].samples * factor
+            report = run_case(case, settings, ["--samples", samples, "--seed", seed + index * repeats + turn, "--output", picture])
+            return look(read_rgb(picture), report, samples, points[index].channel)
+
+        work = [(index, turn) for index in range(len(points)) for turn in range(repeats)]
+        sights = list(pool.map(render, work)) if pool else [render(item) for item in work]
+        return [together(sights[i:i + repeats]) for i in range(0, len(sights), repeats)]
