@@ -145,7 +145,7 @@ def noise_sentences(facts, sights, expected):
     for kind, words in (("noise", "the variance of"), ("rays", "the rays of")):
         for name, seen in ratios_of(sights, expected)[kind].items():
             experiment = facts[name].experiment
-            much = [f"{point.at} {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if abs(value - 1) > 4 * error + 0.2]
+            much = [f"{point.at} {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if value - 1 > 4 * error + 0.2]
             if much:
                 told.append(f"{experiment.subject}: so many times {words} the chapter's own shader: {', '.join(much)}")
     return told
