@@ -145,6 +145,7 @@ void return_from_crash(int signal) {
 
 std::vector<std::string> missing_tools() {
     std::vector<std::string> missing;
+    if (std::getenv("LAB_WITHOUT_NATIVE")) missing.emplace_back("a permission: LAB_WITHOUT_NATIVE forbids it");
     if (find_compiler().empty()) missing.emplace_back("a C++ compiler (c++)");
     if (!fs::exists(header_folder() / "native/glsl.h")) missing.emplace_back("the lab's sources (common/)");
     if (!fs::exists(fs::path(LAB_GLM_FOLDER) / "glm/glm.hpp")) missing.emplace_back("the headers of GLM (libglm-dev)");

@@ -7,7 +7,8 @@
 
 namespace lab::native {
 
-// What this computer lacks for that, as --list-devices says it.
+// What this computer lacks for that, as --list-devices says it. With LAB_WITHOUT_NATIVE in the environment it lacks a permission:
+// shaders of strangers are not to become programs.
 std::vector<std::string> missing_tools();
 
 enum class Mode {

@@ -36,7 +36,6 @@ class NativeTree {
             &bytes_);
         scene_.reset(rtcNewScene(device_.get()));
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
         const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
         const size_t count = triangles_.size();
         const auto buffer = [&](RTCBufferType type, size_t elements) {

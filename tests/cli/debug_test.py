@@ -6,8 +6,10 @@ import shutil
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
+from check import command as check_command
 from debug import command
 from project import CHAPTERS
 
@@ -133,6 +135,16 @@ class NativeFailures_all(CopiedLab):
         self.assert_error(self.render(PATH=str(self.tree)), 2, "a C++ compiler", "these work on it", "compute")
         process = subprocess.run([self.program, "--list-devices"], capture_output=True, encoding="utf-8", env=os.environ | {"PATH": ""})
         self.assertRegex(process.stdout, r"native +lacks a C\+\+ compiler")
+
+    def test_submissions_stay_in_the_driver(self):
+        self.assert_error(self.render(LAB_WITHOUT_NATIVE="1"), 2, "LAB_WITHOUT_NATIVE")
+        for backend, wanted in (("auto", "1"), ("native", None)):
+            with (mock.patch.dict(os.environ), mock.patch.object(sys, "argv", ["check", "1", "--backend", backend]),
+                  mock.patch.object(check_command, "check", side_effect=SystemExit(0))):
+                os.environ.pop("LAB_WITHOUT_NATIVE", None)
+                with self.assertRaises(SystemExit):
+                    check_command.main()
+                self.assertEqual(os.environ.get("LAB_WITHOUT_NATIVE"), wanted)
 
     def test_a_compiler_that_fails(self):
         self.assert_error(self.render(**self.compiler("echo broken; exit 1\n")), 1, "does not compile", "broken", "--backend compute")

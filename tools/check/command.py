@@ -13,6 +13,7 @@ and a page with pictures, and goes on where it was interrupted. For autograders 
 Exit code: 0 correct, 1 biased, noisy or expensive, 2 cannot be graded; of --all: 0, or 2 where some cannot be.
 """
 import json
+import os
 import sys
 import tempfile
 import traceback
@@ -128,6 +129,8 @@ def main():
     try:
         options = parse()
         refuse(options)
+        if options.backend != "native":  # a submission's shader stays in the driver, unless asked for
+            os.environ["LAB_WITHOUT_NATIVE"] = "1"
         file = options.file or own_file(options.chapter)
         options.chapter = original(options.chapter)
         if options.folder:
