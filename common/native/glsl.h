@@ -240,11 +240,12 @@ struct Builtins {
         return glm::name(x...);                 \
     }
     LAB_FLOATS(radians)
-    LAB_FLOATS(degrees) LAB_FLOATS(sin) LAB_FLOATS(cos) LAB_FLOATS(tan) LAB_FLOATS(asin) LAB_FLOATS(acos) LAB_FLOATS(atan)
-        LAB_FLOATS(sinh) LAB_FLOATS(cosh) LAB_FLOATS(tanh) LAB_FLOATS(asinh) LAB_FLOATS(acosh) LAB_FLOATS(atanh) LAB_FLOATS(pow)
-            LAB_FLOATS(exp) LAB_FLOATS(log) LAB_FLOATS(exp2) LAB_FLOATS(log2) LAB_FLOATS(sqrt) LAB_FLOATS(inversesqrt)
-                LAB_FLOATS(floor) LAB_FLOATS(trunc) LAB_FLOATS(round) LAB_FLOATS(roundEven) LAB_FLOATS(ceil) LAB_FLOATS(fract)
-                    LAB_FLOATS(mod) LAB_FLOATS(step) LAB_FLOATS(smoothstep) LAB_FLOATS(isnan) LAB_FLOATS(isinf) LAB_FLOATS(length)
+    LAB_FLOATS(degrees)
+    LAB_FLOATS(sin) LAB_FLOATS(cos) LAB_FLOATS(tan) LAB_FLOATS(asin) LAB_FLOATS(acos) LAB_FLOATS(atan) LAB_FLOATS(sinh)
+        LAB_FLOATS(cosh) LAB_FLOATS(tanh) LAB_FLOATS(asinh) LAB_FLOATS(acosh) LAB_FLOATS(atanh) LAB_FLOATS(pow) LAB_FLOATS(exp)
+            LAB_FLOATS(log) LAB_FLOATS(exp2) LAB_FLOATS(log2) LAB_FLOATS(sqrt) LAB_FLOATS(inversesqrt) LAB_FLOATS(floor)
+                LAB_FLOATS(trunc) LAB_FLOATS(round) LAB_FLOATS(roundEven) LAB_FLOATS(ceil) LAB_FLOATS(fract) LAB_FLOATS(mod)
+                    LAB_FLOATS(step) LAB_FLOATS(smoothstep) LAB_FLOATS(isnan) LAB_FLOATS(isinf) LAB_FLOATS(length)
                         LAB_FLOATS(distance) LAB_FLOATS(dot) LAB_FLOATS(cross) LAB_FLOATS(normalize) LAB_FLOATS(faceforward)
                             LAB_FLOATS(reflect) LAB_FLOATS(refract) LAB_SAME(matrixCompMult) LAB_SAME(outerProduct)
                                 LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse) LAB_NUMBERS(abs) LAB_NUMBERS(sign)

@@ -60,14 +60,13 @@ fs::path find_compiler() {
 fs::path header_folder() { return project_folder() / "common"; }
 
 std::vector<std::string> compiler_arguments() {
-    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-fvisibility=hidden", "-g",
+    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-fvisibility=hidden",          "-g",
                                        "-fno-finite-loops", "-ffp-contract=off", "-w",    "-I" + header_folder().string()};
     if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
     if (mode == Mode::fast)
         arguments.insert(arguments.end(), {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG"});
     if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-DNDEBUG"});
-    if (mode == Mode::checked)
-        arguments.insert(arguments.end(), {"-O1", "-DLAB_CHECKED", "-fsanitize=undefined"});
+    if (mode == Mode::checked) arguments.insert(arguments.end(), {"-O1", "-DLAB_CHECKED", "-fsanitize=undefined"});
     return arguments;
 }
 

@@ -183,8 +183,7 @@ class NativeBackend : public AccelerationStructure {
         bound.ranges[BINDING_TEXTURES] = range_of(std::span<const native::Texture>(textures_));
         bound.ranges[BINDING_LIGHT_PROBE] = range_of(std::span<const native::Texture>(&probe_, 1));
         tree_.bind(bound);
-        return std::make_unique<NativeTracer>(native::load(preprocess_shader(shaders(estimator).front())),
-                                              bound);
+        return std::make_unique<NativeTracer>(native::load(preprocess_shader(shaders(estimator).front())), bound);
     }
 
     bool is_on_host() const override { return true; }
