@@ -6,6 +6,7 @@ import sys
 
 from program import PROJECT, TOOLS, ProgramTest  # first: it finds the tools
 from docs.bug_blocks import GALLERY
+from docs.result_plots import PLOTS
 
 # The command with its renders in a folder of the test's own, and with one small figure of two renders.
 COMMAND = """import sys
@@ -57,7 +58,7 @@ class Figures_all(ProgramTest):
     def test_makes_all_pictures_of_the_pages(self):
         made = "".join(file.read_text(encoding="utf-8") for file in [TOOLS / "docs/figure_plots.py", TOOLS / "docs/figures.py",
                                                                      *PROJECT.glob("chapters/*/measure.json")])
-        names = {path.name for path in (PROJECT / "chapters").iterdir()} | {f"bugs_{name}" for name in GALLERY}
+        names = {path.name for path in (PROJECT / "chapters").iterdir()} | {f"bugs_{name}" for name in GALLERY} | set(PLOTS)
         pictures = list((PROJECT / "docs/pictures").iterdir())
         for picture in pictures:
             # Of a series the code has the name without its numbers.
