@@ -14,7 +14,7 @@ from book import readability
 from browser import CHROMIUM, Browser
 from project import CHAPTERS
 
-STILL_LONG = {"low_discrepancy_points", "microfacets"}  # pages to be shortened yet
+STILL_LONG = {"low_discrepancy_points"}  # a page to be shortened yet
 NARROW = 400  # pixels, as wide as a telephone
 # Of a page: the names that links may lead to, where its own links lead, pictures that are missing, formulas that are not typeset, and
 # what is wider than the screen and cannot be scrolled by itself.
