@@ -44,11 +44,7 @@ void main() {
     results[i].brdf = get_brdf(s, inputs[i].in_direction);
     results[i].density = get_bsdf_density(s, inputs[i].in_direction);
     results[i].carries_light = is_above_surface(s, inputs[i].in_direction) ? 1u : 0u;
-#ifdef ONE_PIXEL
-    uvec2 seed = random_start_state(0u, i, key);
-#else
     uvec2 seed = random_start_state(i, 0u, key);
-#endif
     BsdfSample bounce = sample_bsdf(s, seed);
     results[i].sampled_direction = bounce.direction;
     results[i].sampled_weight = bounce.weight;
