@@ -83,9 +83,9 @@ SHARED_CONSTANT MICROFACET_ALBEDO_COUNT = 64u;
 
 // The microfacets of a material, see common/scene/microfacets.h.
 struct Microfacets {
-    float roughness;   // α = Pr² of the GGX distribution; 0 for a material without microfacets
-    float metalness;   // Pm
-    float coat_index;  // refractive index of the coat on an opaque material
+    float roughness;                       // α = Pr² of the GGX distribution; 0 for a material without microfacets
+    float metalness;                       // Pm
+    float coat_index;                      // refractive index of the coat on an opaque material
     vec2 albedo[MICROFACET_ALBEDO_COUNT];  // the part of light that one bounce reflects: of the coat, and with F = 1
     vec2 mean_albedo;                      // the same of light that comes evenly from all around
 };
