@@ -37,9 +37,8 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     // Before the scene takes time and memory.
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
-        build.gpu_scene =
-            std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options), chapter.light_probe_sampling,
-                                       chapter.microfacets);
+        build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options),
+                                                     chapter.light_probe_sampling, chapter.microfacets);
         build.backend = choose_backend(wanted, device, *build.gpu_scene);
         build.acceleration_structure = build_acceleration_structure(build.backend, device, *build.gpu_scene);
     } else {

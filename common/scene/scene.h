@@ -65,8 +65,8 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Microfacets> microfacets;  // per material; empty if none has any
     bool multiple_scattering = false;      // light that microfacets reflect several times is added
-    std::vector<uvec2> double_sided;  // pairs of opaque triangles in one place that face opposite ways; the second has the
-                                      // corners of the first in reverse, starting from the same one
+    std::vector<uvec2> double_sided;       // pairs of opaque triangles in one place that face opposite ways; the second has the
+                                           // corners of the first in reverse, starting from the same one
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<uint32_t> instance_meshes;  // per instance

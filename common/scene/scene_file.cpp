@@ -72,9 +72,9 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     const std::string name = file.string();
     const std::filesystem::path folder = file.parent_path();
     const nlohmann::json content = parse_json(name, files.read(file, max_json_bytes));
-    const JsonObject root(
-        content, name, "the scene",
-        {"description", "meshes", "camera", "background", "specular", "multiple_scattering", "width", "height", "samples", "max_path_length"});
+    const JsonObject root(content, name, "the scene",
+                          {"description", "meshes", "camera", "background", "specular", "multiple_scattering", "width", "height",
+                           "samples", "max_path_length"});
     SceneDescription result;
     result.scene.description = root.text("description").value_or("");
     for (const nlohmann::json& entry : root.array("meshes"))
