@@ -85,12 +85,6 @@ namespace {
 
 constexpr double word_count = 4294967296.0;  // 2^32
 
-// How many of the 2^32 words choose entry i of n: floor(word * n / 2^32) == i.
-double words_of_entry(uint64_t i, uint64_t n) {
-    const auto first_word = [n](uint64_t entry) { return ((entry << 32) + n - 1) / n; };
-    return static_cast<double>(first_word(i + 1) - first_word(i));
-}
-
 }  // namespace
 
 AliasTable build_alias_table(std::span<const double> weights) {
@@ -125,13 +119,13 @@ AliasTable build_alias_table(std::span<const double> weights) {
     }
     for (const uint32_t item : large) table.entries[item] = {0, item};
 
+    // Counted in words, which is exact.
     table.probabilities.resize(count);
-    for (uint32_t i = 0; i < count; ++i) {
-        const double entry_probability = words_of_entry(i, count) / word_count;
-        const double kept = table.entries[i].threshold / word_count;
-        table.probabilities[i] += entry_probability * kept;
-        table.probabilities[table.entries[i].alias] += entry_probability * (1 - kept);
+    for (size_t i = 0; i < count; ++i) {
+        table.probabilities[i] += table.entries[i].threshold;
+        table.probabilities[table.entries[i].alias] += word_count - table.entries[i].threshold;
     }
+    for (double& probability : table.probabilities) probability /= word_count * static_cast<double>(count);
     return table;
 }
 

@@ -23,7 +23,7 @@ const bool HAS_LIGHT_TRIANGLES = true;
 // alias table.
 LightTriangle choose_light_triangle(inout uvec2 seed) {
     uvec2 words = get_random_words(seed);
-    uint index = get_random_index(uint(light_triangles.length()), words.x);
+    uint digits, index = get_random_index(uint(light_triangles.length()), words, digits);
     if (words.y >= light_triangles[index].threshold) index = light_triangles[index].alias;
     return light_triangles[index];
 }

@@ -31,16 +31,9 @@ vec2 to_numbers(uvec2 words) { return vec2(words >> 8u) * (1.0 / 16777216.0); }
 // Two independent numbers, uniform in [0,1).
 vec2 get_random_numbers(inout uvec2 seed) { return to_numbers(get_random_words(seed)); }
 
-// A uniform index below `count` from a random word. 24 bits would give a million entries unequal probabilities.
-uint get_random_index(uint count, uint word) {
-    uint index, unused;
-    umulExtended(word, count, index, unused);
-    return index;
-}
-
-// The same from 64 digits: those of words.x, extended by a hash of both words. With 32 digits, a table of 2^23 entries would
-// leave each entry only 9. `digits` returns the 32 bits that choosing the index leaves unused. The probabilities of
-// entries deviate from those of the table by a relative error of at most 2^-32 count, and not at all for 2^k entries.
+// A uniform index below `count` from 64 digits: those of words.x, extended by a hash of both words. Of 32 digits, some
+// entries of a large table would have more than others: of 10^7 entries 430, and others 429. `digits` returns the 32 bits
+// that choosing the index leaves unused.
 uint get_random_index(uint count, uvec2 words, out uint digits) {
     uint index, first, more, unused, carry;
     umulExtended(words.x, count, index, first);

@@ -68,9 +68,16 @@ std::vector<double> unequal_weights(size_t count) {
     return weights;
 }
 
+// The entry that 64 digits choose: the words' first one, and a hash of both.
+uint32_t entry_of(const RandomState& words, uint64_t count) {
+    const uint64_t further = uint64_t{next_state(words)[0]} * count >> 32;
+    return static_cast<uint32_t>((uint64_t{words[0]} * count + further) >> 32);
+}
+
 TEST(LightChoice, FollowsTheTableWordByWord) {
     // Where the words change the choice: at the first and last word of an entry, at its threshold and just
-    // below.
+    // below. Of the last word, further digits decide whether the next entry is chosen.
+    size_t carried = 0;
     for (const size_t n : {size_t{1}, size_t{7}, size_t{4000}, size_t{100'000}}) {
         const auto lights = make_table(unequal_weights(n));
         std::vector<RandomState> states;
@@ -80,13 +87,17 @@ TEST(LightChoice, FollowsTheTableWordByWord) {
             const uint32_t threshold = lights[i].threshold;
             for (const uint64_t word : {first, last})
                 for (const uint32_t coin : {0u, threshold - 1, threshold, 0xffffffffu}) {
-                    states.push_back(previous_state({static_cast<uint32_t>(word), coin}));
-                    expected.push_back(coin < threshold ? static_cast<uint32_t>(i) : lights[i].alias);
+                    const RandomState words{static_cast<uint32_t>(word), coin};
+                    const uint32_t entry = entry_of(words, n);
+                    carried += entry != i;
+                    states.push_back(previous_state(words));
+                    expected.push_back(coin < lights[entry].threshold ? entry : lights[entry].alias);
                 }
         }
         const auto chosen = choose(lights, states, states.size(), 0);
         for (size_t i = 0; i < states.size(); ++i) ASSERT_EQ(chosen[i].triangle, expected[i]) << n << " lights, state " << i;
     }
+    EXPECT_GT(carried, 0u);
 }
 
 TEST(LightChoice, HasTheProbabilitiesOfTheWeights) {
