@@ -26,8 +26,8 @@ struct LightTable {
 LightTable build_light_table(const Scene& scene, double probability = 1);
 
 // Walker's alias table, built by Vose's method (IEEE Transactions on Software Engineering 17(9), 1991) in double, chooses one of
-// n items in constant time. An entry i is chosen by 64 random digits, so that all are equally probable; the item is i if 32 further
-// digits are below its threshold, else its alias.
+// n items in constant time. An entry i is chosen by 64 random digits, so that all are equally probable; the item is i if 32
+// further digits are below its threshold, else its alias.
 struct AliasTable {
     struct Entry {
         uint32_t threshold = 0;
