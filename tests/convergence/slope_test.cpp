@@ -209,15 +209,5 @@ TEST(LowDiscrepancyConvergence, ErrorBarsHoldAtAnyNumberOfSamples) {
                               {64, 64, std::vector<float>(3 * 64 * 64, 1.0f)});
 }
 
-TEST(LowDiscrepancyConvergence, ErrorBarsOfWholePicturesHold_all) {
-    RenderSettings settings{.width = 32, .height = 32, .max_path_length = 3, .roulette_start = 2};
-    settings.estimator = chapter_estimator(chapter_named("low_discrepancy_points"));
-    const Scene scene = load_shipped_scene("cornell_box.json");
-    RenderSettings many = settings;
-    many.samples = 1 << 15;
-    many.seed = test_seed(9400);
-    expect_error_bars_to_hold(scene, settings, 40, render(scene, many).mean());
-}
-
 }  // namespace
 }  // namespace lab
