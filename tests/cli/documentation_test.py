@@ -72,6 +72,8 @@ def small_render(words, page):
     number, *arguments = words
     # A reference has a size of its own.
     small = {name: value for name, value in SMALL_RENDER.items() if name not in SIZE or "--reference" not in arguments}
+    if "--sanitize" in arguments:
+        small.pop("--backend")  # it has one of its own
     kept, words = [], iter(arguments)
     for word in words:
         if word in small:
