@@ -27,8 +27,8 @@ std::vector<std::filesystem::path> shader_files(const ShaderSource& source);
 // Returns SPIR-V 1.5, from the cache if possible. Throws UserError with lines "file:line: message".
 std::vector<uint32_t> compile_shader(const ShaderSource& source);
 
-// The shader's text with includes and macros replaced and without comments. Lines keep their numbers, by #line directives. Throws as
-// compile_shader() for errors of the preprocessor.
+// The shader's text with includes and macros replaced and without comments. Lines keep their numbers, by #line directives. Throws
+// as compile_shader() for errors of the preprocessor.
 std::string preprocess_shader(const ShaderSource& source);
 
 }  // namespace lab

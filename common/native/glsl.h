@@ -239,36 +239,31 @@ struct Builtins {
     static constexpr auto name(const T&... x) { \
         return glm::name(x...);                 \
     }
-    LAB_FLOATS(radians)
-    LAB_FLOATS(degrees)
-    LAB_FLOATS(sin) LAB_FLOATS(cos) LAB_FLOATS(tan) LAB_FLOATS(asin) LAB_FLOATS(acos) LAB_FLOATS(atan) LAB_FLOATS(sinh)
-        LAB_FLOATS(cosh) LAB_FLOATS(tanh) LAB_FLOATS(asinh) LAB_FLOATS(acosh) LAB_FLOATS(atanh) LAB_FLOATS(pow) LAB_FLOATS(exp)
-            LAB_FLOATS(log) LAB_FLOATS(exp2) LAB_FLOATS(log2) LAB_FLOATS(sqrt) LAB_FLOATS(inversesqrt) LAB_FLOATS(floor)
-                LAB_FLOATS(trunc) LAB_FLOATS(round) LAB_FLOATS(roundEven) LAB_FLOATS(ceil) LAB_FLOATS(fract) LAB_FLOATS(mod)
-                    LAB_FLOATS(step) LAB_FLOATS(smoothstep) LAB_FLOATS(isnan) LAB_FLOATS(isinf) LAB_FLOATS(length)
-                        LAB_FLOATS(distance) LAB_FLOATS(dot) LAB_FLOATS(cross) LAB_FLOATS(normalize) LAB_FLOATS(faceforward)
-                            LAB_FLOATS(reflect) LAB_FLOATS(refract) LAB_SAME(matrixCompMult) LAB_SAME(outerProduct)
-                                LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse) LAB_NUMBERS(abs) LAB_NUMBERS(sign)
-                                    LAB_NUMBERS(min) LAB_NUMBERS(max) LAB_NUMBERS(clamp) LAB_NUMBERS(lessThan)
-                                        LAB_NUMBERS(lessThanEqual) LAB_NUMBERS(greaterThan) LAB_NUMBERS(greaterThanEqual)
-                                            LAB_NUMBERS(equal) LAB_NUMBERS(notEqual) LAB_SAME(any) LAB_SAME(all) LAB_SAME(not_)
-                                                LAB_SAME(bitfieldReverse) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(findMSB)
-                                                    LAB_SAME(bitfieldExtract) LAB_SAME(bitfieldInsert) LAB_SAME(packHalf2x16)
-                                                        LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
-                                                            LAB_SAME(packUnorm2x16) LAB_SAME(unpackUnorm2x16)
-                                                                LAB_SAME(packSnorm4x8) LAB_SAME(unpackSnorm4x8) LAB_SAME(ldexp)
+    // clang-format off
+    LAB_FLOATS(radians) LAB_FLOATS(degrees) LAB_FLOATS(sin) LAB_FLOATS(cos) LAB_FLOATS(tan) LAB_FLOATS(asin) LAB_FLOATS(acos)
+    LAB_FLOATS(atan) LAB_FLOATS(sinh) LAB_FLOATS(cosh) LAB_FLOATS(tanh) LAB_FLOATS(asinh) LAB_FLOATS(acosh) LAB_FLOATS(atanh)
+    LAB_FLOATS(pow) LAB_FLOATS(exp) LAB_FLOATS(log) LAB_FLOATS(exp2) LAB_FLOATS(log2) LAB_FLOATS(sqrt) LAB_FLOATS(inversesqrt)
+    LAB_FLOATS(floor) LAB_FLOATS(trunc) LAB_FLOATS(round) LAB_FLOATS(roundEven) LAB_FLOATS(ceil) LAB_FLOATS(fract) LAB_FLOATS(mod)
+    LAB_FLOATS(step) LAB_FLOATS(smoothstep) LAB_FLOATS(isnan) LAB_FLOATS(isinf) LAB_FLOATS(length) LAB_FLOATS(distance)
+    LAB_FLOATS(dot) LAB_FLOATS(cross) LAB_FLOATS(normalize) LAB_FLOATS(faceforward) LAB_FLOATS(reflect) LAB_FLOATS(refract)
+    LAB_SAME(matrixCompMult) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse) LAB_NUMBERS(abs)
+    LAB_NUMBERS(sign) LAB_NUMBERS(min) LAB_NUMBERS(max) LAB_NUMBERS(clamp) LAB_NUMBERS(lessThan) LAB_NUMBERS(lessThanEqual)
+    LAB_NUMBERS(greaterThan) LAB_NUMBERS(greaterThanEqual) LAB_NUMBERS(equal) LAB_NUMBERS(notEqual) LAB_SAME(any) LAB_SAME(all)
+    LAB_SAME(not_) LAB_SAME(bitfieldReverse) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(findMSB) LAB_SAME(bitfieldExtract)
+    LAB_SAME(bitfieldInsert) LAB_SAME(packHalf2x16) LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
+    LAB_SAME(packUnorm2x16) LAB_SAME(unpackUnorm2x16) LAB_SAME(packSnorm4x8) LAB_SAME(unpackSnorm4x8) LAB_SAME(ldexp)
 #undef LAB_FLOATS
 #undef LAB_NUMBERS
 #undef LAB_SAME
 
-                                                                    template <typename A, typename B, typename Weight>
-                                                                    static constexpr auto mix(const A& a, const B& b,
-                                                                                              const Weight& weight) {
+    template <typename A, typename B, typename Weight>
+    static constexpr auto mix(const A& a, const B& b, const Weight& weight) {
         if constexpr (std::is_same_v<Component<Weight>, bool>)
             return glm::mix(as<Common<A, B>>(a), as<Common<A, B>>(b), weight);
         else
             return glm::mix(as<CommonFloat<A, B>>(a), as<CommonFloat<A, B>>(b), as<CommonFloat<A, B>>(weight));
     }
+    // clang-format on
     template <typename A, typename B, typename C>
     static auto fma(const A& a, const B& b, const C& c) {  // GLM's rounds twice
         return each([](auto x, auto y, auto z) { return std::fma(x, y, z); }, a, b, c);
