@@ -154,7 +154,7 @@ class Devices(ProgramTest):
 
     def test_an_image_too_large_for_the_device_is_refused(self):
         arguments = ["quad.json", "--width=16384", "--height=16384", "--samples=1"]
-        self.assert_refused(arguments, "8192 MiB", r"it (allows|has) \d+ MiB", "smaller", code=3)
+        self.assert_refused(arguments, "11264 MiB", r"it (allows|has) \d+ MiB", "smaller", code=3)
 
 
 class MergeArguments(ProgramTest):

@@ -17,13 +17,8 @@ SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.j
 SECTIONS = {  # of the navigation; pages that do not exist are left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
-<<<<<<< HEAD
-    "Explore": ["docs/window.md", "docs/scenes.md"],
-    "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/extending.md", "docs/numerics.md", "docs/cluster.md", "CHANGELOG.md"],
-=======
     "Explore": ["docs/window.md", "docs/debugging.md", "docs/scenes.md"],
-    "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/numerics.md", "docs/cluster.md"],
->>>>>>> e64cd3f (native: pages, rooms, and submissions that stay in the driver; a command that measures its speed)
+    "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/extending.md", "docs/numerics.md", "docs/cluster.md", "CHANGELOG.md"],
     "Results": ["docs/results.md", *(f"docs/results/{path.name}" for path in sorted((ROOT / "docs/results").glob("*.md"))), "docs/measuring.md"],
     "For teachers": ["docs/teaching.md", "docs/grading/README.md", "docs/installing.md"],
 }

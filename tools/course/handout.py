@@ -18,7 +18,7 @@ HERE = Path(__file__).parent
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # What only teachers need: it holds or names solutions, or makes what belongs to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/extending.md", "docs/results/check.md", "docs/numerics.md", "docs/measuring.md", "docs/bugs*", "docs/pictures/bug*",
+TEACHERS = ["docs/teaching.md", "docs/debugging.md", "docs/extending.md", "docs/results/check.md", "docs/numerics.md", "docs/measuring.md", "docs/bugs*", "docs/pictures/bug*",
             "docs/records/check", "docs/grading", "chapters/*/exercise.json", "chapters/*/mistakes.json",
             "chapters/*/tests.json", "chapters/*/solutions", "chapters/*/variants", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check

@@ -12,7 +12,7 @@ TABLE_ROW = re.compile(r"^\| `([\w/]+)/` \|", re.MULTILINE)
 INCLUDE = re.compile(r'^ *#include "([^"]+)"', re.MULTILINE)
 IMPORT = re.compile(r"^ *(?:from|import) (\w+)", re.MULTILINE)
 SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
-WIDTH, CELL, LEFT = 640, 17, 190  # in pixels; names are left of the cells
+WIDTH, CELL, LEFT = 640, 16, 190  # in pixels; names are left of the cells
 COLOURS = {"common": "#2f7de1", "shaders": "#2c8f4e", "chapters": "#b86e00", "tools": "#9b62d6"}
 GREY = "#787d83"
 
