@@ -51,7 +51,9 @@ bool fits_compute(const Device& device, const Scene& scene) try {
 }
 
 Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {
+    // `native` is for whoever asks for it: it compiles each changed shader for a second, and a crash in a shader is the program's.
     const auto is_usable = [&](Backend backend) {
+        if (backend == Backend::native) return false;
         return device.description().supports(backend) && (backend != Backend::compute || fits_compute(device, *job.scene));
     };
     const std::string entry = cache_name(device, scene);
