@@ -51,7 +51,7 @@ bool fits_compute(const Device& device, const Scene& scene) try {
 }
 
 Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {
-    // `native` is for whoever asks for it: it compiles each changed shader for a second, and a crash in a shader is the program's.
+    // `native` is for those who ask for it: it compiles each changed shader, and a crash in a shader is one of the program.
     const auto is_usable = [&](Backend backend) {
         if (backend == Backend::native) return false;
         return device.description().supports(backend) && (backend != Backend::compute || fits_compute(device, *job.scene));
