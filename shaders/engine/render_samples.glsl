@@ -35,16 +35,17 @@ Ray start_sample(uvec2 position, uint index, out uvec2 seed) {
     return get_camera_ray(image_position);
 }
 
-// The pixel of this thread. Where several threads share it, they store their samples, and add_samples.comp adds them in the
-// order of their indices.
-FilmPixel film_pixel;
+// The pixel of this thread stays in memory: kept in registers, its eleven numbers would be saved around every call that
+// traces a ray. Where several threads share it, they store their samples, and add_samples.comp adds them in the order of
+// their indices.
+uint film_index;
 uint sample_place, sample_stride;
 void finish_sample(vec3 radiance) {
 #ifdef SHARED_PIXELS
     samples[sample_place] = radiance;
     sample_place += sample_stride;
 #else
-    add_sample(film_pixel, radiance);
+    add_sample(film[film_index], radiance);
 #endif
 }
 
@@ -63,18 +64,17 @@ void render_pixel(uint invocation) {
     if (position != ONLY_PIXEL) return;
 #endif
     uint pixel_index = position.y * parameters.image_size.x + position.x;
-    uint film_index = pixel_index - dispatch.first_film_pixel;
+    film_index = pixel_index - dispatch.first_film_pixel;
 
     // L := 1/N sum of path_trace(x_0, ω_0, 0) over N samples. The film is divided by N when it is read.
-    film_pixel = film[film_index];
+    uint first = film[film_index].sample_count;
 #ifdef SHARED_PIXELS
     uint turn = group % dispatch.threads_per_pixel;
     sample_place = (block * dispatch.samples_per_pixel + turn) * BLOCK_SIZE + index;
     sample_stride = dispatch.threads_per_pixel * BLOCK_SIZE;
-    render_samples(position, film_pixel.sample_count + turn, dispatch.target_samples, dispatch.threads_per_pixel);
+    render_samples(position, first + turn, dispatch.target_samples, dispatch.threads_per_pixel);
 #else
-    render_samples(position, film_pixel.sample_count, dispatch.target_samples, 1u);
-    film[film_index] = film_pixel;
+    render_samples(position, first, dispatch.target_samples, 1u);
 #endif
     atomicAdd(ray_counters[pixel_index % RAY_COUNTER_COUNT], ray_count);
 }
