@@ -63,6 +63,9 @@ struct Bvh {
     LargeArray<BvhTriangle> triangles;  // in the order of the leaves
     uint32_t max_stack_entries = 1;     // of a traversal that pushes all but the nearest child, with a sentinel
     double build_seconds = 0;
+
+    // What shaders are compiled with: a multiple of 16, so that most scenes share them.
+    uint32_t stack_size() const { return (max_stack_entries + 15) / 16 * 16; }
 };
 
 // Triangles of all instances. Throws UserError for more than references to leaves can count: 2^28 - 1.

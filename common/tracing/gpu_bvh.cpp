@@ -38,7 +38,7 @@ GpuBvh::GpuBvh(const Device& device, const Bvh& bvh)
     : usage_(usage_for(device, std::max(bytes_of(bvh.nodes), bytes_of(bvh.triangles)))),
       nodes_(device, bvh.nodes, usage_),
       triangles_(device, bvh.triangles, usage_),
-      max_stack_entries_(bvh.max_stack_entries),
+      stack_size_(bvh.stack_size()),
       build_seconds_(bvh.build_seconds) {}
 
 std::vector<Binding> GpuBvh::bindings() const {
@@ -50,7 +50,7 @@ std::vector<Binding> GpuBvh::bindings() const {
 }
 
 std::vector<std::string> GpuBvh::defines() const {
-    std::vector<std::string> defines{"BVH_STACK_SIZE " + std::to_string(max_stack_entries_)};
+    std::vector<std::string> defines{"BVH_STACK_SIZE " + std::to_string(stack_size_)};
     if (usage_ == Usage::eStorageBuffer) defines.emplace_back("BVH_IN_STORAGE_BUFFERS");
     return defines;
 }

@@ -32,7 +32,7 @@ class GpuBvh {
     vk::BufferUsageFlagBits usage_;
     Texels nodes_;
     Texels triangles_;
-    uint32_t max_stack_entries_;
+    uint32_t stack_size_;
     double build_seconds_;
 };
 

@@ -120,7 +120,7 @@ class NativeTree {
     explicit NativeTree(const Scene& scene) : bvh_(build_bvh(world_triangles(scene))) {}
 
     std::vector<std::string> defines() const {
-        return {"BVH_STACK_SIZE " + std::to_string(bvh_.max_stack_entries), "BVH_IN_STORAGE_BUFFERS"};
+        return {"BVH_STACK_SIZE " + std::to_string(bvh_.stack_size()), "BVH_IN_STORAGE_BUFFERS"};
     }
     void bind(native::Bindings& bindings) const {
         bindings.ranges[BINDING_BVH_NODES] = range_of(std::span<const BvhNode>(bvh_.nodes));
