@@ -2,12 +2,14 @@
 
 import json
 import re
+import tempfile
 import unittest
+from pathlib import Path
 
 from program import PROJECT  # first: it finds the tools
 import learn
 from check.diagnosis import names_of, right_ones, sentences
-from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged
+from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
 from check.facts import fact
 from check.grading import MOST_RUNS, RUNS, SEED_STEP, first_seed
 from docs.confusion_table import rates
@@ -137,6 +139,19 @@ class ExperimentsTest(unittest.TestCase):
             for face in faces_of(shape):
                 middle = [sum(corner[i] for corner in face) / len(face) for i in range(3)]
                 self.assertGreater(sign * sum(c * n for c, n in zip(middle, normal(face))), 0, shape)
+
+
+    def test_materials_are_rough_and_scenes_have_keys_only_where_they_say_so(self):
+        plate = {"centre": [0, 0, 0], "faces": [0, 1, 0], "size": 1}
+        said = {"plate": plate | {"rough": 0.4, "metal": 1}, "pane": plate | {"glass": 1.5, "rough": 0.2}, "multiple_scattering": True}
+        with tempfile.TemporaryDirectory() as folder:
+            keys, materials = [], []
+            for name, scene in (("rough", said), ("smooth", {"plate": plate})):
+                keys.append(set(json.loads(write_scene(scene, Path(folder), name).read_text(encoding="utf-8"))))
+                materials.append((Path(folder) / f"{name}.mtl").read_text(encoding="utf-8"))
+        self.assertEqual(keys[0] - keys[1], {"multiple_scattering"})
+        self.assertEqual(re.findall(r"P[mr] .*", materials[0]), ["Pr 0.4", "Pm 1", "Pr 0.2", "Pm 0"])
+        self.assertNotRegex(materials[1], r"P[mr]|Ks")
 
 
 class KnowledgeTest(unittest.TestCase):

@@ -16,6 +16,7 @@ from references.images import read_rgb
 from report.measurement import new_case, run_case
 
 EXPERIMENTS = "experiments.json"  # in the chapters' folders
+OF_THE_SCENE = ("specular", "multiple_scattering")  # keys of a scene's file that an experiment may have, too
 SIZE = 32  # pixels in a row and a column
 CAMERA = {"from": [0.0, 1.2, 1.2], "to": [0.0, 0.0, 0.0], "fov": 3.0}
 BLOCKS = 16  # of pixels: their spread tells the error of a variance
@@ -149,13 +150,15 @@ def write_scene(scene, folder, name):
     """Writes a scene and its mesh; returns the scene's file."""
     vertices, faces, materials = [], [], []
     for index, (key, says) in enumerate(scene.items()):
-        if key in ("camera", "background", "specular"):
+        if key in ("camera", "background", *OF_THE_SCENE):
             continue
         materials += [f"newmtl m{index}", f"Kd {colour(0 if 'glass' in says else says.get('albedo', 0))}", f"Ke {colour(says.get('emits', 0))}"]
         if "glass" in says:
             materials += ["d 0", f"Ni {says['glass']}", f"Tf {colour(says.get('clear', 1))}"]
         if "glossy" in says:
             materials += [f"Ks {colour(says['glossy'])}", f"Ns {says['exponent']}"]
+        if "rough" in says:
+            materials += [f"Pr {says['rough']}", f"Pm {says.get('metal', 0)}"]
         faces.append(f"usemtl m{index}")
         for face in faces_of(says):
             faces.append("f " + " ".join(str(len(vertices) + i) for i in range(1, len(face) + 1)))
@@ -169,7 +172,8 @@ def write_scene(scene, folder, name):
         background = background | {"light_probe": str(ROOT / "assets/light_probes" / background["light_probe"])}
     file = folder / f"{name}.json"
     file.write_text(json.dumps({
-        "description": "An experiment of ./lab check", "meshes": [{"file": f"{name}.obj"}], "specular": scene.get("specular", False),
+        "description": "An experiment of ./lab check", "meshes": [{"file": f"{name}.obj"}],
+        **{key: scene[key] for key in OF_THE_SCENE if key in scene},
         "camera": {"position": camera["from"], "target": camera["to"], "up": up, "vertical_fov": camera["fov"]},
         "background": background if isinstance(background, dict) else {"radiance": [background] * 3}}))
     return file
