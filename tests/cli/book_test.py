@@ -14,7 +14,6 @@ from book import readability
 from browser import CHROMIUM, Browser
 from project import CHAPTERS
 
-STILL_LONG = {"low_discrepancy_points"}  # a page to be shortened yet
 NARROW = 400  # pixels, as wide as a telephone
 # Of a page: the names that links may lead to, where its own links lead, pictures that are missing, formulas that are not typeset, and
 # what is wider than the screen and cannot be scrolled by itself.
@@ -158,7 +157,7 @@ class BookInBrowser_all(Site, unittest.TestCase):
 class ReadabilityTest(unittest.TestCase):
     def test_pages_can_be_finished(self):
         most = {"docs/results.md": 1800, "docs/first_steps.md": 1600, "docs/teaching.md": 2000} | {
-            f"chapters/{folder}/README.md": 1500 for folder in CHAPTERS.values() if folder[3:] not in STILL_LONG}
+            f"chapters/{folder}/README.md": 1500 for folder in CHAPTERS.values()}
         for page, words in most.items():
             self.assertLessEqual(readability.length((PROJECT / page).read_text(encoding="utf-8")), words, page)
 
