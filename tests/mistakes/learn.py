@@ -30,6 +30,7 @@ from check.experiments import experiments_of, measure  # noqa: E402
 from docs.ages import stamped  # noqa: E402
 from planting import catalogue, own_shader, trials  # noqa: E402
 from project import CHAPTERS, RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
+from report.sources import COMMENT_OR_BLANKS  # noqa: E402
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
@@ -59,9 +60,14 @@ def experiment_digest(chapter, name):
     return digest(repr(experiments_of(chapter)[name]), own_text(chapter))
 
 
+def code(text):
+    """Of a shader: comments change nothing that it shows."""
+    return COMMENT_OR_BLANKS.sub(" ", text)
+
+
 def own_text(chapter):
-    """All that a chapter's own shaders say."""
-    return "".join(shader.read_text(encoding="utf-8") for shader in project.shaders_of(chapter))
+    """The code of all of a chapter's own shaders."""
+    return code("".join(shader.read_text(encoding="utf-8") for shader in project.shaders_of(chapter)))
 
 
 def digest(*parts):
@@ -142,7 +148,7 @@ def planned_knowledge(chapters, before):
             old = known.get("experiments", {}).get(name, {})
             entry["experiments"][name] = old if old.get("measured") == now else {"measured": now}
         for bug in (bug for bug in catalogue() if bug.chapter == chapter):
-            now = digest(sorted(digests.values()), bug.text)
+            now = digest(sorted(digests.values()), code(bug.text))
             old = known.get("mistakes", {}).get(bug.mistake["name"], {})
             seen = {key: old[key] for key in ("shows", "noise", "rays")} if old.get("measured") == now and "shows" in old else {}
             entry["mistakes"][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")} | {"measured": now} | seen
@@ -190,7 +196,7 @@ def learn(workshop, chapters, is_anew):
 
 def planned_trials(chapters):
     """Name -> a Trial and the digest of all that it depends on."""
-    return {key: (trial, digest(settings(trial.chapter, TRYING, grading.SCENES[trial.chapter][0]), trial.text, trial.seed,
+    return {key: (trial, digest(settings(trial.chapter, TRYING, grading.SCENES[trial.chapter][0]), code(trial.text), trial.seed,
                                 own_text(trial.chapter), [repr(e) for e in experiments_of(trial.chapter).values()]))
             for key, trial in trials().items() if trial.chapter in chapters}
 
