@@ -13,7 +13,7 @@ namespace {
 // Many more bounces than a path needs to leave these scenes.
 constexpr uint32_t unlimited = 1000;
 
-// With a survival weight at which roulette ends only paths of throughput 0.
+// With this cap roulette ends only paths of throughput 0.
 RenderSettings make_settings(uint32_t samples, uint32_t seed) {
     return {.samples = samples,
             .max_path_length = unlimited,

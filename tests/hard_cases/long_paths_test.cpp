@@ -68,7 +68,7 @@ TEST_P(PathCases, WhiteConvexObjectVanishesBeforeAWhiteSky) {
     size_t samples = 0, lost = 0;
     for (const vec3& scale : {vec3(1), vec3(100, 1, 1), vec3(1000, 1, 0.5f)})
         for (const std::string& chapter : chapters_for(GetParam(), chapters_that(weighs_by_albedo))) {
-            if (scale != vec3(1) && chapter != chapter_named("cosine_sampling")) continue;  // bounces are the same in all chapters
+            if (scale != vec3(1) && chapter != chapter_named("cosine_sampling")) continue;  // bounces are the same in all of them
             set_transform(scene, mat4x3(glm::scale(glm::mat4(1), scale)));
             RenderSettings settings = make_settings(GetParam(), chapter, 1000);
             settings.samples = 256;
