@@ -1,4 +1,4 @@
-// Time by the clock.
+// Wall-clock time.
 #pragma once
 #include <chrono>
 

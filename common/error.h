@@ -1,10 +1,10 @@
-// Errors that end a program with one line and an exit code, both part of the command line's contract.
+// Errors that end a program with one line and an exit code; both are part of the command line's contract.
 #pragma once
 #include <stdexcept>
 
 namespace lab {
 
-// Bad input or usage: says what is wrong, where, and what to do. Exit code 1.
+// Bad input or usage: the message says what is wrong, where, and what to do. Exit code 1.
 struct UserError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

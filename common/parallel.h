@@ -1,4 +1,4 @@
-// Loops on all processors that the program may use.
+// Parallel loops on all processors that the program may use.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -13,7 +13,7 @@
 namespace lab {
 
 // Calls work(begin, end) for pieces of `piece` indices that cover [0, count); the last may be shorter. The pieces do not depend
-// on the number of threads. Rethrows the first exception of a call.
+// on the number of threads. Rethrows the first exception of any call.
 template <typename Work>
 void in_parallel(size_t count, size_t piece, const Work& work) {
     const size_t piece_count = (count + piece - 1) / piece;
@@ -34,14 +34,14 @@ void in_parallel(size_t count, size_t piece, const Work& work) {
         const size_t threads = piece_count > 1 ? std::min(piece_count, processor_count()) : 1;
         try {
             while (helpers.size() + 1 < threads) helpers.emplace_back(take_pieces);
-        } catch (const std::system_error&) {  // the system has no more threads: those that run do the work
+        } catch (const std::system_error&) {  // no more threads to be had: those that run do the work
         }
         take_pieces();
     }
     if (failure) std::rethrow_exception(failure);
 }
 
-// Adds work(begin, end) over such pieces in order, so the sum is the same to the bit with any number of threads.
+// Sums work(begin, end) over such pieces in order, so the result is the same to the bit with any number of threads.
 template <typename Sum, typename Work>
 Sum sum_in_parallel(size_t count, const Work& work) {
     constexpr size_t piece = 1 << 16;

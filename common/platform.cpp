@@ -61,7 +61,7 @@ bool is_interrupted() { return interrupted != 0; }
 #ifdef __linux__
 std::vector<WindowSystem> window_systems() {
     std::vector<WindowSystem> systems;
-    // Root may see the variables of a user's session without being able to reach its socket.
+    // Root may inherit a user's session variables without access to its socket.
     const std::string socket = variable("WAYLAND_DISPLAY");
     std::error_code unreadable;
     if (!socket.empty() && std::filesystem::exists(std::filesystem::path(variable("XDG_RUNTIME_DIR")) / socket, unreadable))
@@ -72,11 +72,11 @@ std::vector<WindowSystem> window_systems() {
 
 bool would_survive(int (*step)()) {
     const pid_t child = fork();
-    if (child < 0) return true;  // nobody knows
+    if (child < 0) return true;  // cannot tell
     if (child == 0) {
         const int nowhere = open("/dev/null", O_WRONLY);
         for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
-        prctl(PR_SET_DUMPABLE, 0);  // leave no core file behind
+        prctl(PR_SET_DUMPABLE, 0);  // no core file
         step();
         _exit(0);
     }
@@ -184,8 +184,8 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 }  // namespace lab
 
 #ifdef _WIN32
-// GCC 12 converts file names by mbrtowc, which does not know UTF-8 in Microsoft's library (GCC 13 does without). Invalid bytes
-// stand for themselves. The state holds the second half of a surrogate pair.
+// GCC 12 converts file names with mbrtowc, which does not know UTF-8 in Microsoft's library (GCC 13 does not use it). Invalid
+// bytes stand for themselves. The state holds the second half of a surrogate pair.
 extern "C" size_t __wrap_mbrtowc(wchar_t* result, const char* text, size_t size, mbstate_t* state) {
     wchar_t characters[2];
     if (*state != 0) {

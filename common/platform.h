@@ -7,25 +7,25 @@
 
 namespace lab {
 
-// Programs call this first. On Windows it switches the terminal to UTF-8 and control sequences, and keeps a terminal that a
-// double click opened until Enter is pressed, so that messages can be read.
+// Call this first. On Windows it switches the terminal to UTF-8 and control sequences, and keeps a terminal opened by a double
+// click until Enter is pressed, so that messages can be read.
 void prepare_terminal();
 
-// Whether the stream writes to a terminal.
+// Whether the stream is a terminal.
 bool is_terminal(std::FILE* stream);
 
 // Stops Windows from translating line ends in this stream.
 void make_binary(std::FILE* stream);
 
-// Window systems that are available here, in the order to try them. Empty without a display.
+// Window systems available here, in the order to try them. Empty without a display.
 enum class WindowSystem { wayland, x11, other };
 std::vector<WindowSystem> window_systems();
 
-// Whether the program survives a step that may crash. On Linux a child process tries it, without output; elsewhere the answer is
+// Whether the program would survive a step that may crash. On Linux a child process tries it silently; elsewhere the answer is
 // yes.
 bool would_survive(int (*step)());
 
-// The program's file; empty if unknown.
+// Path of the running program; empty if unknown.
 std::filesystem::path running_program();
 
 // The user's home folder; empty if unknown.
@@ -36,11 +36,11 @@ int process_id();
 // Number of processors that the program may use.
 size_t processor_count();
 
-// Waits until what was flushed is on the disk. False on failure, with errno set.
+// Waits until flushed data is on the disk. Returns false on failure, with errno set.
 bool write_to_disk(std::FILE* stream);
 
-// Renames a file atomically, over an existing one if need be. On Windows a virus scanner may hold a new file open: retries for up
-// to a second.
+// Renames a file atomically, replacing an existing one. On Windows a virus scanner may hold a new file open: retries for up to a
+// second.
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to, std::error_code& error);
 
 // What to install for Vulkan; follows "install " in messages.
@@ -49,7 +49,7 @@ extern const char* const vulkan_driver;
 // From now on the first Ctrl-C or SIGTERM makes is_interrupted() true; the second ends the program.
 void install_interrupt_handler();
 bool is_interrupted();
-// The same after this many seconds, where the operating system can.
+// Does the same after this many seconds, if the operating system can.
 void interrupt_after(double seconds);
 
 }  // namespace lab

@@ -58,7 +58,7 @@ SHARED_CONSTANT BLOCK_WIDTH = 8u;
 SHARED_CONSTANT BLOCK_HEIGHT = 8u;
 SHARED_CONSTANT BLOCK_SIZE = BLOCK_WIDTH * BLOCK_HEIGHT;  // pixels
 
-// Rays are counted into this many counters, so that pixels rarely wait for each other.
+// Ray counts are spread over this many counters, so that atomic additions rarely contend.
 SHARED_CONSTANT RAY_COUNTER_COUNT = 64u;
 
 // How an estimator finds light: by light samples and bounces with weights, by light samples alone, or by bounces alone.
@@ -75,10 +75,10 @@ struct Material {
     vec3 specular_albedo;     // Ks: zero unless the scene asks for `specular`
     float refractive_index;   // Ni of a smooth dielectric (d < 1), or 0 for an opaque surface
     vec3 absorption;          // sigma = -ln Tf per unit of world length inside a dielectric
-    float light_density;      // with respect to area, of a light sample on it; set by build_light_table()
+    float light_density;      // density of light samples on it, with respect to area; set by build_light_table()
 };
 
-// Directions at which the albedo of microfacets is known: entry i of n belongs to the cosine (i / (n-1))².
+// Directions at which the albedo of microfacets is tabulated: entry i of n is for the cosine (i / (n-1))².
 SHARED_CONSTANT MICROFACET_ALBEDO_COUNT = 64u;
 
 // The microfacets of a material, see common/scene/microfacets.h.
@@ -86,8 +86,8 @@ struct Microfacets {
     float roughness;                       // α = Pr² of the GGX distribution; 0 for a material without microfacets
     float metalness;                       // Pm
     float coat_index;                      // refractive index of the coat on an opaque material
-    vec2 albedo[MICROFACET_ALBEDO_COUNT];  // the part of light that one bounce reflects: of the coat, and with F = 1
-    vec2 mean_albedo;                      // the same of light that comes evenly from all around
+    vec2 albedo[MICROFACET_ALBEDO_COUNT];  // reflectance of a single bounce: of the coat, and with F = 1
+    vec2 mean_albedo;                      // the same under uniform light from all directions
 };
 
 // One placement of a mesh in the world.
@@ -100,23 +100,23 @@ struct Instance {
 struct LightTriangle {
     uint instance;
     uint triangle;          // index into the scene's triangles
-    uint threshold;         // this entry stands for itself if a random 32-bit word is below, else for `alias`
+    uint threshold;         // this entry stands for itself if a random 32-bit word is below, else its `alias` does
     uint alias;             // index into the table
     float inverse_density;  // A/P: area in the world over the probability of being chosen
 };
 
-// A cell of the light probe in the alias table of all of them, see common/scene/probe_table.h.
+// A cell of the light probe in the alias table of all of them, see common/scene/light_table.h.
 struct ProbeCell {
     uint threshold;  // as in LightTriangle
     uint alias;
     float density;  // of the cell's directions with respect to solid angle
 };
 
-// Where a scene has both, this part of the light samples goes to the probe and the rest to light triangles.
-// With a half, neither is more than twice as noisy as alone, whatever the scene.
+// The fraction of light samples that go to the probe where a scene has both; the rest go to light triangles.
+// At one half, neither is more than twice as noisy as alone, whatever the scene.
 SHARED_NUMBER LIGHT_PROBE_PROBABILITY = 0.5f;
 
-// The most cells of a light probe: larger ones have cells of several texels.
+// Largest number of cells of a light probe: in larger probes a cell covers several texels.
 SHARED_CONSTANT MAX_PROBE_CELL_COLUMNS = 4096u;
 SHARED_CONSTANT MAX_PROBE_CELL_ROWS = 2048u;
 
@@ -136,27 +136,27 @@ struct RenderParameters {
     uint first_sample;      // index of this render's first sample in every pixel
     uint max_path_length;   // number of bounces after which a path ends: 0 shows emission only
     int only_path_length;   // counts light only after exactly this many bounces; -1 counts all
-    vec3 background;        // radiance of the sky; with a light probe its factor
+    vec3 background;        // radiance of the sky, or the factor of the light probe
     float probe_rotation;   // radians about +Y, counter-clockwise seen from above
-    uint splitting_factor;  // number of branches in which a path goes on, from chapter 4
+    uint splitting_factor;  // number of branches that a path splits into, from chapter 4
     uint roulette_start;    // Russian roulette begins at this bounce, from chapter 5
     float survival_cap;     // largest survival probability, in (0,1], from chapter 5
-    float survival_weight;  // throughput of those that survive, in (0,1], from chapter 5
+    float survival_weight;  // throughput that survivors carry, in (0,1], from chapter 5
 };
 
-// Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from
-// first_sample), so that it does not matter how a render is cut into dispatches.
+// Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from first_sample), so that
+// a render may be cut into dispatches in any way.
 struct DispatchParameters {
     uint first_block;
     uint threads_per_pixel;  // 1, unless pixels are shared
-    uint samples_per_pixel;  // where they are: no pixel lacks more
+    uint samples_per_pixel;  // if they are: the most samples that any pixel still lacks
     uint target_samples;
-    uint first_film_pixel;  // that the binding of the film begins with
+    uint first_film_pixel;  // where the film's binding begins
 };
 
-// What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation). Its first,
-// third, fifth, … samples and the others are independent halves, even where the samples of a half fill each other's gaps: their
-// difference tells the error. It stays small, so that it needs no compensation.
+// What a pixel has accumulated: sum + compensation is the sum of all its finite samples (Kahan summation). Its first, third,
+// fifth, … samples and the others form independent halves, even where the samples within a half are correlated: their difference
+// estimates the error. It stays small enough to need no compensation.
 struct FilmPixel {
     vec3 sum;
     vec3 compensation;
@@ -165,11 +165,11 @@ struct FilmPixel {
     uint invalid_count;  // samples that were infinite or not a number; they add 0
 };
 
-// How shaders/engine/display.comp turns radiance into what a screen shows.
+// How shaders/engine/display.comp maps radiance to the screen.
 struct DisplayParameters {
     uvec2 film_size;          // pixels in use
     uvec2 image_size;         // of the picture; the film is scaled to it
-    uint first_film_pixel;    // that the binding of the film begins with
+    uint first_film_pixel;    // where the film's binding begins
     uint block_count;         // of the picture
     float scale;              // of radiance
     uint is_srgb;             // 1: encode with the sRGB curve

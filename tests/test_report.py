@@ -1,18 +1,18 @@
-"""Runs GoogleTest programs and reads the reports that they write as JSON."""
+"""Runs GoogleTest programs and reads their JSON reports."""
 
 import json
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-# What GoogleTest itself tells of a test; everything else was recorded by the test.
+# GoogleTest's own properties of a test; everything else was recorded by the test.
 OWN_KEYS = {"name", "value_param", "type_param", "file", "line", "status", "result", "timestamp", "time", "classname"}
 OWN_KEYS |= {"failures", "skipped"}
 
 
 @dataclass
 class Test:
-    """A test that was run. Of "Backends/Textures.AreDecoded/query" the suite is "Textures" and the instance "query"."""
+    """A test that ran. For "Backends/Textures.AreDecoded/query" the suite is "Textures" and the instance "query"."""
 
     full_name: str
     failures: list
@@ -21,33 +21,33 @@ class Test:
 
     @property
     def name(self):
-        """Suite and test without what instantiates them, as tests are cited."""
+        """Suite and test without their instantiation, as tests are cited."""
         return name_of(self.full_name)
 
     @property
     def instance(self):
-        """The parameter, or "" of a test without one."""
+        """The parameter, or "" for a test without one."""
         _, _, test = self.full_name.partition(".")
         return test.partition("/")[2].removesuffix("_all")
 
 
 def name_of(full_name):
-    """ "Textures.AreDecoded" of "Backends/Textures.AreDecoded_all/query"."""
+    """ "Textures.AreDecoded" for "Backends/Textures.AreDecoded_all/query"."""
     suite, _, test = full_name.partition(".")
     return f"{suite.rpartition('/')[2]}.{test.partition('/')[0].removesuffix('_all')}"
 
 
-ONLY_IN_ALL = "*_all:*_all/*"  # a filter for the tests that ./lab test leaves out
+ONLY_IN_ALL = "*_all:*_all/*"  # a filter for tests that ./lab test leaves out
 
 
 def run(binary, report, *arguments, **options):
-    """Runs a test program, which writes its report to that file; returns its subprocess."""
+    """Starts a test program that writes its report to that file; returns its subprocess."""
     command = [binary, f"--gtest_output=json:{report}", *arguments]
     return subprocess.run(command, check=False, **options)
 
 
 def read(report):
-    """The tests of a report and what was recorded of all of them (the device)."""
+    """The tests in a report, and what was recorded for all of them (the device)."""
     contents = json.loads(Path(report).read_text(encoding="utf-8"))
     tests = [
         Test(
@@ -64,12 +64,12 @@ def read(report):
 
 
 def _text(value):
-    """GoogleTest writes each byte of UTF-8 as a character of its own."""
+    """GoogleTest writes each byte of UTF-8 as a separate character."""
     return value.encode("latin-1").decode("utf-8")
 
 
 def list_tests(binary):
-    """Full names of all tests of a program."""
+    """Full names of all tests in a program."""
     lines = subprocess.run([binary, "--gtest_list_tests"], check=True, stdout=subprocess.PIPE, text=True).stdout
     names, suite = [], ""
     for line in lines.splitlines():

@@ -1,4 +1,4 @@
-"""What the tools share: where things are, their command lines, progress, records and tables."""
+"""Shared by the tools: locations, command lines, progress, records and tables."""
 import argparse
 import json
 import os
@@ -30,7 +30,7 @@ class UserError(Exception):
 
 
 def name_of(number):
-    """The name of a chapter, which stays where its number changes."""
+    """The name of a chapter, which persists if its number changes."""
     return CHAPTERS[number][3:]
 
 
@@ -40,25 +40,25 @@ def chapter_named(name):
 
 
 def description(folder):
-    """What a chapter says of itself."""
+    """A chapter's chapter.json."""
     return read_json(ROOT / "chapters" / folder / "chapter.json")
 
 
 def original(number):
-    """The number of the chapter that this one is a copy of, by its title, or its own."""
+    """The number of the chapter that this one copies, judged by its title, or else its own."""
     title = description(CHAPTERS[number])["title"]
     return next(other for other in CHAPTERS if description(CHAPTERS[other])["title"] == title)
 
 
 def course():
-    """The numbers of all chapters that are no copies of another."""
+    """The numbers of all chapters that are not copies of another."""
     return [number for number in CHAPTERS if original(number) == number]
 
 
 def shaders_of(number):
-    """The shaders that a chapter consists of: those in its folder, and what they include of other chapters."""
+    """The shaders that make up a chapter: those in its folder, and those of other chapters that they include."""
     shaders = sorted((ROOT / "chapters" / CHAPTERS[number]).glob("*.glsl"))
-    for shader in shaders:  # which grows
+    for shader in shaders:  # grows meanwhile
         for name in re.findall(r'^#include "(.*)"', shader.read_text(encoding="utf-8"), re.MULTILINE):
             files = [folder / name for folder in (shader.parent, ROOT / "chapters")]
             shaders += [file for file in files if file.is_file() and file not in shaders][:1]
@@ -66,19 +66,19 @@ def shaders_of(number):
 
 
 def has_low_discrepancy(program):
-    """Whether the samples of a pixel depend on each other: of a chapter's folder or a copy of its program, or something else."""
+    """Whether the samples of a pixel are correlated, given a chapter's folder, a copy of its program, or anything else."""
     folder = Path(program).stem
     return folder in CHAPTERS.values() and description(folder).get("low_discrepancy", False)
 
 
 def printable(name):
-    """A path or a name as text that can be written: some, from archives of other systems, are no UTF-8."""
+    """A path or name as printable text: some, from archives of other systems, are not UTF-8."""
     return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
 # ---------------------------------------------------------------------------------------------- command lines
 class Parser(argparse.ArgumentParser):
-    """`name` is the command's, `description` the text above its options."""
+    """`name` is the command's name, `description` the text above its options."""
 
     def __init__(self, name, description, **options):
         super().__init__(prog=name, description=description, formatter_class=argparse.RawDescriptionHelpFormatter, **options)
@@ -88,7 +88,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def number(kind, low, high=1e9):
-    """Converts an argument to a number of this kind from `low` to `high`."""
+    """Converts an argument to a number of this kind between `low` and `high`."""
     def convert(text):
         value = kind(text)
         if not low <= value <= high:
@@ -105,8 +105,8 @@ def add_device_options(parser):
 
 
 def run_tool(tool):
-    """Calls main() of a module; what the user has to know of a failure is one line. A tool with GOES_ON does, when it is
-    called again after an interruption, what it has not done yet."""
+    """Calls a module's main(), and reports failures to the user in one line. A tool with GOES_ON, when called again after an
+    interruption, does only what is left."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         tool.main()
@@ -118,13 +118,13 @@ def run_tool(tool):
 
 # ---------------------------------------------------------------------------------------------- programs
 def run_program(command, **options):
-    """Runs a program without input and captures what it says. In a session of its own Ctrl-C does not reach it."""
+    """Runs a program without input and captures its output. Ctrl-C does not reach it, since it has its own session."""
     return subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True,
                           **{"cwd": ROOT, "encoding": "utf-8", "errors": "replace", "start_new_session": True, **options})
 
 
 def run_to_end(command, what, expected=0, **options):
-    """The output of a program that has to end with this exit code. `what` says for messages what it does."""
+    """The output of a program that must end with this exit code. `what` describes its task in messages."""
     process = run_program(command, **options)
     if process.returncode != expected:
         raise UserError(f"{what}: exit code {process.returncode} instead of {expected}:\n{process.stdout[-2000:]}{process.stderr[-2000:]}")
@@ -132,13 +132,13 @@ def run_to_end(command, what, expected=0, **options):
 
 
 def failure_text(process):
-    """What a program that failed said: the first line of its error, from which others may follow, or else its last line."""
+    """The message of a program that failed: the first line of its error, from which others may follow, or else its last line."""
     lines = process.stderr.strip().split("\n")
     return next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1]) or f"exit code {process.returncode}"
 
 
 def commit():
-    """The commit of the sources, or 'unknown' outside of a repository."""
+    """The commit of the sources, or 'unknown' outside a repository."""
     try:
         git = run_program(["git", "describe", "--always", "--dirty= with changes", "--abbrev=7", "--exclude=*"])
     except OSError:
@@ -152,8 +152,8 @@ def duration_text(seconds):
 
 
 def show_progress(name, done, count, started):
-    """`done` of `count` equal steps, the first of which started at `started` by time.monotonic(): a bar with the time left on
-    a terminal, a few plain lines elsewhere."""
+    """`done` of `count` equal steps, the first of which started at `started` by time.monotonic(): on a terminal a bar with the
+    time left, elsewhere a few plain lines."""
     left = duration_text((time.monotonic() - started) * (count - done) / max(done, 1))
     if sys.stderr.isatty():
         filled = BAR_WIDTH * done // count
@@ -170,7 +170,7 @@ def read_json(file):
 
 
 def write_bytes(file, content):
-    """Writes a file and makes its folder. The file is complete at any time."""
+    """Writes a file and creates its folder. The file is complete at all times."""
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_name(file.name + ".unfinished")
     unfinished.write_bytes(content)
@@ -178,7 +178,7 @@ def write_bytes(file, content):
 
 
 def write_json(file, content, depth=None):
-    """Writes JSON whose lists and objects have a line for each item; those that lie as deep as `depth` are on one line."""
+    """Writes JSON with one line for each item of its lists and objects; those at depth `depth` take a single line."""
     write_bytes(file, (json_lines(content, depth) + "\n").encode())
 
 
@@ -198,7 +198,7 @@ def load_records(folder):
 
 
 def scene_of(name):
-    """The scene's name in that of a reference, which ends with numbers."""
+    """The scene's name in a reference's name, which ends with numbers."""
     return name.rstrip("_0123456789")
 
 

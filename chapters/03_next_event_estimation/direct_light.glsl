@@ -1,8 +1,8 @@
-// Estimates the direct light that x_k reflects along ω_o, by one point y on the lights.
+// Estimates the direct light that x_k reflects along ω_o, from one point y on the lights.
 vec3 sample_direct_light(ShadingData s, inout uvec2 seed) {
-    // Choose a triangle with probability P, proportional to its area A times the luminance of its emission, and a
-    // uniform point y on it. The root compensates for the triangle's narrowing towards its first vertex. The density
-    // of y is P/A with respect to area.
+    // Choose a triangle with probability P, proportional to its area A times the luminance of its emission, and a uniform point y
+    // on it. The square root makes up for the triangle's narrowing towards its first vertex. The density of y is P/A with respect
+    // to area.
     LightTriangle light = choose_light_triangle(seed);
     vec2 u = get_random_numbers(seed);
     LightPoint y = get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));

@@ -25,7 +25,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         if (path_length == parameters.max_path_length) break;
         if (!is_above_surface(s, s.out_direction)) break;
 
-        // The direct light at x_k arrives after one bounce more.
+        // The direct light at x_k arrives after one more bounce.
         if (STRATEGY != STRATEGY_BOUNCES) {
             vec3 direct_light = sample_direct_light(s, seed);
             if (is_counted(path_length + 1u)) radiance += throughput * direct_light;

@@ -1,6 +1,6 @@
-// Chapter 4, splitting: the path goes on from its first hit in s branches, each of which counts 1/s.
+// Chapter 4, splitting: the path continues from its first hit in s branches, each with weight 1/s.
 //
-// With X what a branch finds and h the first hit, Var(mean of s branches) = Var(E[X|h]) + E[Var(X|h)] / s: splitting
+// Let X be what a branch finds and h the first hit. Then Var(mean of s branches) = Var(E[X|h]) + E[Var(X|h)] / s: splitting
 // lowers the variance of what comes after the first hit without paying for the camera ray again.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "03_next_event_estimation/direct_light.glsl"

@@ -1,8 +1,8 @@
-// Chapter 5, Russian roulette: after every bounce the path survives with probability q only, and then counts 1/q.
+// Chapter 5, Russian roulette: after every bounce the path survives only with probability q, and then has weight 1/q.
 //
-// Since q · (1/q) X + (1 - q) · 0 = X the expectation stays the same, and paths of any length end after a finite
-// number of bounces. q follows the throughput: dim paths cost as much as bright ones and bring less. As it already
-// holds the factors 1/q of earlier bounces, all that survive carry about the survival weight β_s, however long they are.
+// As q · (1/q) X + (1 - q) · 0 = X, the expectation stays the same, and paths of any length end after a finite number of bounces.
+// q follows the throughput: dim paths cost as much as bright ones and contribute less. The throughput already holds the factors
+// 1/q of earlier bounces, so all survivors carry about the survival weight β_s, however long they are.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "03_next_event_estimation/direct_light.glsl"
 

@@ -1,6 +1,6 @@
-// The Fresnel reflectance F for unpolarised light. cos θ > 0 belongs to the incident direction, η is the refractive index
-// beyond the surface over that before it, and η cos θ_t belongs to the refracted direction, by Snell's law
-// (η cos θ_t)² = η² - 1 + cos² θ. Both numerators have η² - 1 as a factor, so nothing cancels where η is close to 1.
+// The Fresnel reflectance F for unpolarised light. cos θ > 0 is that of the incident direction, η the refractive index beyond the
+// surface over that before it, and η cos θ_t that of the refracted direction, by Snell's law (η cos θ_t)² = η² - 1 + cos² θ. Both
+// numerators have η² - 1 as a factor, so nothing cancels where η is close to 1.
 float get_fresnel_reflectance(float cos_theta, float eta, float eta_cos_theta_t) {
     float contrast = (eta - 1.0) * (eta + 1.0);
     if (contrast == 0.0) return 0.0;
@@ -23,11 +23,11 @@ BsdfSample sample_dielectric(ShadingData s, inout uvec2 seed) {
 
     vec3 omega = 2.0 * cos_theta * s.normal - s.out_direction;
     if (!is_reflected) {
-        // cos θ - η cos θ_t, once more without cancellation.
+        // cos θ - η cos θ_t, again without cancellation.
         float difference = -contrast / (cos_theta + eta_cos_theta_t);
         omega = normalize(difference * s.normal - s.out_direction);
     }
-    // A direction on opposite sides of the two normals carries nothing.
+    // A direction on different sides of the shading and the geometric normal carries no light.
     vec3 weight = vec3(is_reflected == (dot(s.geometric_normal, omega) > 0.0));
     return BsdfSample(omega, weight, 0.0, true, is_reflected ? 1.0 : 1.0 / (eta * eta));
 }

@@ -1,10 +1,10 @@
 // Chapter 6, dielectrics: at smooth glass and water light is either reflected or refracted, each into a single
 // direction.
 //
-// A share F of the light is reflected (Fresnel), 1 - F refracted. The estimator follows one of the two directions,
-// chosen with these probabilities, so that the weight is 1. No light sample can meet exactly that direction, so after
-// such a bounce emission counts where the path finds it. The bright caustics that arise are found by chance only, and
-// are noisy.
+// A fraction F of the light is reflected (Fresnel), 1 - F refracted. The estimator follows one of the two directions,
+// chosen with these probabilities, so that the weight is 1. No light sample can meet exactly that direction, so after such
+// a bounce emission counts where the path finds it. The resulting bright caustics are found by chance only, and stay
+// noisy.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "03_next_event_estimation/direct_light.glsl"
 #include "dielectric.glsl"

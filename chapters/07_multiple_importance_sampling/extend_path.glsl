@@ -1,6 +1,6 @@
-// The loop over a path, for any light samples: they are sample_direct_light(), and get_background_density() is their density
-// p_l, with respect to solid angle, of a direction that misses all triangles. A bounce is a function of its own: chapter 10
-// calls it from another loop.
+// The path loop, whatever light samples are: sample_direct_light() takes them, and get_background_density() is their density p_l,
+// with respect to solid angle, in a direction that misses all triangles. A bounce is a function of its own, so that chapter 10
+// can call it from another loop.
 
 // What a path carries from bounce to bounce.
 struct Path {
@@ -9,8 +9,8 @@ struct Path {
     vec3 throughput;
     uint path_length;       // the slides' k-1
     float radiance_scale;   // 1/η² for every medium entered, see chapter 6
-    bool is_light_sampled;  // whether x_{k-1}'s light sample could have found what the ray finds
-    float bounce_density;   // p_b of the ray's direction, where it could
+    bool is_light_sampled;  // whether x_{k-1}'s light sample could have found what the ray hits
+    float bounce_density;   // p_b of the ray's direction, if so
 };
 
 Path start_path(Ray ray) { return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0); }
@@ -38,7 +38,7 @@ bool extend_path(inout Path path, inout uvec2 seed) {
                          get_bounce_part(light_density, path.bounce_density) * s.emission;
     if (path.path_length == parameters.max_path_length || !is_above_surface(s, s.out_direction)) return false;
 
-    // The direct light at x_k arrives after one bounce more. No light sample meets a dielectric's directions.
+    // The direct light at x_k arrives after one more bounce. No light sample meets a dielectric's directions.
     path.is_light_sampled = STRATEGY != STRATEGY_BOUNCES && !s.is_dielectric;
     if (path.is_light_sampled) {
         vec3 direct_light = sample_direct_light(s, seed);

@@ -1,12 +1,12 @@
-// Chapter 7, multiple importance sampling: light is found by light samples and by bounces, and each find counts with a
-// weight.
+// Chapter 7, multiple importance sampling: both light samples and bounces look for light, and weights combine what they
+// find.
 //
-// A light sample finds a direction with density p_l, a bounce with density p_b, both with respect to solid angle. With
-// the balance heuristic the first counts p_l / (p_l + p_b) and the second p_b / (p_l + p_b). The weights add up to one,
-// so that no light is counted twice, and whichever way is better at a place takes most of it.
+// A light sample finds a direction with density p_l, a bounce with density p_b, both with respect to solid angle. With the
+// balance heuristic the first has weight p_l / (p_l + p_b) and the second p_b / (p_l + p_b). The weights add up to one, so no
+// light counts twice, and the strategy that suits a place better contributes most of it.
 //
-// Bounces sample the whole BRDF now: a glossy surface reflects most light into few directions. Splitting is gone, since
-// it hardly pays. So one loop is enough again, with one place that traces.
+// Bounces now sample the whole BRDF: a glossy surface reflects most light into few directions. Splitting is gone, since it hardly
+// pays, and so a single loop that traces in a single place is enough again.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "sample_bsdf.glsl"

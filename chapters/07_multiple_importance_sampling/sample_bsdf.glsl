@@ -1,4 +1,4 @@
-// Bounces that follow the whole BRDF: a mixture of the cosine and the Phong lobe, chosen by their shares of the albedo.
+// Bounces follow the whole BRDF: a mixture of the cosine and the Phong lobe, chosen by their shares of the albedo.
 
 // The density of sample_bsdf() with respect to solid angle, for a direction above an opaque surface.
 float get_bsdf_density(ShadingData s, vec3 in_direction) {

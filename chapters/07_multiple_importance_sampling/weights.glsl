@@ -1,4 +1,4 @@
-// Weights by which light samples and bounces share the light, and light samples that use them.
+// Weights that divide the light between light samples and bounces, and light samples that use them.
 
 // Turns a density with respect to area into one with respect to solid angle: dω = cos θ' / r² dA.
 float to_solid_angle(float area_density, float distance, float cos_light) {
@@ -17,9 +17,9 @@ vec3 get_light_sample_weight(ShadingData s, vec3 omega, float light_density) {
     return get_brdf(s, omega) * (dot(s.normal, omega) / (light_density + bounce_density));
 }
 
-// The direct light that x_k reflects along ω_o, as far as it is left to one point y on the lights.
+// Estimates the direct light that x_k reflects along ω_o from one point y on the lights, weighted against bounces.
 vec3 sample_light_triangle(ShadingData s, inout uvec2 seed) {
-    // A uniform point on a triangle that is chosen with probability P: density P/A with respect to area.
+    // A uniform point on a triangle chosen with probability P: density P/A with respect to area.
     vec2 u;
     LightTriangle light = choose_light_triangle(seed, u);
     LightPoint y = get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
@@ -34,7 +34,7 @@ vec3 sample_light_triangle(ShadingData s, inout uvec2 seed) {
     // V: a shadow ray that ends just short of the light.
     if (is_occluded(get_ray_to_point(s, y.position_in_front), 1.0)) return vec3(0.0);
 
-    // The last factor is 1, but for the rounding of P in the alias table.
+    // The last factor is 1, up to the rounding of P in the alias table.
     float light_density = to_solid_angle(y.light_density, distance, cos_light);
     return get_light_sample_weight(s, omega, light_density) * y.emission * (light.inverse_density * y.light_density);
 }

@@ -1,5 +1,5 @@
-// p_l of a direction that misses all triangles. Light samples look it up as well as bounces, so that their weights add up
-// to one, however inexactly a device computes where a direction lies on the probe.
+// p_l of a direction that misses all triangles. Light samples look it up just like bounces, so their weights add up to one,
+// however inaccurately a device computes where a direction lies on the probe.
 float get_background_density(vec3 direction) {
     if (!HAS_LIGHT_PROBE_CELLS) return 0.0;
     uvec2 count = get_probe_cell_count();
@@ -8,7 +8,7 @@ float get_background_density(vec3 direction) {
     return get_probe_cell_density(cell.y * count.x + cell.x);
 }
 
-// A unit direction with the density P/Δω.
+// Samples a unit direction with density P/Δω.
 vec3 sample_light_probe_direction(inout uvec2 seed, out float density) {
     vec2 u;
     uint index = choose_probe_cell(seed, u);
@@ -28,7 +28,7 @@ vec3 sample_light_probe_direction(inout uvec2 seed, out float density) {
     return vec3(sin_theta * sin(azimuth), height, -sin_theta * cos(azimuth));
 }
 
-// The light of the probe that x_k reflects along ω_o, as far as it is left to one direction to the probe.
+// Estimates the light of the probe that x_k reflects along ω_o from one direction, weighted against bounces.
 vec3 sample_light_probe(ShadingData s, inout uvec2 seed) {
     float sampled_density;
     vec3 omega = sample_light_probe_direction(seed, sampled_density);
@@ -42,7 +42,7 @@ vec3 sample_light_probe(ShadingData s, inout uvec2 seed) {
            (light_density / sampled_density);
 }
 
-// The direct light at x_k by one light sample: of the probe or of the light triangles.
+// Estimates the direct light at x_k by one light sample, of the probe or of the light triangles.
 vec3 sample_direct_light(ShadingData s, inout uvec2 seed) {
     bool is_from_probe = HAS_LIGHT_PROBE_CELLS && (!HAS_LIGHT_TRIANGLES || happens(LIGHT_PROBE_PROBABILITY, seed));
     return is_from_probe ? sample_light_probe(s, seed) : sample_light_triangle(s, seed);

@@ -1,9 +1,9 @@
 // Chapter 8, light probes: light comes from all around, and light samples go to the bright directions.
 //
-// The probe is an image of all directions. Each of its cells, one a texel, is chosen with a probability P proportional to
-// its mean luminance times its solid angle Δω. In it all directions are equally likely: density P/Δω with respect to
-// solid angle. The weights of chapter 7 do the rest. Where there are light triangles, too, each light sample goes either
-// to them or to the probe; their densities hold the probability of that choice.
+// The probe is an image of all directions. Each of its cells, one per texel, is chosen with a probability P proportional to its
+// mean luminance times its solid angle Δω. Within a cell all directions are equally likely: density P/Δω with respect to solid
+// angle. The weights of chapter 7 do the rest. Where there are light triangles, too, each light sample goes either to them or to
+// the probe; the densities include the probability of that choice.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "07_multiple_importance_sampling/sample_bsdf.glsl"

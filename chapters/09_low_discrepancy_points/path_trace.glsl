@@ -1,10 +1,10 @@
-// Chapter 9, low-discrepancy points: the samples of a pixel know of each other, and each goes where the others have left
-// a gap.
+// Chapter 9, low-discrepancy points: the samples of a pixel know about each other, and each fills a gap that the others have
+// left.
 //
-// Random points clump. The points of Sobol's sequence do not: of its first 2^k points each rectangle of area 2^-k, however
-// its 2^-i × 2^(i-k) lies in the grid, holds exactly one. Owen scrambling moves them at random and keeps this property.
-// Each point alone becomes uniform, so that the estimator stays unbiased. A path needs many pairs of numbers: each is a
-// point of the same sequence, with scrambles and an order of its own, so that the pairs do not depend on each other.
+// Random points clump. The points of Sobol's sequence do not: every rectangle of size 2^-i × 2^(i-k) in the grid holds exactly
+// one of its first 2^k points. Owen scrambling moves the points at random and keeps this property. Each point by itself becomes
+// uniform, so the estimator stays unbiased. A path needs many pairs of numbers: each pair is a point of the same sequence, with
+// its own scrambles and its own order, so that the pairs are independent of each other.
 //
-// Code that asks for random numbers stays as it is: only their source changes, which is random_words.glsl in this folder.
+// Code that asks for random numbers stays the same: only their source changes, random_words.glsl in this folder.
 #include "08_light_probes/path_trace.glsl"

@@ -1,6 +1,6 @@
-// Owen scrambling of a number whose bits are reversed: each bit is flipped or not, by a hash of the key and all digits
-// before it, which here are the lower bits. Sums and products carry upwards only. Constants: Vegdahl, "Building a Better
-// LK Hash", 2021; the idea: Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4) 2020.
+// Owen scrambling of a number whose bits are reversed: whether a bit is flipped depends on a hash of the key and all digits
+// before it, here the lower bits. Sums and products carry upwards only. Constants: Vegdahl, "Building a Better LK Hash", 2021;
+// the idea: Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4) 2020.
 uint scramble_reversed(uint bits, uint key) {
     bits ^= bits * 0x3d20adeau;
     bits += key;
@@ -10,9 +10,9 @@ uint scramble_reversed(uint bits, uint key) {
     return bits;
 }
 
-// The second dimension of Sobol's sequence, with its bits reversed: the index times Pascal's triangle modulo 2. The
-// triangle of 2^k rows consists of copies of that of half the size, and so five steps suffice. The first dimension, van
-// der Corput's sequence, is the index itself.
+// The second dimension of Sobol's sequence, with its bits reversed: the index times Pascal's triangle modulo 2. The triangle of
+// 2^k rows consists of copies of the triangle of half the size, so five steps suffice. The first dimension, van der Corput's
+// sequence, is the index itself.
 uint get_second_dimension(uint index) {
     index ^= (index & 0xaaaaaaaau) >> 1u;
     index ^= (index & 0xccccccccu) >> 2u;
@@ -22,16 +22,16 @@ uint get_second_dimension(uint index) {
     return index;
 }
 
-// The index of the sample's point, and a hash of pixel and scramble. Samples of even index have one scramble, and those of
-// odd index another one. So each half fills the unit square evenly, and is independent of the other one: their difference
-// tells the error, at any number of samples.
+// The index of the sample's point, and a hash of pixel and scramble. Samples with even and with odd indices have different
+// scrambles. So each half fills the unit square evenly and independently of the other: their difference estimates the error, at
+// any number of samples.
 uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
     uint scramble = sample_index & 1u;
     return uvec2(sample_index >> 1u, get_state(pixel_index, scramble, key).x);
 }
 
-// The words of the pixel's next point. The hash in the state counts on, so that it comes back after 2^32 pairs only: a
-// hash of a hash of a hash would soon go round in circles.
+// The words of the pixel's next point. The hash in the state is incremented, so it repeats after 2^32 pairs only: hashing the
+// hash again and again would soon run into a short cycle.
 uvec2 get_random_words(inout uvec2 seed) {
     uvec2 keys = uvec2(seed.y, 0u);
     advance_random_state(keys);

@@ -14,19 +14,19 @@
 namespace lab {
 namespace {
 
-// Shows the progress of a render on the terminal.
+// Prints the progress of a render to the terminal.
 class Progress {
   public:
-    // Samples per pixel. A quiet progress prints nothing.
+    // In samples per pixel. With `quiet` nothing is printed.
     Progress(uint32_t target_samples, double first_samples, bool quiet)
         : target_samples_(target_samples), first_samples_(first_samples), quiet_(quiet) {}
     ~Progress() {
         if (printed_ && terminal_) std::fputs("\r\033[K", stderr);
     }
 
-    // `samples` per pixel and `rays` of this run so far. Prints a few times per second.
+    // `samples` per pixel and `rays`, both of this run so far. Prints a few times per second.
     void update(double samples, uint64_t rays) {
-        // Log files get a line every ten seconds, terminals one line that is rewritten.
+        // Log files get a line every ten seconds, terminals one line that is overwritten.
         if (quiet_ || seconds_since(last_) < (terminal_ ? 0.2 : 10.0)) return;
         last_ = Clock::now();
         const double seconds = seconds_since(start_);
@@ -74,14 +74,14 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
-        // The limit is looked at between dispatches. A shader on the CPU may never end one.
+        // The limit is checked between dispatches, but a shader on the CPU may never finish one.
         constexpr double patience = 2;
         if (options_.time_limit && acceleration_structure_.is_on_host()) interrupt_after(*options_.time_limit + patience);
         start_ = last_save_ = Clock::now();
         try {
             sample();
         } catch (const std::exception& error) {
-            // Only what was last read from the device is left.
+            // Only the last snapshot is left.
             keep_after(error, snapshot_, [&] { write_outputs(); });
         }
         if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
@@ -114,14 +114,14 @@ class HeadlessRender {
         }
     }
 
-    // Of rendering as a user waits for it, earlier runs included.
+    // Rendering time as the user sees it, earlier runs included.
     double seconds() const { return job_.record.seconds + seconds_since(start_) - measuring_seconds_; }
 
     bool is_time_over() const {
         return options_.time_limit && renderer_.samples() > 0 && seconds() - job_.record.seconds >= *options_.time_limit;
     }
 
-    // By how much the number of samples must grow until the error is small enough, as it falls with random numbers.
+    // The factor by which the sample count must grow to reach the target error, at the rate of random sampling.
     double growth() const {
         if (!options_.target_error || rows_.empty() || !rows_.back().error) return 2;
         return std::pow(rows_.back().error->rel_rmse / *options_.target_error, 2);
@@ -130,7 +130,7 @@ class HeadlessRender {
     bool is_accurate() const { return growth() <= 1; }
 
     void save_if_due() {
-        // A snapshot is also what remains if the device is lost.
+        // If the device is lost, the last snapshot is what remains.
         constexpr double seconds_between_snapshots = 10;
         const double interval = options_.save_every.value_or(seconds_between_snapshots);
         if (seconds_since(last_save_) < interval) return;
@@ -140,12 +140,12 @@ class HeadlessRender {
         try {
             write_outputs();
         } catch (const UserError& error) {
-            // The disk may have room again when the render ends.
+            // By the time the render ends the disk may have room again.
             std::fprintf(stderr, "\nnote: %s\n", error.what());
         }
     }
 
-    // Reads what is left if the device is lost.
+    // Reads the film back, so that something is left if the device is lost.
     void take_snapshot() {
         const double seconds_so_far = seconds();
         snapshot_ = renderer_.film().read();
@@ -224,12 +224,12 @@ class HeadlessRender {
     Renderer& renderer_;
     const AccelerationStructure& acceleration_structure_;
     std::optional<Reference> reference_;
-    FilmImage snapshot_;  // last read from the device
-    FilmRecord record_;   // of that film
+    FilmImage snapshot_;  // read back last
+    FilmRecord record_;   // of that snapshot
     std::vector<ReportRow> rows_;
     Clock::time_point start_ = Clock::now();  // of rendering
     Clock::time_point last_save_;
-    double measuring_seconds_ = 0;  // for the rows of the report
+    double measuring_seconds_ = 0;  // spent on the report's rows
 };
 
 }  // namespace

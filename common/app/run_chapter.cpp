@@ -31,7 +31,7 @@ void print_devices() {
     }
 }
 
-// Default outputs go to the user's folder if the current one is not writable.
+// Moves default outputs to the user's folder if the current one is not writable.
 void choose_outputs(RunOptions& options) {
     const std::filesystem::path folder = user_folder();
     if (!options.has_default_outputs || folder.empty()) return;
@@ -43,13 +43,13 @@ void choose_outputs(RunOptions& options) {
     }
 }
 
-// Throws UserError before rendering if a result could not be written later.
+// Throws UserError before rendering if a result could not be written afterwards.
 void check_outputs(const RunOptions& options) {
     for (const auto& file : options.outputs) check_writable(file);
     if (!options.report.empty()) check_writable(options.report, {".json", ".csv"});
 }
 
-// Throws UserError if the validation layers complained about the run.
+// Throws UserError if the validation layers reported anything.
 void check_validation(const Device& device, const RunOptions& options) {
     if (!options.validation) return;
     for (const auto& message : device.driver_messages()) std::cerr << "driver: " << message << "\n";
@@ -59,11 +59,10 @@ void check_validation(const Device& device, const RunOptions& options) {
     if (!options.quiet) std::cout << "validation     no complaints\n";
 }
 
-// Room for picture and controls on a common screen.
+// Leaves room for picture and controls on a common screen.
 uvec2 window_size(uvec2 image_size) { return glm::clamp(image_size + uvec2(360, 0), uvec2(900, 700), uvec2(1600, 1000)); }
 
-// Opens a window or returns null. Without --window it opens only for people, since scripts read the output, and only where it
-// can.
+// Opens a window or returns null. Without --window one opens only where it can and for people, since scripts read the output.
 std::unique_ptr<Window> open_window(const Chapter& chapter, const Options& options, uvec2 image_size) {
     const bool is_forced = options.run.window == WindowChoice::always;
     if (options.run.window == WindowChoice::never) return nullptr;
@@ -104,7 +103,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }
 
-// Renders a single pixel, whose shader a debugger stops in.
+// Renders a single pixel, for a debugger that stops in its shader.
 void debug_pixel(Build& build, uvec2 pixel) {
     const uvec2 size = build.job.parameters.image_size;
     if (pixel.x >= size.x || pixel.y >= size.y)

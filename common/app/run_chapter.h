@@ -1,4 +1,4 @@
-// Runs a chapter as a complete program.
+// The complete program of a chapter.
 #pragma once
 #include <string>
 
@@ -10,8 +10,8 @@ struct Build;
 // 3 device lost or out of memory.
 int run_chapter(const std::string& chapter, int argument_count, char** arguments);
 
-// Renders without a window until samples, target error or time limit are reached or Ctrl-C is pressed. Writes outputs and report,
-// and prints a summary. Throws DeviceFailure if the device is lost, after writing what was last read.
+// Renders without a window until samples, target error or time limit are reached or Ctrl-C is pressed. Writes outputs and report
+// and prints a summary. If the device is lost, writes the last snapshot and throws DeviceFailure.
 void render_headless(Build& build);
 
 }  // namespace lab

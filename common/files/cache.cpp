@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// Empty without a home folder: in one that all users share, others could replace a shader.
+// Empty without a home folder: in a folder that all users share, others could replace a shader.
 std::filesystem::path cache_folder() {
     if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
         return std::filesystem::path(folder) / "path_tracing_lab";
@@ -25,7 +25,7 @@ std::filesystem::path cache_file(const std::string& name) {
     return folder.empty() ? folder : folder / name;
 }
 
-// The last eight bytes of an entry are the hash of the others.
+// The last eight bytes of an entry are a hash of the rest.
 std::optional<std::string> read_cache(const std::string& name) try {
     const auto folder = cache_folder();
     if (folder.empty()) return std::nullopt;
@@ -50,7 +50,7 @@ void write_cache(const std::string& name, std::string_view contents) {
     bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
     try {
         write_file(folder / name, bytes);
-    } catch (const UserError&) {  // the next start takes longer
+    } catch (const UserError&) {  // the next start just takes longer
     }
 }
 

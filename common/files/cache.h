@@ -1,5 +1,5 @@
-// Compiled shaders, pipelines and choices of backends, kept for the next start. Failing to read or write an entry is silent; a
-// damaged entry counts as absent.
+// Caches compiled shaders, pipelines and backend choices between runs. Failing to read or write an entry is silent; a damaged
+// entry counts as absent.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace lab {
 
-// Contents of the entry `name`, if there is one.
+// Contents of the entry `name`, if it exists.
 std::optional<std::string> read_cache(const std::string& name);
 
-// The entry's file; empty if there is no folder for a cache.
+// The entry's file; empty if there is no cache folder.
 std::filesystem::path cache_file(const std::string& name);
 
 // Replaces the entry atomically.

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Beside the target, because renaming is atomic only within a file system. The process id keeps apart two programs that write the
-// same file.
+// In the target's folder, because renaming is atomic only within a file system. The process id separates two programs that write
+// the same file.
 fs::path temporary_name(const fs::path& file) {
     fs::path name = ".";
     name += file.filename();
@@ -26,7 +26,7 @@ fs::path temporary_name(const fs::path& file) {
     return file.parent_path() / name;
 }
 
-// Whether all bytes reached the file: a full disk may show only when it is flushed and closed.
+// Whether all bytes were written: a full disk may show only on flush or close.
 bool write_bytes(const fs::path& file, std::string_view bytes) {
     std::FILE* stream = std::fopen(file.string().c_str(), "wb");
     if (!stream) return false;

@@ -13,17 +13,17 @@ namespace lab {
 // name does not fit into a message (over 1000 bytes, control characters).
 std::string read_file(const std::filesystem::path& file, uint64_t max_bytes);
 
-// Largest single allocation in bytes for the contents of a file of this size: a small hostile file must not fill the memory.
+// Largest single allocation, in bytes, while reading a file of this size: a small hostile file must not exhaust memory.
 constexpr uint64_t memory_limit(uint64_t file_size) { return 16 * file_size + (uint64_t{1} << 30); }
 
-// Writes a temporary file and renames it. Throws UserError and leaves an older file untouched if any step fails.
+// Writes a temporary file and renames it. If any step fails, throws UserError and leaves an existing file untouched.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
-// Creates the folders of a file that will be written later. Throws UserError if it has none of the endings or cannot be written.
+// Creates the folders of a file to be written later. Throws UserError if the file has none of the endings or cannot be written.
 // An existing file keeps its contents.
 void check_writable(const std::filesystem::path& file, const std::vector<std::string>& endings);
 
-// The text with '?' for each control character.
+// The text with every control character replaced by '?'.
 std::string printable(std::string_view text);
 
 // A name for messages: printable, in double quotes, cut after 80 bytes.
@@ -32,13 +32,13 @@ std::string in_quotes(std::string_view name);
 // The extension in lower case, with its dot.
 std::string lower_case_extension(const std::filesystem::path& file);
 
-// FNV-1a of a text, continued from `hash`.
+// FNV-1a hash of a text, continuing from `hash`.
 inline uint64_t hash_text(std::string_view text, uint64_t hash = 14695981039346656037ull) {
     for (const char c : text) hash = (hash ^ static_cast<uint8_t>(c)) * 1099511628211ull;
     return hash;
 }
 
-// The hash as records and reports write it, without leading zeros.
+// A hash as records and reports write it, without leading zeros.
 inline std::string hexadecimal(uint64_t number) {
     char text[16];
     return {text, std::to_chars(text, text + sizeof text, number, 16).ptr};

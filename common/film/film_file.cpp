@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// A numeric attribute. Throws UserError if it is absent or no number.
+// A numeric attribute. Throws UserError if it is absent or not a number.
 template <typename T>
 T number(const ExrFile& exr, const std::string& name, const std::filesystem::path& file) {
     T value{};
@@ -24,7 +24,7 @@ T number(const ExrFile& exr, const std::string& name, const std::filesystem::pat
                     "' that is a number: only an EXR written by a chapter can be continued or merged");
 }
 
-// The attributes that are texts.
+// The text attributes.
 constexpr std::pair<const char*, std::string FilmRecord::*> texts[] = {
     {"chapter", &FilmRecord::chapter},       {"scene", &FilmRecord::scene},
     {"scene_hash", &FilmRecord::scene_hash}, {"estimator_hash", &FilmRecord::estimator_hash},
@@ -36,7 +36,7 @@ std::string to_text(double value) {
     return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
-// A channel of counts per pixel; zeros if it is absent.
+// A channel of counts per pixel; zeros if absent.
 std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t pixels, const std::filesystem::path& file) {
     std::vector<uint32_t> result(pixels, 0);
     const auto found = exr.channels.find(name);
@@ -52,10 +52,10 @@ std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t
 
 constexpr std::array<const char*, 3> differences{"difference.R", "difference.G", "difference.B"};
 
-// Not inlined: in loops over floats and doubles GCC 12 drops this rounding.
+// Not inlined: in loops over floats and doubles GCC 12 optimises this rounding away.
 [[gnu::noinline]] float to_float(double number) { return static_cast<float>(number); }
 
-// Splits a sum into the two floats that the device continues with.
+// Splits a sum into the two floats from which the device continues.
 void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
     for (int channel = 0; channel < 3; ++channel) {
         pixel.sum[channel] = to_float(sum[channel]);
@@ -76,7 +76,7 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
         for (const auto& pixel : image.pixels)
             exr.channels[differences[static_cast<size_t>(channel)]].push_back(
                 to_float(double{pixel.difference[channel]} / std::max(pixel.sample_count, 1u)));
-    // Beyond the fewest, since floats hold whole numbers only up to 2^24.
+    // Only what exceeds the smallest count, since 32-bit floats hold whole numbers only up to 2^24.
     if (!image.has_equal_sample_counts())
         for (const auto& pixel : image.pixels)
             exr.channels["further_samples"].push_back(static_cast<float>(pixel.sample_count - samples));
@@ -136,9 +136,9 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
     require("shader hash", a.record.estimator_hash, b.record.estimator_hash);
 }
 
-// Adds a film to the sum of others of the same render.
+// Adds a film to the sum of other parts of the same render.
 static void add(FilmFile& sum, const FilmFile& part) {
-    // A range that begins at an odd sample of the whole has the halves the other way round.
+    // If a part starts at an odd sample of the whole, its halves are swapped.
     const uint32_t first_sample = std::min(sum.record.first_sample, part.record.first_sample);
     const auto sign_of = [&](const FilmFile& film) { return (film.record.first_sample - first_sample) % 2 == 0 ? 1.0f : -1.0f; };
     const float sign_of_sum = sign_of(sum), sign_of_part = sign_of(part);
@@ -167,7 +167,7 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
     };
     std::vector<Range> ranges;
     FilmFile merged;
-    for (const auto& file : files) {  // one at a time: they may be many and large
+    for (const auto& file : files) {  // one at a time: there may be many, and large ones
         FilmFile part = read_film(file);
         if (!part.image.has_equal_sample_counts())
             throw UserError(file.string() + " is an unfinished render: finish it with --resume first");

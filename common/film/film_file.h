@@ -1,4 +1,4 @@
-// The film as an OpenEXR file: picture, record of the settings and checkpoint in one.
+// The film as an OpenEXR file: picture, settings and checkpoint in one.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -23,10 +23,10 @@ struct FilmRecord {
     double seconds = 0;  // of rendering
 };
 
-// The attribute `samples` is the smallest count of all pixels; after an interrupted render the channel `further_samples` holds
-// what pixels have beyond it. The channels `difference.R`, … hold what the first, third, … sample of a pixel add to the picture
-// minus what the others add: with an even number of samples its absolute value is the standard error. The channel
-// `invalid_samples` counts invalid ones, if any.
+// The attribute `samples` is the smallest sample count of any pixel; after an interrupted render the channel `further_samples`
+// holds what pixels have beyond it. The channels `difference.R`, … hold the contribution of a pixel's first, third, … sample to
+// the picture minus that of the others: for an even number of samples its absolute value is the standard error. The channel
+// `invalid_samples` counts invalid samples, if any.
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record);
 
 struct FilmFile {
@@ -34,10 +34,10 @@ struct FilmFile {
     FilmRecord record;
 };
 
-// Throws UserError if the file is not one that write_film() wrote.
+// Throws UserError if write_film() did not write the file.
 FilmFile read_film(const std::filesystem::path& file);
 
-// Throws UserError if size, chapter, scene, shader, settings or seed differ. The names are for the message.
+// Throws UserError if size, chapter, scene, shader, settings or seed differ. The names appear in the message.
 void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a, const std::string& name_b);
 
 // Joins renders of adjacent sample ranges, in any order. Throws UserError for gaps, overlaps, unfinished renders, and renders

@@ -8,7 +8,7 @@
 namespace lab {
 namespace {
 
-constexpr size_t pixels_per_piece = 1 << 16;  // that a thread works on at a time
+constexpr size_t pixels_per_piece = 1 << 16;  // per task of a thread
 
 glm::dvec3 mean_of(const FilmPixel& pixel) { return sum_of(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u)); }
 
@@ -22,7 +22,7 @@ std::array<double, 3> mean_over_pixels(const std::vector<FilmPixel>& pixels, glm
     return {mean.r, mean.g, mean.b};
 }
 
-// Numbers of samples of the two halves.
+// Sample counts of the two halves.
 glm::dvec2 sizes_of_halves(const FilmPixel& pixel) {
     return {pixel.sample_count - pixel.sample_count / 2, pixel.sample_count / 2};
 }
@@ -37,7 +37,7 @@ glm::dvec3 difference_of_halves(const FilmPixel& pixel) {
 }
 
 glm::dvec3 variance_of_mean(const FilmPixel& pixel) {
-    // The expected square of the difference is the variance of a sample times 1/n_0 + 1/n_1 = n/(n_0 n_1).
+    // The expected squared difference is the variance of a sample times 1/n_0 + 1/n_1 = n/(n_0 n_1).
     const glm::dvec2 parts = sizes_of_halves(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u));
     const glm::dvec3 difference = difference_of_halves(pixel);
     return parts[0] * parts[1] * difference * difference;

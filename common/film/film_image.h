@@ -1,4 +1,4 @@
-// The sums of an image's samples, and how they are shown.
+// The sums of an image's samples, and how they are displayed.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace lab {
 
-// The sum of a pixel's samples: two floats together hold it.
+// The sum of a pixel's samples, stored as two floats.
 inline glm::dvec3 sum_of(const FilmPixel& pixel) { return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation); }
 
-// The mean of the first, third, … sample minus that of the others: two independent estimates. 0 of fewer than two samples.
+// The mean of the first, third, … sample minus that of the others: two independent estimates. 0 with fewer than two samples.
 glm::dvec3 difference_of_halves(const FilmPixel& pixel);
 // The variance of the mean of all samples, estimated from that difference.
 glm::dvec3 variance_of_mean(const FilmPixel& pixel);
@@ -23,7 +23,7 @@ struct FilmImage {
     std::vector<FilmPixel> pixels;
 
     bool has_equal_sample_counts() const;
-    uint32_t min_samples() const;                   // per pixel, the fewest
+    uint32_t min_samples() const;                   // smallest count of any pixel
     uint64_t invalid_samples() const;               // infinite or NaN samples of all pixels
     Image mean() const;                             // per pixel; 0 without samples
     std::array<double, 3> mean_radiance() const;    // of the whole image
@@ -33,7 +33,7 @@ struct FilmImage {
 // For messages: "640x480".
 std::string size_text(const uvec2& size);
 
-// How values become colours; views of normals, depth and the like are not radiance.
+// How values become colours: views of normals, depth and the like are not radiance.
 enum class DisplayTransform {
     exposure,  // times 2^exposure, clamped, sRGB-encoded
     maximum,   // divided by the largest finite value of the image

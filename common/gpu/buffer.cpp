@@ -22,8 +22,8 @@ std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) -
                         std::to_string(device.limits().maxMemoryAllocationCount) + " of them: use a smaller scene");
 }
 
-// Allocates memory with all `required` and, if possible, the preferred properties. Where preferred memory is used up, only
-// devices that share the CPU's memory fall back to other types; a discrete GPU would crawl.
+// Allocates memory with all `required` and, if possible, the preferred properties. If preferred memory is used up, only devices
+// that share the CPU's memory fall back to other types; a discrete GPU would slow to a crawl.
 Allocation allocate(const Device& device, const vk::MemoryRequirements& requirements, vk::MemoryPropertyFlags required,
                     vk::MemoryPropertyFlags preferred, vk::MemoryAllocateFlags flags = {}) {
     const auto memory = device.physical().getMemoryProperties();

@@ -1,4 +1,4 @@
-// Memory of a device: buffers and images.
+// Device memory: buffers and images.
 #pragma once
 #include <span>
 
@@ -6,7 +6,7 @@
 
 namespace lab {
 
-// A buffer or an image to be allocated.
+// A buffer or image to be allocated.
 struct MemoryNeed {
     std::string what;  // "positions"
     size_t bytes;
@@ -15,11 +15,11 @@ struct MemoryNeed {
     vk::Extent2D image_size = {};   // in pixels, of an image
 };
 
-// Largest buffer of this usage that shaders can bind, in bytes.
+// Largest buffer that shaders can bind with this usage, in bytes.
 size_t largest_visible(const Device& device, vk::BufferUsageFlags usage);
 
-// Checks allocations before they are made. Throws DeviceFailure, with the numbers, if one is larger than the device allows, if
-// there are too many, or if together they exceed its memory.
+// Checks allocations before they are made. Throws DeviceFailure, with the numbers, if one exceeds the device's limit, if there
+// are too many, or if together they exceed its memory.
 void require_memory(const Device& device, std::span<const MemoryNeed> needs);
 
 class Buffer {
@@ -28,7 +28,7 @@ class Buffer {
         device,  // fast for shaders
         host,    // visible to the CPU at any time
     };
-    // `size` in bytes, at least 16 are allocated. Throws DeviceFailure if it does not fit.
+    // `size` in bytes; at least 16 are allocated. Throws DeviceFailure if it does not fit.
     Buffer(const Device& device, size_t size, vk::BufferUsageFlags usage, Location location = Location::device);
 
     Buffer(const Device& device, const MemoryNeed& need, Location location = Location::device);
@@ -44,12 +44,12 @@ class Buffer {
     size_t size() const { return size_; }
     vk::DeviceAddress address() const;  // needs the usage eShaderDeviceAddress
 
-    // Copy to or from the start of the buffer, which the device must not be using.
+    // Copy to or from the start of the buffer, which the device must not be using meanwhile.
     void write(const void* data, size_t size);
     void read(void* data, size_t size) const;
     void clear();  // to zeros
 
-    // The contents of a buffer that the CPU can see; empty for others.
+    // The contents of a host-visible buffer; empty for others.
     template <typename T>
     std::span<T> mapped() const {
         return {static_cast<T*>(mapped_), mapped_ ? size_ / sizeof(T) : 0};
@@ -69,7 +69,7 @@ class DeviceImage {
     vk::Image handle() const { return *image_; }
 
   protected:
-    // Starts in the layout eUndefined. Throws DeviceFailure if it does not fit.
+    // Starts in layout eUndefined. Throws DeviceFailure if it does not fit.
     DeviceImage(const Device& device, uint32_t width, uint32_t height, vk::Format format, vk::ImageUsageFlags usage);
 
     vk::raii::Image image_ = nullptr;
@@ -77,16 +77,16 @@ class DeviceImage {
     vk::raii::ImageView view_ = nullptr;
 };
 
-// An image that shaders read by texelFetch, without a sampler.
+// An image that shaders read with texelFetch, without a sampler.
 class SampledImage : public DeviceImage {
   public:
-    // `pixels` row by row without gaps in `format`.
+    // `pixels` in `format`, row by row without padding.
     SampledImage(const Device& device, uint32_t width, uint32_t height, vk::Format format, std::span<const std::byte> pixels);
 
     vk::DescriptorImageInfo info() const { return {{}, *view_, vk::ImageLayout::eShaderReadOnlyOptimal}; }
 };
 
-// An 8-bit RGBA image that compute shaders write, in the layout eGeneral. Starts black.
+// An 8-bit RGBA image that compute shaders write, in layout eGeneral. Starts black.
 class StorageImage : public DeviceImage {
   public:
     StorageImage(const Device& device, uint32_t width, uint32_t height);

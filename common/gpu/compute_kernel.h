@@ -15,7 +15,7 @@ struct Binding {
     std::vector<vk::DescriptorImageInfo> images = {};
     std::vector<vk::BufferView> texel_views = {};
     std::vector<vk::AccelerationStructureKHR> acceleration_structures = {};
-    std::span<std::byte> host = {};  // a buffer's contents where the CPU sees them
+    std::span<std::byte> host = {};  // contents of a host-visible buffer
 };
 
 Binding storage_binding(uint32_t index, const Buffer& buffer);
@@ -40,7 +40,7 @@ class ComputeKernel {
     ComputeKernel(const Device& device, const ShaderSource& source, std::span<const Binding> bindings,
                   uint32_t push_constant_size);
 
-    // Dispatches `group_count` workgroups. `offsets` in bytes, for dynamic bindings.
+    // Dispatches `group_count` workgroups. `offsets` of dynamic bindings, in bytes.
     void record(const vk::raii::CommandBuffer& commands, const void* push_constants, uint32_t group_count,
                 vk::ArrayProxy<const uint32_t> offsets = {}) const;
 

@@ -33,7 +33,7 @@ bool contains(const std::vector<vk::ExtensionProperties>& extensions, std::strin
     return std::ranges::any_of(extensions, [&](const auto& extension) { return extension.extensionName.data() == name; });
 }
 
-// Required features; the ray tracing ones count only with their extensions.
+// Required features; those for ray tracing count only with their extensions.
 using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                     vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
                                     vk::PhysicalDeviceRayTracingPipelineFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>;
@@ -48,7 +48,7 @@ bool computes(const vk::QueueFamilyProperties& family) {
     return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
 }
 
-// Features that all backends need and the device lacks.
+// Features that every backend needs and the device lacks.
 std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device, const Features& features) {
     std::vector<std::string> missing;
     const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
@@ -59,7 +59,7 @@ std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& devi
     return missing;
 }
 
-// Bytes of all heaps, or of the device's own where it does not share the CPU's memory.
+// Bytes of all heaps, or only of the device-local ones if it does not share the CPU's memory.
 size_t usable_memory(const vk::raii::PhysicalDevice& device, bool shares_memory) {
     const auto memory = device.getMemoryProperties();
     size_t sum = 0;
@@ -83,7 +83,7 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         .api_version = version_text(general.apiVersion),
         .shares_memory = shares_memory,
         .memory = usable_memory(device, shares_memory),
-        // Offsets of parts have 32 bits.
+        // Offsets of parts are 32-bit.
         .largest_buffer =
             std::min<size_t>(properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),
         .missing = {},
@@ -120,7 +120,7 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
         layers.push_back(validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
-    // Drivers that lack parts of Vulkan, such as macOS's, show only on request.
+    // Incomplete implementations such as macOS's are listed only on request.
     vk::InstanceCreateFlags flags;
     if (contains(context.enumerateInstanceExtensionProperties(), VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
         extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
@@ -238,7 +238,7 @@ void Device::create_device() {
         if (description_.supports(backend))
             for (const char* extension : extensions_for(backend)) extensions.insert(extension);
     if (*surface_) extensions.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-    constexpr const char* portability = "VK_KHR_portability_subset";  // must be enabled where a device has it
+    constexpr const char* portability = "VK_KHR_portability_subset";  // must be enabled if a device has it
     if (contains(physical_.enumerateDeviceExtensionProperties(), portability)) extensions.insert(portability);
     vulkan12.bufferDeviceAddress = has_acceleration_structures();
     const auto switch_on = [&]<typename Structure>(vk::Bool32 Structure::*feature, bool is_there) {
@@ -265,11 +265,11 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
     const auto lock = lock_queue();
     command_buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     command_buffer_.resetQueryPool(*timestamps_, 0, 2);
-    wait_for_writes(command_buffer_);  // of earlier submissions
+    wait_for_writes(command_buffer_);  // by earlier submissions
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eTopOfPipe, *timestamps_, 0);
     record(command_buffer_);
     command_buffer_.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *timestamps_, 1);
-    // Make what it has written visible to the host.
+    // Make the device's writes visible to the host.
     command_buffer_.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eHost, {},
                                     vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
     command_buffer_.end();
@@ -292,7 +292,7 @@ VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebug
     return VK_FALSE;
 }
 
-// The name keeps devices apart; the driver itself checks that a pipeline cache is its own.
+// The name distinguishes devices; the driver itself rejects a pipeline cache that is not its own.
 static std::string pipeline_cache_name(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties();
     const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()), VK_UUID_SIZE);
@@ -311,7 +311,7 @@ Device::~Device() {
         if (contents.size() != pipeline_cache_size_)
             write_cache(pipeline_cache_name(physical_), {reinterpret_cast<const char*>(contents.data()), contents.size()});
     } catch (const vk::SystemError&) {
-        // A lost device keeps no pipelines.
+        // A lost device has no pipelines to save.
     }
 }
 

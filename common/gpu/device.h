@@ -23,7 +23,7 @@ inline constexpr Backend all_backends[] = {Backend::pipeline, Backend::query, Ba
 std::string to_string(Backend backend);
 
 struct DeviceOptions {
-    std::string choice;       // index or part of the name as in --list-devices; empty: the fastest kind
+    std::string choice;       // index or part of a name in --list-devices; empty: the fastest kind
     bool validation = false;  // needs the validation layer to be installed
     // Instance extensions that the window needs; empty without a window.
     std::vector<const char*> instance_extensions = {};
@@ -46,7 +46,7 @@ struct DeviceDescription {
 
 class Device {
   public:
-    // Throws DeviceError without a driver (saying what to install) or such a device, or if it lacks a feature.
+    // Throws DeviceError without a driver (saying what to install), without such a device, or if it lacks a feature.
     explicit Device(const DeviceOptions& options);
     ~Device();
     Device(const Device&) = delete;
@@ -57,7 +57,7 @@ class Device {
     const vk::raii::PipelineCache& pipeline_cache() const { return pipeline_cache_; }
     const DeviceDescription& description() const { return description_; }
     const vk::PhysicalDeviceLimits& limits() const { return limits_; }
-    // Properties in a structure of their own.
+    // Properties from an extension's own structure.
     template <typename Properties>
     Properties properties() const {
         return physical_.getProperties2<vk::PhysicalDeviceProperties2, Properties>().template get<Properties>();
@@ -71,13 +71,13 @@ class Device {
     const vk::raii::SurfaceKHR& surface() const { return surface_; }
     const vk::raii::Queue& queue() const { return queue_; }
     uint32_t queue_family() const { return queue_family_; }
-    // Hold this lock while using queue(). submit() takes it itself, from any thread.
+    // Hold this lock while using queue(). submit() takes it itself and may be called from any thread.
     std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
 
-    // Records and submits commands, waits for them, and returns their seconds on the device.
+    // Records and submits commands, waits for them, and returns the seconds they took on the device.
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
-    // Messages of the validation layers and of the driver so far; empty without validation.
+    // Messages so far from the validation layers and the driver; empty without validation.
     const std::vector<std::string>& validation_messages() const { return messages_.validation; }
     const std::vector<std::string>& driver_messages() const { return messages_.driver; }
 
@@ -114,13 +114,13 @@ class Device {
     size_t pipeline_cache_size_ = 0;
 };
 
-// A barrier: commands that follow see, and may overwrite, all that was written before.
+// A full memory barrier: later commands see, and may overwrite, everything written before.
 void wait_for_writes(const vk::raii::CommandBuffer& commands);
 
 // All devices in the order of their indices. Throws DeviceError without a Vulkan driver.
 std::vector<DeviceDescription> list_devices();
 
-// What an exception means to a user of a program or a window.
+// What an exception means to the user of a program or window.
 struct Failure {
     int exit_code;        // as error.h says
     std::string message;  // one line

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The name in a line #include "name".
+// The name in an #include "name" line.
 std::optional<std::string> included_name(std::string_view line) {
     const auto skip = [&](std::string_view word) {
         line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -36,9 +36,9 @@ std::optional<std::string> included_name(std::string_view line) {
     return std::string(line.substr(0, end));
 }
 
-// Replaces #include "…" by the text of the file, each file once, with #line directives. The result is the compiler's input and
-// the key of the cache. Shaders may come from strangers, so included files must lie in the folder of a named file, in shaders/ or
-// in chapters/. Line ends and byte order mark may be those of Windows.
+// Replaces each #include "…" by the file's text, every file once, with #line directives. The result is the compiler's input and
+// the cache key. Shaders may come from strangers, so included files must lie in the folder of a named file, in shaders/ or in
+// chapters/. Windows line ends and a byte order mark are accepted.
 class Includer {
   public:
     explicit Includer(const ShaderSource& source) : named_(source.named_includes) {
@@ -64,7 +64,7 @@ class Includer {
     const std::set<fs::path>& included() const { return seen_; }
 
   private:
-    // The replacement of an #include line.
+    // The text that replaces an #include line.
     std::string include(const std::string& name, const fs::path& includer, int line) {
         const std::string place = includer.generic_string() + ":" + std::to_string(line) + ": ";
         const fs::path file = find(name, includer, place);
@@ -113,7 +113,7 @@ constexpr struct {
     {"l-value required", "what is const cannot be assigned"},
 };
 
-// Finds the token in a message "file:line: 'token' : text" of glslang that is a single byte of a non-ASCII character.
+// Finds the token in a glslang message "file:line: 'token' : text" that is a single byte of a non-ASCII character.
 size_t find_lone_byte(const std::string& line) {
     const size_t token = line.find(": '");
     const bool is_lone = token != std::string::npos && token + 4 < line.size() &&
@@ -129,8 +129,8 @@ std::string with_advice(const std::string& line) {
     return line;
 }
 
-// The errors in a log of glslang as lines "file:line: text": the first of each line of source, since the others follow from it.
-// The commonest say what to do.
+// The errors in glslang's log as lines "file:line: text": only the first of each source line, since the others follow from it.
+// The most common ones say what to do.
 std::string readable_errors(const std::string& log) {
     std::istringstream lines(log);
     std::string line, text, place;
@@ -152,7 +152,7 @@ EShLanguage stage_of(const fs::path& file) {
     return stages.at(file.extension().string());
 }
 
-// A shader's text with all that it includes, and its defines.
+// A shader's text with everything it includes, and its defines.
 struct ExpandedShader {
     std::string text, preamble;
     explicit ExpandedShader(const ShaderSource& source) : text(Includer(source).expand(source.file)) {
@@ -164,14 +164,14 @@ struct ExpandedShader {
 
 constexpr auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
 
-// Passes the shader to `use`.
+// Sets up glslang for the shader and hands it to `use`.
 template <typename Use>
 void with_glslang(const ShaderSource& source, const ExpandedShader& expanded, const Use& use) {
     static const bool initialised = glslang::InitializeProcess();
     if (!initialised) throw UserError("glslang could not be initialised");
     const EShLanguage stage = stage_of(source.file);
     glslang::TShader shader(stage);
-    const std::string name = source.file.generic_string();  // GLSL has escapes in quotes
+    const std::string name = source.file.generic_string();  // GLSL interprets escapes in quotes
     const char* texts[] = {expanded.text.c_str()};
     const int lengths[] = {static_cast<int>(expanded.text.size())};
     const char* names[] = {name.c_str()};

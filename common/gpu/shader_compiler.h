@@ -1,4 +1,4 @@
-// Compiles GLSL at run time by glslang, so that shaders can be edited without rebuilding the program.
+// Compiles GLSL at run time with glslang, so that shaders can be edited without rebuilding the program.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -9,26 +9,26 @@
 
 namespace lab {
 
-constexpr uint64_t max_shader_bytes = 1 << 20;  // of each file
+constexpr uint64_t max_shader_bytes = 1 << 20;  // per file
 
 struct ShaderSource {
     std::filesystem::path file;             // stage by extension: .comp, .rgen, .rmiss or .rchit
     std::vector<std::string> defines = {};  // "NAME" or "NAME value"
-    // Files for #include "name". Other names are looked up beside the includer, in shaders/ and in chapters/, and must not lead
-    // out of the folders of these files, shaders/ and chapters/. Each file is included once, even where an #if skips it.
+    // Files for #include "name". Other names are looked up next to the including file, in shaders/ and in chapters/, and must not
+    // lead outside the folders of these files, shaders/ and chapters/. Each file is included once, even if an #if skips it.
     std::map<std::string, std::filesystem::path> named_includes = {};
     // Edits the text before it is compiled; lines keep their numbers.
     std::function<std::string(const std::string&)> edit = {};
 };
 
-// The shader's file and all included ones. Throws UserError if one is missing or refused.
+// The shader's file and everything it includes. Throws UserError if one is missing or refused.
 std::vector<std::filesystem::path> shader_files(const ShaderSource& source);
 
 // Returns SPIR-V 1.5, from the cache if possible. Throws UserError with lines "file:line: message".
 std::vector<uint32_t> compile_shader(const ShaderSource& source);
 
-// The shader's text with includes and macros replaced and without comments. Lines keep their numbers, by #line directives. Throws
-// as compile_shader() for errors of the preprocessor.
+// The preprocessed text of the shader: includes and macros expanded, comments removed. #line directives keep the line numbers.
+// Throws like compile_shader() for preprocessor errors.
 std::string preprocess_shader(const ShaderSource& source);
 
 }  // namespace lab

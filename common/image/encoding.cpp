@@ -9,9 +9,9 @@
 namespace lab {
 namespace {
 
-constexpr int level = 4;  // noise hardly gets smaller with more work
+constexpr int level = 4;  // a higher level hardly shrinks noise further
 
-// A whole stream or, with negative window bits, a raw part without header and checksum.
+// Compresses a whole stream or, with negative window bits, a raw part without header and checksum.
 std::string deflate_all(std::string_view bytes, int window_bits, int flush) {
     z_stream stream{};
     if (deflateInit2(&stream, level, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
@@ -52,7 +52,7 @@ std::string compress_in_parallel(std::string_view bytes) {
         pieces[begin / piece_size] = {deflate_all(piece, -MAX_WBITS, flush),
                                       adler32(adler32(0, nullptr, 0), to_bytes(piece), static_cast<uInt>(piece.size()))};
     });
-    std::string stream = "\x78\x5e";  // deflate with a window of 32 KiB, at a fast level
+    std::string stream = "\x78\x5e";  // header: deflate with a 32 KiB window, fast level
     uLong checksum = adler32(0, nullptr, 0);
     for (size_t i = 0; i < pieces.size(); ++i) {
         const size_t size = std::min(piece_size, bytes.size() - i * piece_size);

@@ -1,4 +1,4 @@
-// Numbers as bytes, and compression by zlib.
+// Numbers as bytes, and zlib compression.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -14,10 +14,10 @@ std::string little_endian(Number number) {
     return {reinterpret_cast<const char*>(&number), sizeof number};
 }
 
-// A zlib stream, made by the calling thread.
+// A zlib stream, compressed by the calling thread.
 std::string compress(std::string_view bytes);
 
-// A zlib stream of independent pieces, made by all threads.
+// A zlib stream of independent pieces, compressed by all threads.
 std::string compress_in_parallel(std::string_view bytes);
 
 }  // namespace lab

@@ -1,4 +1,4 @@
-// Reads OpenEXR by tinyexr, behind checks: damaged headers make it abort or allocate without bound.
+// Reads OpenEXR with tinyexr, behind checks: damaged headers make it abort or allocate without bound.
 #include <tinyexr.h>
 
 #include <algorithm>
@@ -17,14 +17,14 @@
 namespace lab {
 namespace {
 
-// Throws tinyexr's message, if it made one, as a UserError.
+// Throws tinyexr's message, if there is one, as a UserError.
 [[noreturn]] void fail_with(const std::filesystem::path& file, const char* message) {
     std::string reason = message ? message : "cannot be decoded";
     FreeEXRErrorMessage(message);
     fail(file, "damaged or unsupported OpenEXR file: " + reason.substr(0, reason.find('\n')));
 }
 
-// Walks over the attributes (name, type, size, value) to check "type", at whose unknown values tinyexr aborts.
+// Walks over the attributes (name, type, size, value) to check "type": tinyexr aborts on unknown values.
 void check_attributes(const std::filesystem::path& file, std::string_view bytes) {
     bytes.remove_prefix(8);  // magic number and version
     const auto take_string = [&] { return take_until('\0', file, bytes); };
@@ -40,7 +40,7 @@ void check_attributes(const std::filesystem::path& file, std::string_view bytes)
     }
 }
 
-// Checks that sizes fit the limits and the file, and that channels fill the whole image.
+// Checks that sizes are within the limits and the file, and that every channel covers the whole image.
 void check_header(const std::filesystem::path& file, const EXRHeader& header, uint64_t file_size) {
     const EXRBox2i& window = header.data_window;
     const int64_t width = int64_t{window.max_x} - window.min_x + 1;
@@ -116,14 +116,14 @@ ExrFile read_exr(const std::filesystem::path& file) {
         if (ParseEXRHeaderFromMemory(&header, &version, memory, size, &message) != TINYEXR_SUCCESS) fail_with(file, message);
         check_header(file, header, size);
         std::fill_n(header.requested_pixel_types, header.num_channels, TINYEXR_PIXELTYPE_FLOAT);
-        header.chunk_count = 0;  // tinyexr computes it then, and does not allocate what the file claims
+        header.chunk_count = 0;  // makes tinyexr compute it instead of allocating what the file claims
         header.line_order = 0;   // rows carry their number; tinyexr would flip decreasing ones
         EXRImage decoded;
         InitEXRImage(&decoded);
         const std::unique_ptr<EXRImage, decltype(&FreeEXRImage)> frees_image(&decoded, FreeEXRImage);
-        decoded.num_channels = header.num_channels;  // else tinyexr does not free the planes if it fails
+        decoded.num_channels = header.num_channels;  // or else tinyexr leaks the planes if it fails
         if (LoadEXRImageFromMemory(&decoded, &header, memory, size, &message) != TINYEXR_SUCCESS) {
-            InitEXRImage(&decoded);  // it has freed it
+            InitEXRImage(&decoded);  // on failure tinyexr has freed it
             fail_with(file, message);
         }
         return collect(file, header, decoded);

@@ -1,5 +1,5 @@
-// Writes OpenEXR files: 32-bit floats in scan lines, in blocks of 16 rows that all threads compress. (tinyexr's writer uses one
-// thread.)
+// Writes OpenEXR files: 32-bit floats in scan lines, in blocks of 16 rows that all threads compress (tinyexr's writer is
+// single-threaded).
 #include <algorithm>
 #include <cstring>
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t rows_per_block = 16;
 
-// A channel in memory: number i is first[i * stride].
+// A channel in memory: element i is first[i * stride].
 struct Plane {
     const float* first;
     size_t stride;
@@ -26,7 +26,7 @@ std::string attribute(const std::string& name, const std::string& type, const st
 std::string header(const ExrFile& exr, const Planes& planes) {
     const std::string zero(1, '\0');
     std::string channels;
-    for (const auto& [name, plane] : planes)  // floats, one for each pixel
+    for (const auto& [name, plane] : planes)  // 32-bit floats, one per pixel
         channels += name + zero + little_endian(2) + little_endian(0) + little_endian(1) + little_endian(1);
     const std::string window =
         little_endian(0) + little_endian(0) + little_endian(exr.image.width - 1) + little_endian(exr.image.height - 1);
@@ -42,7 +42,7 @@ std::string header(const ExrFile& exr, const Planes& planes) {
     return text + zero;
 }
 
-// As OpenEXR prescribes: even bytes before odd ones, differences of neighbours, zlib; never longer than before.
+// OpenEXR's ZIP predictor: even bytes before odd ones, differences of neighbours, zlib. Never longer than the input.
 std::string compress_block(const std::string& rows) {
     std::string split(rows.size(), '\0');
     const size_t half = (rows.size() + 1) / 2;

@@ -1,4 +1,4 @@
-// Images and their files. Readers throw UserError for damaged files, all writers replace the file atomically.
+// Images and their files. Readers throw UserError for damaged files; all writers replace the file atomically.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace lab {
 
-// Linear RGB, row by row from the top; pixels has 3 * width * height numbers.
+// Linear RGB, row by row from the top; `pixels` has 3 * width * height numbers.
 struct Image {
     uint32_t width = 0;
     uint32_t height = 0;
     std::vector<float> pixels;
 };
 
-// RGBA with 8 bits per channel: sRGB-encoded colour, linear alpha; pixels has 4 * width * height bytes.
+// RGBA with 8 bits per channel: sRGB-encoded colour, linear alpha; `pixels` has 4 * width * height bytes.
 struct Texture {
     uint32_t width = 0;
     uint32_t height = 0;
@@ -28,14 +28,14 @@ struct Texture {
 };
 
 // An OpenEXR file: R, G, B as 32-bit floats, further channels and string attributes. Names have at most 31 characters. There are
-// at most 128 attributes, none with a standard name such as "type".
+// at most 128 attributes, none of them with a standard name such as "type".
 struct ExrFile {
     Image image;
     std::map<std::string, std::vector<float>> channels;  // each has width * height numbers
     std::map<std::string, std::string> attributes;
 };
 
-// Largest width and height of an image.
+// Largest width and height of an image, in pixels.
 inline constexpr uint32_t max_image_extent = 16384;
 
 // Reads single-part scan line files, uncompressed or RLE, ZIP or PIZ; 16-bit floats are widened.
@@ -55,8 +55,8 @@ void write_jpg(const std::filesystem::path& file, const Texture& image);
 // check_writable() for an image.
 inline void check_writable(const std::filesystem::path& file) { check_writable(file, {".exr", ".hdr", ".png", ".jpg"}); }
 
-// The sRGB transfer function (IEC 61966-2-1) from linear to encoded values, clamped to [0,1]. In double, so that bytes survive
-// the way to linear and back.
+// The sRGB transfer function (IEC 61966-2-1), linear to encoded, clamped to [0,1]. In double, so that bytes survive the round
+// trip to linear.
 inline float linear_to_srgb(float linear) {
     const double value = std::clamp(static_cast<double>(linear), 0.0, 1.0);
     return static_cast<float>(value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055);

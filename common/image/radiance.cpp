@@ -24,7 +24,7 @@ void read_resolution(const std::filesystem::path& file, std::string_view line, I
     check_image_size(file, image.width, image.height);
 }
 
-// Reads a row of four bytes per pixel. Rows of 8 pixels or more that start with 2, 2 and their width are run-length encoded
+// Reads a row of four bytes per pixel. Rows of at least 8 pixels that start with 2, 2 and their width are run-length encoded
 // channel by channel.
 void read_row(const std::filesystem::path& file, std::string_view& bytes, std::vector<uint8_t>& row) {
     const auto next = [&] {

@@ -1,5 +1,5 @@
-// Eight-bit images through stb_image, the writers of stb_image_write, and the code of both.
-// radiance.cpp reads .hdr itself, because stb_image does not end on some truncated files.
+// Eight-bit images: reading by stb_image, writing by stb_image_write, and the code of both libraries.
+// radiance.cpp reads .hdr itself, because stb_image never returns on some truncated files.
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -12,10 +12,10 @@
 
 namespace lab {
 
-// Limits the memory of stb_image, since damaged files may claim any amount.
+// Bounds stb_image's memory, since damaged files may claim any amount.
 struct StbMemory {
-    size_t largest_block = SIZE_MAX;  // bytes; a larger one counts as out of memory
-    bool exceeded = false;            // whether one was asked for
+    size_t largest_block = SIZE_MAX;  // bytes; anything larger counts as out of memory
+    bool exceeded = false;            // whether a larger one was requested
 };
 static thread_local StbMemory stb_memory;
 
@@ -24,11 +24,11 @@ static void* stb_allocate(void* block, size_t size) {
         stb_memory.exceeded = true;
         return nullptr;
     }
-    // Zeroed, because stb_image up to 2.27 uses tables that a damaged .jpg has not defined.
+    // Zeroed, because stb_image up to 2.27 reads tables that a damaged .jpg never defined.
     return block ? std::realloc(block, size) : std::calloc(1, size);
 }
 
-// For PNG: the threads that stb does not use.
+// For PNG: compresses with all threads, which stb does not.
 static unsigned char* compress_for_stb(unsigned char* data, int size, int* compressed_size, int) {
     const std::string bytes = compress_in_parallel({reinterpret_cast<const char*>(data), static_cast<size_t>(size)});
     auto* result = static_cast<unsigned char*>(std::malloc(bytes.size()));
@@ -61,13 +61,13 @@ static unsigned char* compress_for_stb(unsigned char* data, int size, int* compr
 namespace lab {
 namespace {
 
-// stb_image fills truncated files up with zeros. Reading by callbacks shows that it asked for more than there is.
+// stb_image pads truncated files with zeros. Reading through callbacks shows that it asked for more than there is.
 struct ByteSource {
     std::string_view bytes;
     size_t position = 0;
     bool exhausted = false;
 
-    // Only the 128 bytes that stb_image buffers ahead may be cut short by the end of a file.
+    // Only the 128 bytes that stb_image reads ahead may be cut short by the end of the file.
     static int read(void* user, char* target, int size) {
         auto& source = *static_cast<ByteSource*>(user);
         const size_t count = std::min(static_cast<size_t>(size), source.bytes.size() - source.position);
@@ -93,9 +93,9 @@ struct ByteSource {
 
 constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSource::at_end};
 
-// stb_image up to 2.27 overruns an array for Huffman tables of more than 256 codes, and many scans of a few bytes let it pass
-// over a large progressive image again and again (encoders make about ten scans). Walks over the segments of a .jpg file (0xff,
-// marker, length in two bytes) as stb_image does.
+// stb_image up to 2.27 overruns an array if Huffman tables have more than 256 codes, and many scans of a few bytes each make it
+// traverse a large progressive image over and over (encoders make about ten scans). Walks the segments of a .jpg file (0xff,
+// marker, two bytes of length) as stb_image does.
 bool is_harmless_jpg(std::string_view jpg) {
     constexpr size_t max_scans = 64;
     size_t scans = 0;
@@ -104,7 +104,7 @@ bool is_harmless_jpg(std::string_view jpg) {
     while ((position = jpg.find('\xff', position)) != std::string_view::npos) {
         const uint32_t marker = byte(++position);
         if (marker == 0xff) continue;                                                    // padding
-        if (marker == 0 || marker == 1 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // have no length
+        if (marker == 0 || marker == 1 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // no length
         const size_t end = position + 1 + (byte(position + 1) << 8 | byte(position + 2));
         if (marker == 0xda && ++scans > max_scans) return false;
         if (marker == 0xc4) {
@@ -138,7 +138,8 @@ Texture read_texture(const std::filesystem::path& file) {
     if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels))
         fail(file, "not a texture: it must be a .png, .jpg, .bmp or .tga file");
     check_image_size(file, width, height);
-    // A pixel takes at least a deflated bit in .png, and 1/64 bit in .jpg (a bit per 8 x 8 block): refuse more before allocating.
+    // A pixel takes at least one deflated bit in .png, and 1/64 bit in .jpg (one bit per 8 x 8 block): refuse more before
+    // allocating.
     const uint64_t max_pixels_a_byte = bytes.starts_with("\x89PNG") ? 8 * max_deflate_ratio : 8 * 64;
     if (static_cast<uint64_t>(width) * height > max_pixels_a_byte * bytes.size()) fail_truncated(file);
 
@@ -155,7 +156,7 @@ Texture read_texture(const std::filesystem::path& file) {
 }
 
 void write_png(const std::filesystem::path& file, const Texture& image) {
-    stbi_write_force_png_filter = 4;  // Paeth's suits rendered pictures; trying all five takes five times as long
+    stbi_write_force_png_filter = 4;  // Paeth suits rendered pictures; trying all five takes five times as long
     std::string bytes;
     const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
     check_written(stbi_write_png_to_func(append, &bytes, width, height, 4, image.pixels.data(), 0), file);
@@ -171,7 +172,7 @@ void write_jpg(const std::filesystem::path& file, const Texture& image) {
 }
 
 void write_hdr(const std::filesystem::path& file, const Image& image) {
-    // The shared 8-bit exponent has no sign, infinity or NaN: they become 0 or the largest finite number.
+    // The shared 8-bit exponent cannot express a sign, infinity or NaN: they become 0 or the largest finite number.
     constexpr float largest = 1e38f;
     std::vector<float> pixels(image.pixels.size());
     std::transform(image.pixels.begin(), image.pixels.end(), pixels.begin(),

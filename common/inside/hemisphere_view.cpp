@@ -38,7 +38,7 @@ HemisphereView::HemisphereView(const Device& device, const AccelerationStructure
                 std::vector{storage_binding(BINDING_SHADING_POINT, point_)}) {}
 
 void HemisphereView::look_at(const PathVertex& vertex, const RenderParameters& parameters) {
-    // Upwards is what is further up, or further away, in the render's picture.
+    // Up in the disc is what lies further up, or further away, in the rendered picture.
     const ShadingPoint point{.instance = vertex.instance,
                              .triangle = vertex.triangle,
                              .barycentrics = vertex.barycentrics,
@@ -48,7 +48,7 @@ void HemisphereView::look_at(const PathVertex& vertex, const RenderParameters& p
     RenderParameters of_view = with_size(parameters);
     of_view.camera = {vec3(0), vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)};
     of_view.first_sample = 0;
-    // The bounce at the point itself is the last one of the product's paths.
+    // The bounce at the point itself counts towards the path length.
     if (of_view.max_path_length > 0) --of_view.max_path_length;
     if (of_view.only_path_length > 0) --of_view.only_path_length;
     renderer_.restart(of_view);

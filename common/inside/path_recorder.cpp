@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t max_events = 4096;
 
-// The start of the buffer; the events follow.
+// The head of the buffer; the events follow.
 struct Header {
     uint32_t pixel;
     uint32_t sample;
@@ -22,7 +22,7 @@ struct Header {
 
 bool is_ray(const RecordedEvent& event) { return event.kind == EVENT_RAY || event.kind == EVENT_SHADOW_RAY; }
 
-// Makes vertices of events.
+// Turns events into vertices.
 class PathBuilder {
   public:
     explicit PathBuilder(std::span<const RecordedEvent> events) : events_(events) {}
@@ -62,8 +62,8 @@ class PathBuilder {
     }
 
   private:
-    // The vertex that a ray starts from. Rays start off the surface by a few units in the last place only, so it is the nearest,
-    // and the latest of several at one place.
+    // The vertex that a ray starts from. Rays start only a few ulps off the surface, so it is the nearest one, and the latest of
+    // several in one place.
     int vertex_at(const vec3& origin) const {
         int nearest = -1;
         float smallest = std::numeric_limits<float>::infinity();
@@ -106,7 +106,7 @@ class PathBuilder {
         is_light_sampled_ = true;
     }
 
-    // What follows happens where the branch's first ray starts.
+    // What follows happens at the origin of the branch's first ray.
     void start_branch() {
         const auto ray = std::find_if(events_.begin() + static_cast<std::ptrdiff_t>(next_), events_.end(), is_ray);
         if (ray != events_.end()) site_ = vertex_at(ray->origin);
@@ -114,7 +114,7 @@ class PathBuilder {
 
     void add_radiance(const RecordedEvent& event) {
         const vec3 before = event.kind == EVENT_RADIANCE_STARTS ? vec3(0) : radiances_[event.variable];
-        // A sum over branches holds what has been added in them.
+        // A sum over branches repeats what was added within them.
         const bool is_sum = event.kind == EVENT_RADIANCE && event.variable != latest_variable_;
         radiances_[event.variable] = event.value;
         latest_variable_ = event.variable;
@@ -124,7 +124,7 @@ class PathBuilder {
         is_light_sampled_ = false;
     }
 
-    // A survival probability after which no ray was traced: the path has ended.
+    // No ray followed this survival probability: the path has ended.
     void end_roulette() {
         if (survival_probability_ && site_ >= 0) site().lost_roulettes.push_back(*survival_probability_);
         survival_probability_.reset();
@@ -135,7 +135,7 @@ class PathBuilder {
     std::span<const RecordedEvent> events_;
     size_t next_ = 0;
     RecordedPath path_;
-    int site_ = -1;  // the vertex where things happen
+    int site_ = -1;  // the vertex of the current events
     vec3 throughput_{1};
     std::optional<float> survival_probability_;
     std::map<uint32_t, vec3> radiances_;  // of each variable of that name
@@ -155,7 +155,7 @@ Estimator recording(const Estimator& estimator) {
 PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
                            uvec2 image_size)
     : device_(&device),
-      // Samples go to a row of blocks, wherever in the image it is.
+      // The samples go into a single row of blocks, wherever the pixel is in the image.
       film_(device, image_size.x, BLOCK_HEIGHT),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),

@@ -14,7 +14,7 @@ std::optional<vec2> project(const Camera& camera, const vec3& point) {
 std::optional<std::array<vec2, 2>> project_segment(const Camera& camera, vec3 from, vec3 to) {
     const float depth_from = glm::dot(from - camera.position, camera.forward),
                 depth_to = glm::dot(to - camera.position, camera.forward);
-    // The depth of a near plane, which follows that of the segment.
+    // Depth of a near plane, scaled with the segment's depth.
     const float nearest = 1e-3f * std::max(depth_from, depth_to);
     if (!(nearest > 0)) return std::nullopt;
     const auto cut = [&](vec3& end, float depth_end, const vec3& other, float depth_other) {

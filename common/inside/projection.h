@@ -8,10 +8,10 @@
 namespace lab {
 
 // The image position of a point: (0,0) is the upper left corner, (1,1) the lower right one, as in shaders/world/camera.glsl.
-// Positions outside are beside the picture. Nothing for points that are not in front of the camera.
+// Positions outside lie beside the picture. Empty for points that are not in front of the camera.
 std::optional<vec2> project(const Camera& camera, const vec3& point);
 
-// The ends of the part of a segment that is in front of the camera, if there is one.
+// The end points of the part of a segment that is in front of the camera, if there is one.
 std::optional<std::array<vec2, 2>> project_segment(const Camera& camera, vec3 from, vec3 to);
 
 }  // namespace lab

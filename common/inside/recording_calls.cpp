@@ -50,7 +50,7 @@ class Scanner {
         return std::string_view(text_).substr(at, end - at);
     }
 
-    // The variable that the statement here begins with, or a member to be recorded, like path.throughput.
+    // The variable that a statement here starts with, or a member to be recorded, like path.throughput.
     std::string_view variable_at(size_t at) const {
         const std::string_view word = word_at(at);
         const size_t dot = at + word.size();
@@ -65,7 +65,7 @@ class Scanner {
         return at;
     }
 
-    // Length of the comment or of the preprocessor's line that starts here, or 0.
+    // Length of the comment or preprocessor line that starts here, or 0.
     size_t comment_or_directive(size_t at) const {
         const std::string_view rest = std::string_view(text_).substr(at);
         if (rest.starts_with("//") || rest.starts_with("#")) return std::min(rest.find('\n'), rest.size());
@@ -73,7 +73,7 @@ class Scanner {
         return 0;
     }
 
-    // Length up to the semicolon, or 0 if there is none before the block ends.
+    // Length up to the semicolon, or 0 if the block ends before one.
     size_t statement_length(size_t at) const {
         for (size_t end = at; end < text_.size();) {
             if (const size_t skipped = comment_or_directive(end)) {
@@ -86,7 +86,7 @@ class Scanner {
         return 0;
     }
 
-    // Copies the statement that starts here with its call, if it is one to be recorded.
+    // Copies the statement that starts here, with its recording call, if it is to be recorded.
     bool copy_recorded_statement() {
         if (braces_ == 0) return false;
         const std::string_view first = word_at(at_);
@@ -101,7 +101,7 @@ class Scanner {
         const std::string call = recording_call(variable, is_declaration);
         const size_t length = call.empty() ? 0 : statement_length(at_);
         if (length == 0) return false;
-        // Braces, since it may be all that belongs to an if.
+        // In braces, since the statement may be the whole body of an if.
         if (!is_declaration) result_ += "{ ";
         copy(length);
         result_ += call;
@@ -117,7 +117,7 @@ class Scanner {
         if (name == "radiance") {
             if (is_declaration) ++radiances_;
             const int number = name == variable ? radiances_ : 0;
-            if (name == variable && number == 0) return "";  // somebody else's
+            if (name == variable && number == 0) return "";  // not declared by the estimator
             return " record_radiance(EVENT_RADIANCE" + starts + expression + ", " + std::to_string(number) + "u);";
         }
         if (variable == "survival_probability" && is_declaration) return " record_survival(survival_probability);";

@@ -1,12 +1,12 @@
-// Instruments an estimator to record what it computes. The chapters' shaders stay as they are.
+// Instruments an estimator to record what it computes, without changing the chapters' shaders.
 #pragma once
 #include <string>
 
 namespace lab {
 
-// The text of a shader with a call of record_throughput(), record_radiance() or record_survival(), see
-// shaders/observation/record_path.glsl, after every statement that begins with `throughput` or `radiance`, which may be members
-// of a struct, or declares one of them or `survival_probability` with a value. All lines keep their numbers.
+// Inserts calls of record_throughput(), record_radiance() or record_survival() (shaders/observation/record_path.glsl) into the
+// text of a shader: after every statement that starts with `throughput` or `radiance`, members of a struct included, or that
+// declares and initialises one of them or `survival_probability`. All lines keep their numbers.
 std::string add_recording_calls(const std::string& text);
 
 }  // namespace lab

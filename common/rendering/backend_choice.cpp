@@ -23,7 +23,7 @@ double measure_speed(Backend backend, const Device& device, const GpuScene& scen
     const double first_seconds = renderer.device_seconds();
     constexpr double seconds = 0.1;
     const auto start = Clock::now();
-    // At least one dispatch more, also where the device's clock is coarse.
+    // At least one more dispatch, even if the device's clock is coarse.
     do {
         renderer.advance(UINT32_MAX);
     } while (seconds_since(start) < seconds);
@@ -51,7 +51,7 @@ bool fits_compute(const Device& device, const Scene& scene) try {
 }
 
 Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {
-    // `native` is for those who ask for it: it compiles each changed shader, and a crash in a shader is one of the program.
+    // `native` only on request: it compiles every changed shader, and a crash in a shader crashes the program.
     const auto is_usable = [&](Backend backend) {
         if (backend == Backend::native) return false;
         return device.description().supports(backend) && (backend != Backend::compute || fits_compute(device, *job.scene));
@@ -62,7 +62,7 @@ Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene&
 
     RenderParameters parameters = job.parameters;
     parameters.image_size = glm::min(parameters.image_size, uvec2(128));
-    parameters.max_path_length = job.scene->defaults.max_path_length;  // the choice serves later renders, too
+    parameters.max_path_length = job.scene->defaults.max_path_length;  // the choice also serves later renders
     Backend fastest = Backend::compute;
     double highest_speed = 0;
     for (const Backend backend : all_backends) {

@@ -6,7 +6,7 @@
 namespace lab {
 namespace {
 
-// Notes what the job runs on; "several" where it continues a run on something else.
+// Records what the job runs on: "several" if it continues a run on something else.
 void record_device(RenderJob& job, const std::string& device, const std::string& backend) {
     job.record.device = !job.resumed || job.resumed->record.device == device ? device : "several";
     job.record.backend = !job.resumed || job.resumed->record.backend == backend ? backend : "several";
@@ -34,7 +34,7 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     Build build;
     build.job = std::move(job);
     const RenderJob& wanted = build.job;
-    // Before the scene takes time and memory.
+    // Fail before loading the scene takes time and memory.
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
         build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options),

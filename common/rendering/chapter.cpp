@@ -11,7 +11,7 @@
 namespace lab {
 namespace {
 
-// All options that chapters may have: name, help, parameter, default, smallest and largest number. The defaults are measured, see
+// All options that chapters may have: name, help, parameter, default, smallest and largest value. The defaults are measured, see
 // docs/results.md.
 const std::vector<ChapterOption>& chapter_options() {
     using Parameters = RenderParameters;
@@ -78,7 +78,7 @@ Chapter load_chapter(const std::string& name) {
     const JsonObject root(content, file.string(), "the chapter",
                           {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics",
                            "microfacets", "low_discrepancy", "options", "check"});
-    // What ./lab check renders: tools/check/grading.py reads it.
+    // For ./lab check: tools/check/grading.py reads it.
     if (root.has("check")) root.object("check", {"samples", "references", "other_references", "gains_over"});
     const Chapter defaults;
     return {.name = name,

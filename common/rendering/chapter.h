@@ -1,4 +1,4 @@
-// A chapter is data and a shader: a folder of chapters/ with chapter.json, which says what it is, and path_trace.glsl.
+// A chapter is a folder of chapters/: chapter.json, which describes it, and its shader path_trace.glsl.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -16,32 +16,32 @@ struct ChapterOption {
     std::string help;
     std::variant<uint32_t RenderParameters::*, float RenderParameters::*> parameter;
     double default_value;
-    double low, high;  // what is accepted, both included
+    double low, high;  // accepted range, both ends included
 };
 
-// What chapter.json says, under the same names. Only the title must be there. It may also have "check", for ./lab check: the
-// "samples" of a run, and the "references" whose scenes show what the shader does.
+// The contents of chapter.json, under the same names. Only the title is mandatory. It may also have "check", for ./lab check: the
+// "samples" of a run, and the "references" whose scenes show what the shader can do.
 struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help
     std::string default_scene = "cornell_box";  // in assets/scenes
-    std::vector<Strategy> strategies = {};      // of --strategy, the default first; if none, bounces find light
-    bool light_probe_sampling = false;          // light samples go to a probe, too
-    bool unlimited_path_length = false;         // whatever the scene says; --max-path-length still limits it
+    std::vector<Strategy> strategies = {};      // of --strategy, the default first; if none, only bounces find light
+    bool light_probe_sampling = false;          // light samples also go to a light probe
+    bool unlimited_path_length = false;         // regardless of the scene; --max-path-length still limits it
     bool dielectrics = false;                   // whether its estimator handles them
-    bool microfacets = false;                   // the same of rough metal, plastic and glass (Pr)
-    bool low_discrepancy = false;               // has points of its own, random_words.glsl, that depend on each other
+    bool microfacets = false;                   // likewise for rough metal, plastic and glass (Pr)
+    bool low_discrepancy = false;               // brings its own points, random_words.glsl, which are not independent
     std::vector<ChapterOption> options = {};
 };
 
-// Names of the folders in chapters/ that hold a chapter, in order.
+// Names of the folders in chapters/ that hold a chapter, sorted.
 std::vector<std::string> chapter_folders();
 
-// The same without copies, in which people try things: of chapters with the same title only the first.
+// The same without copies made for experiments: of chapters with equal titles only the first.
 std::vector<std::string> course_chapters();
 
-// The chapter in a folder of chapters/. Throws UserError if its chapter.json is missing or wrong, with the key and what is
-// possible.
+// Loads the chapter in a folder of chapters/. Throws UserError if its chapter.json is missing or wrong, naming the key and what
+// is possible.
 Chapter load_chapter(const std::string& name);
 
 }  // namespace lab

@@ -5,7 +5,7 @@
 namespace lab {
 namespace {
 
-// Of windows, in bytes: whole pixels, and a multiple of 256 bytes. No device asks for more.
+// Alignment of windows, in bytes: whole pixels and a multiple of 256 bytes, the most that any device requires.
 constexpr size_t alignment = 64 * sizeof(FilmPixel);
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 namespace lab {
 
-// With enough digits to be read back exactly.
+// With enough digits to read the same number back.
 std::string exact_text(float number);
 std::string exact_text(const vec3& v, const char* separator = ",");
 

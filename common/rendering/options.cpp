@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// Accepts finite numbers in [low, high]; CLI11 itself takes nan and inf, too.
+// Accepts finite numbers in [low, high]; CLI11 alone would also accept nan and inf.
 CLI::Validator within(double low, double high, const std::string& meaning) {
     return {[=](std::string& text) -> std::string {
                 char* end = nullptr;
@@ -33,7 +33,7 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
             meaning};
 }
 
-// The options of every chapter, in the order of --help.
+// Options common to all chapters, in the order of --help.
 void add_options(CLI::App& app, Options& options, std::string& view) {
     auto& [scene, estimator, image, camera, light, samples, appearance, run] = options;
     constexpr uint32_t max_count = 4294967295u;
@@ -109,7 +109,7 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
     app.add_flag("--quiet", run.quiet, "Print errors only");
 }
 
-// Options of this chapter.
+// Options of this chapter only.
 void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options) {
     std::map<std::string, Strategy> strategies;
     for (const Strategy strategy : chapter.strategies) strategies[to_string(strategy)] = strategy;
@@ -134,9 +134,9 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
     }
 }
 
-// Finds a scene by its file or its name in assets/scenes.
+// Finds a scene by its path or by its name in assets/scenes.
 std::filesystem::path find_scene(const std::string& name) {
-    std::error_code ignored;  // a name that the file system refuses is reported when it is read
+    std::error_code ignored;  // names that the file system refuses are reported on reading
     if (std::filesystem::exists(name, ignored)) return name;
     const auto shipped = project_folder() / "assets" / "scenes" / (name + ".json");
     return std::filesystem::exists(shipped, ignored) ? shipped : std::filesystem::path(name);

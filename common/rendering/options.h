@@ -10,8 +10,8 @@
 
 namespace lab {
 
-// A picture of something else than radiance: shaders/observation/view.glsl with `define`, or the file `observer` of shaders/,
-// which watches the chapter's estimator.
+// A picture of something other than radiance: by shaders/observation/view.glsl with `define`, or by the file `observer` of
+// shaders/, which watches the chapter's estimator.
 struct View {
     std::string name;
     std::string define;
@@ -20,17 +20,17 @@ struct View {
 };
 const std::vector<View>& views();
 
-// Whether to open a window; automatic: at a terminal with a display.
+// Whether to open a window; automatic: if there is a terminal and a display.
 enum class WindowChoice { automatic, always, never };
 
-// Read from files.
+// Options that decide which files are read.
 struct SceneOptions {
     std::filesystem::path file;
     bool specular = false;
     bool operator==(const SceneOptions&) const = default;
 };
 
-// What the chapter's estimator is compiled as.
+// Options that decide how the chapter's estimator is compiled.
 struct EstimatorOptions {
     std::optional<Strategy> strategy;  // one of the chapter's
     bool operator==(const EstimatorOptions&) const = default;
@@ -49,14 +49,14 @@ struct CameraOptions {
     bool operator==(const CameraOptions&) const = default;
 };
 
-// Light in the picture.
+// Options for the light in the picture.
 struct LightOptions {
     std::optional<vec3> background;
     std::optional<uint32_t> max_path_length, only_path_length;
     bool operator==(const LightOptions&) const = default;
 };
 
-// Change samples, but not their expectation.
+// Options that change samples, but not their expectation.
 struct SampleOptions {
     uint32_t seed = 1;
     uint32_t first_sample = 0;
@@ -64,7 +64,7 @@ struct SampleOptions {
     bool operator==(const SampleOptions&) const = default;
 };
 
-// Change no sample.
+// Options that change no sample.
 struct AppearanceOptions {
     std::optional<uint32_t> sample_count;  // per pixel
     float exposure = 0;                    // stops
@@ -87,11 +87,11 @@ struct RunOptions {
     WindowChoice window = WindowChoice::automatic;
     bool validation = false;
     bool sanitize = false;
-    std::optional<uvec2> debug_pixel;  // the only one to render, for a debugger
+    std::optional<uvec2> debug_pixel;  // renders only this one, for a debugger
     bool quiet = false;
 };
 
-// In groups that are compared and copied as wholes.
+// In groups that can be compared and copied as a whole.
 struct Options {
     SceneOptions scene;
     EstimatorOptions estimator;
@@ -103,7 +103,7 @@ struct Options {
     RunOptions run;
 };
 
-// Whether options ask for measurements or limits, which only runs without a window have.
+// Whether options ask for measurements or limits, which only headless runs support.
 bool needs_no_window(const Options& options);
 
 // Parses the command line. Prints and returns nothing for --help and --version. Throws UserError for anything it does not

@@ -49,7 +49,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// A row with the same fields in JSON and CSV; unknown errors are null.
+// A row with the same fields in JSON and CSV; unknown errors become null.
 json to_json(const ReportRow& row) {
     json result{{"samples", row.samples}, {"seconds", row.seconds}, {"device_seconds", row.device_seconds}, {"rays", row.rays}};
     const auto set = [&](const char* name, double ErrorMetrics::*metric) {
@@ -106,7 +106,7 @@ void write_report(const std::filesystem::path& file, const FilmImage& image, con
                 {"rows", json::array()}};
     for (const auto& row : rows) report["rows"].push_back(to_json(row));
     const bool is_csv = lower_case_extension(file) == ".csv";
-    // Scene names may be any bytes; JSON is UTF-8.
+    // Scene names may contain any bytes, but JSON is UTF-8.
     const std::string text = is_csv ? to_csv(report["rows"]) : report.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
     write_file(file, text);
 }

@@ -12,27 +12,27 @@
 
 namespace lab {
 
-// Writes the film in the format of the file's extension. --view and --exposure affect PNG and JPG.
+// Writes the film in the format given by the file's extension. --view and --exposure affect PNG and JPG only.
 void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record, const Options& options);
 
-// After a failure of device or memory: calls write() for the film that was last read, then throws DeviceFailure with cause and
-// remains. Rethrows other errors.
+// After a failure of device or memory: calls write() to keep the last snapshot, then throws DeviceFailure with the cause and what
+// was kept. Rethrows other errors.
 [[noreturn]] void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write);
 
-// Writes all files even if some fail; then throws the first UserError.
+// Writes all files even if some fail, then throws the first UserError.
 void write_each(const std::vector<std::filesystem::path>& files, const std::function<void(const std::filesystem::path&)>& write);
 
 struct ReportRow {
     uint32_t samples = 0;       // per pixel
-    double seconds = 0;         // of rendering, without the making of rows
-    double device_seconds = 0;  // of the device in this run
+    double seconds = 0;         // of rendering, without computing rows
+    double device_seconds = 0;  // on the device, in this run
     uint64_t rays = 0;
     std::array<double, 3> mean{};        // radiance of the image
-    std::array<double, 3> difference{};  // of the means of the samples' halves
+    std::array<double, 3> difference{};  // mean of one half of the samples minus that of the other
     std::optional<ErrorMetrics> error;
 };
 
-// Errors are against a reference, or estimated from the halves of the samples.
+// Errors are measured against a reference, or estimated from the halves of the samples.
 enum class ErrorSource { reference, halves };
 
 // Writes .json or .csv.

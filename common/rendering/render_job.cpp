@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// The earlier run that this one continues. Throws UserError if it rendered something else.
+// Loads the earlier run that this one continues. Throws UserError if it rendered something else.
 FilmFile load_earlier_run(const RenderJob& job) {
     const Options& options = job.options;
     FilmFile earlier = read_film(options.run.resume);

@@ -13,29 +13,29 @@ struct RenderJob {
     Estimator estimator;
     std::shared_ptr<const Scene> scene;
     RenderParameters parameters{};
-    uint32_t samples = 0;  // wanted per pixel
+    uint32_t samples = 0;  // target per pixel
     FilmRecord record = {};
     std::optional<FilmFile> resumed = {};  // the run that this one continues
 };
 
-// The sample count at which a render looks at its error next: by `growth` more samples, at least an eighth and at most as many
-// again, but no more than the target. So looks are few and cheap. A look at every dispatch would not only take time: where a few
-// bright samples decide, it would favour pictures that have met few of them so far.
+// The sample count at which a render next computes its error: more by the factor `growth`, but by at least an eighth, at most a
+// doubling, and never beyond the target. So checks are few and cheap. Checking after every dispatch would not only take time:
+// where a few bright samples decide, it would favour pictures that happen to have few of them so far.
 uint32_t next_look(uint32_t samples, uint32_t target, double growth = 2);
 
-// Prepares everything that needs no device, so that mistakes show first. Throws UserError for scenes that the chapter cannot
-// render, and for options that contradict each other or what --resume continues.
+// Prepares everything that needs no device, so that mistakes show early. Throws UserError for scenes that the chapter cannot
+// render, and for options that contradict each other or the run that --resume continues.
 RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_ptr<const Scene> scene);
 
-// Changes the options of a job with the same scene and estimator, which no longer continues an earlier run.
+// Changes the options of a job with the same scene and estimator. It then no longer continues an earlier run.
 void set_options(RenderJob& job, const Chapter& chapter, const Options& options);
 
 // Whether a backend supports a view.
 bool can_show(const View& view, Backend backend);
 
-// The backend of the job's options; "auto" measures which is fastest on this scene and caches the choice by device, driver and
-// decade of the triangle count. Views trace only camera rays, which would mislead the measurement: they use `compute`. Throws
-// UserError for a view that the backend does not support.
+// The backend that the job's options ask for. "auto" measures which one is fastest on this scene and caches the choice by device,
+// driver and decade of the triangle count. Views trace camera rays only, which would mislead the measurement, so they use
+// `compute`. Throws UserError for a view that the backend does not support.
 Backend choose_backend(const RenderJob& job, const Device& device, const GpuScene& scene);
 
 }  // namespace lab

@@ -12,8 +12,8 @@ namespace {
 // Workgroups that keep a device busy that runs 4000 at a time. In images with fewer blocks, several workgroups share a block.
 // This is a define, because the mere possibility slows large images down (docs/backends.md).
 constexpr uint32_t enough_groups = 8192;
-// Samples per workgroup and pixel that wait to be added to the film. More would let threads wait less for others at the end; all
-// must fit into 128 MiB, the largest binding of some devices.
+// Samples per workgroup and pixel that wait to be added to the film. With more, threads would wait less for others at the end,
+// but all must fit into 128 MiB, the largest binding of some devices.
 constexpr uint32_t samples_per_group = 20;
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
@@ -120,7 +120,7 @@ void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks, 
 
 bool Renderer::advance(uint32_t target_samples) {
     if (finished_samples_ >= target_samples) return false;
-    // A pass brings all blocks to pass_samples_: several samples at a time if all blocks fit into one dispatch.
+    // A pass brings all blocks to pass_samples_, several samples at a time if all blocks fit into one dispatch.
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
         const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, 1.0));
@@ -139,11 +139,11 @@ bool Renderer::advance(uint32_t target_samples) {
     const double device_seconds =
         device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
     const double seconds = seconds_since(start);
-    if (is_on_host_ && is_interrupted()) return true;  // within blocks; what their pixels have is in the film
+    if (is_on_host_ && is_interrupted()) return true;  // even within blocks; finished samples are in the film
     device_seconds_ += is_on_host_ ? seconds : device_seconds;
     for (const uint32_t counter : counters) rays_ += counter;
 
-    // Blocks differ in cost, so the rate follows the last dispatch and grows by a bounded factor.
+    // Blocks differ in cost, so the rate follows the last dispatch, and grows by a bounded factor.
     const double work = static_cast<double>(count) * step;
     blocks_per_dispatch_ = std::clamp(work * dispatch_seconds_ / std::max(seconds, 1e-6), 1.0, 4 * work);
     next_block_ += count;

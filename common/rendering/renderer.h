@@ -1,4 +1,4 @@
-// Renders an estimator progressively, cut into dispatches of bounded time.
+// Renders an estimator progressively, in dispatches of bounded time.
 #pragma once
 #include <optional>
 
@@ -7,30 +7,30 @@
 
 namespace lab {
 
-// Key of the random start states for a seed.
+// The key that a seed gives to the random start states.
 uvec2 seed_key(uint32_t seed);
 
-// The first bounce of Russian roulette where there is none.
+// roulette_start for renders without Russian roulette.
 inline constexpr uint32_t no_roulette = UINT32_MAX;
 
-// Parameters to render a scene as its file asks, with seed 1, without splitting and roulette; optionally from another camera.
+// The parameters of a scene as its file asks, with seed 1, no splitting and no roulette; optionally from another camera.
 RenderParameters default_parameters(const Scene& scene, uvec2 image_size);
 RenderParameters default_parameters(const Scene& scene, const CameraPose& camera, uvec2 image_size);
 
 class Renderer {
   public:
-    // Memory of a renderer for this image size.
+    // Memory that a renderer of this image size needs.
     static std::vector<MemoryNeed> memory_needs(uvec2 image_size);
 
-    // Device and acceleration structure must outlive the renderer. `further_bindings` are the estimator's own, `max_film_window`
-    // is Film's.
+    // Device and acceleration structure must outlive the renderer. `further_bindings` belong to the estimator; `max_film_window`
+    // is passed to Film.
     Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
              const RenderParameters& parameters, std::span<const Binding> further_bindings = {},
              size_t max_film_window = SIZE_MAX);
 
-    // Makes one dispatch of about `dispatch_seconds` towards `target_samples` per pixel; true while more are needed. Short
-    // dispatches keep driver watchdogs quiet and the program responsive: a sample of a large image can take a minute on a slow
-    // device.
+    // Makes one dispatch of about `dispatch_seconds` towards `target_samples` per pixel; returns true while more are needed.
+    // Short dispatches keep driver watchdogs quiet and the program responsive: one sample of a large image can take a minute on a
+    // slow device.
     bool advance(uint32_t target_samples);
 
     Film& film() { return film_; }
@@ -40,7 +40,7 @@ class Renderer {
     // Samples per pixel so far, averaged over the image.
     double samples() const;
 
-    // Restarts with other parameters, for an image of at most the first number of pixels.
+    // Restarts with other parameters, for an image of at most as many pixels as the first one.
     void restart(const RenderParameters& parameters);
     // Continues from an image of the same size.
     void resume(const FilmImage& image);
@@ -48,13 +48,13 @@ class Renderer {
 
   private:
     uint32_t block_count() const;
-    // Renders `blocks` from next_block_ on, all in the window, from finished_samples_ to pass_samples_.
+    // Renders `blocks` blocks from next_block_ on, all of them in the window, from finished_samples_ to pass_samples_.
     void record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const;
 
     const Device* device_;
-    bool is_on_host_;  // the tracer works while it records
+    bool is_on_host_;  // whether the tracer works while it records
     Buffer parameters_;
-    std::optional<Buffer> samples_;  // of shared pixels, not yet added to the film
+    std::optional<Buffer> samples_;  // of shared pixels, until added to the film
     Buffer ray_counters_;
     Film film_;
     std::optional<ComputeKernel> adder_;  // for shared pixels
@@ -62,8 +62,8 @@ class Renderer {
 
     double dispatch_seconds_ = 0.1;
     double blocks_per_dispatch_ = 64;  // times samples; adapts to the device's speed
-    uint32_t finished_samples_ = 0;    // that every pixel has
-    uint32_t pass_samples_ = 0;        // that the blocks before next_block_ have
+    uint32_t finished_samples_ = 0;    // of every pixel
+    uint32_t pass_samples_ = 0;        // of pixels in blocks before next_block_
     uint32_t next_block_ = 0;
     uint64_t rays_ = 0;
     double device_seconds_ = 0;

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 // All references of this scene file, sorted by name.
 std::vector<Reference> references_of(const fs::path& scene_file) {
     std::vector<fs::path> files;
-    std::error_code none;  // a project without references has no verdict
+    std::error_code none;  // no references, no verdict
     for (const auto& entry : fs::directory_iterator(project_folder() / "assets" / "references", none))
         if (entry.path().extension() == ".exr" && entry.path().filename().string().starts_with(scene_file.stem().string()))
             files.push_back(entry.path());
@@ -30,7 +30,7 @@ bool are_equal(const Camera& a, const Camera& b) {
     return a.position == b.position && a.forward == b.forward && a.right == b.right && a.up == b.up;
 }
 
-// Why the image differs from that of the scene's file; empty if it does not.
+// How the image differs from the one that the scene's file describes; empty if it does not.
 std::string difference_from_file(const Scene& scene, const RenderParameters& parameters) {
     const RenderParameters of_file = default_parameters(scene, parameters.image_size);
     if (!are_equal(parameters.camera, of_file.camera)) return "the camera has moved";

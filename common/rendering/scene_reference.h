@@ -1,4 +1,4 @@
-// The reference image of a scene, made by ./lab reference.
+// The reference image of a scene, rendered by ./lab reference.
 #pragma once
 #include <variant>
 
@@ -7,11 +7,11 @@
 
 namespace lab {
 
-// Finds the reference for a render with these parameters, or says why there is none in a line that follows "no verdict: ":
-// camera, sky and path length must match.
+// Finds the reference for a render with these parameters: camera, sky and path length must match. If there is none, returns the
+// reason, a line to follow "no verdict: ".
 std::variant<Reference, std::string> find_reference(const Scene& scene, const RenderParameters& parameters);
 
-// How a reference's attributes contradict the image, in one line: another scene or path length. Empty if they do not.
+// In one line, how a reference's attributes contradict the image: another scene or path length. Empty if they do not.
 std::string mismatch(const Reference& reference, const Scene& scene, const RenderParameters& parameters);
 
 }  // namespace lab

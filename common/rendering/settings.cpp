@@ -12,7 +12,7 @@
 namespace lab {
 namespace {
 
-// Where paths have no limit they still end here: a sample must end in bounded time.
+// Even unlimited paths end here: a sample must finish in bounded time.
 constexpr uint32_t safety_limit = 10000;
 
 uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Options& options) {
@@ -30,7 +30,7 @@ double value_of(const Chapter& chapter, size_t i, const Options& options) {
     return options.samples.chapter_values[i].value_or(chapter.options[i].default_value);
 }
 
-// Of an opaque material: no direction loses less light.
+// An upper bound on the albedo of all materials, in any direction.
 double largest_albedo(const Scene& scene) {
     float largest = 0;
     for (const Material& material : scene.materials) {

@@ -1,4 +1,4 @@
-// From a scene and the command line to what is rendered. Flags win over the scene file.
+// From a scene and the command line to render parameters. Flags override the scene file.
 #pragma once
 #include "rendering/options.h"
 #include "rendering/renderer.h"
@@ -6,33 +6,33 @@
 
 namespace lab {
 
-// Camera and background: what the scene file says, with the flags in its place.
+// Camera and background: from the scene file, unless flags override them.
 CameraPose camera_of(const Scene& scene, const Options& options);
 vec3 background_of(const Scene& scene, const Options& options);
 
-// Whether --background asks for a sky, which the shaders must know where the scene itself has none.
+// Whether --background asks for a sky: the shaders must know even if the scene itself has none.
 bool asks_for_sky(const Options& options);
 
 // Throws UserError for options that contradict each other.
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options);
 
-// The pose as options of the command line, with this character before each value. The numbers are exact.
+// The pose as command line options, with this character before each value. The numbers are exact.
 std::string camera_flags(const CameraPose& pose, char separator);
 
-// The options that decide what is estimated and how, in a fixed order: renders with equal settings can be joined.
+// The options that decide what is estimated and how, in a fixed order: renders with equal settings can be merged.
 std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene, const Options& options);
 
-// The chapter's shader and what it is compiled with.
+// The chapter's shader and its defines.
 Estimator estimator_of(const Chapter& chapter);
 
-// How the chapter's estimator finds light with these options.
+// How the chapter's estimator finds light under these options.
 Strategy strategy_of(const Chapter& chapter, const Options& options);
 
-// The chapter's estimator, or what --view and --split-every-hit put in its place.
+// The chapter's estimator, or what --view and --split-every-hit replace it with.
 Estimator make_estimator(const Chapter& chapter, const Options& options);
 
-// What a chapter without a limit of the path length leaves out beyond its safety limit, in one line. The radiance that arrives
-// after m bounces is at most a^m times the brightest emission, a the largest albedo.
+// In one line, an upper bound for the light that a chapter without a path length limit loses beyond the safety limit. The
+// radiance that arrives after m bounces is at most a^m times the brightest emission, where a is the largest albedo.
 std::string safety_limit_text(const Scene& scene);
 
 }  // namespace lab

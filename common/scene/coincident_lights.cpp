@@ -15,14 +15,14 @@ constexpr size_t max_searched_triangles = 10'000'000;
 
 bool is_emissive(const Scene& scene, uint32_t triangle) { return scene.material_of(triangle).emission != vec3(0); }
 
-// Rotates the second triangle's corners to start with the first triangle's first, so that a point has the same barycentric
-// coordinates in both, exchanged.
+// Rotates the second triangle's corners to start at the first triangle's first corner, so that a point has the same barycentric
+// coordinates in both, but swapped.
 void align(Scene& scene, uint32_t first, uint32_t second) {
     uvec3& corners = scene.triangles[second];
     while (scene.corner(second, 0) != scene.corner(first, 0)) corners = uvec3(corners.y, corners.z, corners.x);
 }
 
-// A triangle in the place of an emissive one, in the order of preference.
+// A triangle in the same place as an emissive one, ordered by preference.
 struct Candidate {
     Place place;
     bool is_dark;
@@ -43,7 +43,7 @@ Place get_place(const Scene& scene, const Instance& instance, uint32_t triangle)
     Place place;
     for (int i = 0; i < 3; ++i) {
         const vec3 corner = instance.object_to_world * glm::vec4(scene.corner(triangle, i), 1);
-        place.corners[i] = {corner.x + 0.0f, corner.y + 0.0f, corner.z + 0.0f};  // no negative zeros
+        place.corners[i] = {corner.x + 0.0f, corner.y + 0.0f, corner.z + 0.0f};  // adding 0 removes negative zeros
     }
     place.is_turned = glm::determinant(glm::dmat3(mat3(instance.object_to_world))) < 0;
     const auto order = [&](size_t a, size_t b) {
@@ -73,7 +73,7 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
     std::sort(places.begin(), places.end());
 
     std::vector<bool> is_left_out(mesh.triangle_count);
-    std::pair<uint32_t, uint32_t> first_left_out{UINT32_MAX, 0};  // and what stays in its place
+    std::pair<uint32_t, uint32_t> first_left_out{UINT32_MAX, 0};  // and the one that stays
     size_t kept = 0;
     for (size_t i = 1; i < places.size(); ++i) {
         if (places[i].place == places[kept].place) {
@@ -83,7 +83,7 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
             places[++kept] = places[i];
         }
     }
-    const size_t others = places.size() - kept - 2;  // left out, too
+    const size_t others = places.size() - kept - 2;  // also left out
     if (kept + 1 < places.size()) {
         const auto [triangle, other] = first_left_out;
         scene.warnings.push_back(mesh.file + ":" + std::to_string(lines[triangle - first]) + ": lies in the same place as line " +
@@ -92,7 +92,7 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
     }
     places.resize(kept + 1);
 
-    std::vector<uint32_t> moved(mesh.triangle_count);  // new indices of the triangles that stay
+    std::vector<uint32_t> moved(mesh.triangle_count);  // new indices of the remaining triangles
     uint32_t count = 0;
     for (uint32_t i = 0; i < mesh.triangle_count; ++i) {
         moved[i] = first + count;
@@ -132,7 +132,7 @@ std::vector<std::string> coincident_light_warnings(const Scene& scene, const std
         lights.push_back({get_place(scene, scene.instances[instance], triangle), instance, triangle});
         for (const auto& [x, y, z] : lights.back().place.corners) bounds.grow({x, y, z});
     });
-    // Any difference within a place shows in its first or last light.
+    // If lights in a place differ at all, the first and the last one do.
     std::sort(lights.begin(), lights.end(), [&](const PlacedLight& a, const PlacedLight& b) {
         const auto key = [&](const PlacedLight& light) {
             const vec3 e = scene.material_of(light.triangle).emission;

@@ -1,4 +1,4 @@
-// Finds triangles in the same place one of which emits: chance would decide which of them rays hit.
+// Finds coincident triangles one of which emits: which one a ray hits would be left to chance.
 #pragma once
 #include <array>
 #include <string>
@@ -16,13 +16,13 @@ struct Place {
 };
 Place get_place(const Scene& scene, const Instance& instance, uint32_t triangle);
 
-// Resolves coincident lights in the mesh that is being added, the scene's last triangles, which stand in these lines of its file.
-// Of opaque triangles in one place that face the same way, the first emissive one stays, and a warning names what is left out.
-// Two that face opposite ways become a double-sided sheet.
+// Resolves coincident lights in the mesh being added, the scene's last triangles, which come from these lines of its file. Of
+// opaque triangles that coincide and face the same way, the first emissive one stays, and a warning names those left out. Two
+// that face opposite ways become a double-sided sheet.
 void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& lines);
 
-// A line if chance remains: an emissive triangle in the same place as a dielectric one, or as one of another instance that
-// differs in emission or orientation. `lines` has one per triangle. Looks at the first ten million triangles only.
+// Returns a line if chance remains: an emissive triangle coincides with a dielectric one, or with one of another instance that
+// differs in emission or orientation. `lines` has one entry per triangle. Examines the first ten million triangles only.
 std::vector<std::string> coincident_light_warnings(const Scene& scene, const std::vector<uint32_t>& lines);
 
 }  // namespace lab

@@ -1,4 +1,4 @@
-// What a scene needs. Each feature becomes a #define; what is absent costs no instruction, buffer or binding.
+// What a scene needs. Each feature becomes a #define; absent features cost no instruction, buffer or binding.
 #pragma once
 #include <string>
 #include <vector>
@@ -20,7 +20,7 @@ struct SceneFeatures {
     bool transforms = false;    // some instance is moved, turned or scaled
     bool microfacets = false;   // the defines depend on the estimator, see GpuScene
 
-    // FEATURE_VERTEX_NORMALS and so on, for those present.
+    // FEATURE_VERTEX_NORMALS and so on, for the features present.
     std::vector<std::string> defines() const;
 };
 

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-// Deeper than any scene file; a file full of brackets must not fill the memory.
+// Deeper than any scene file: a file full of brackets must not exhaust memory.
 constexpr int max_depth = 16;
 
 bool is_number(const json& value) {
@@ -33,7 +33,7 @@ json parse_json(const std::string& file, const std::string& text) {
     } catch (const json::parse_error& error) {
         const size_t end = std::min(error.byte, text.size());
         const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
-        // The library's message names the position first.
+        // The library's message starts with the position.
         std::string reason = error.what();
         if (const size_t start = reason.find(": "); start != std::string::npos) reason.erase(0, start + 2);
         fail_at_line(file, static_cast<size_t>(line), "not valid JSON: " + printable(reason.substr(0, 200)));

@@ -1,4 +1,4 @@
-// Objects of a JSON file, with errors that name the file and the key.
+// JSON objects with errors that name the file and the key.
 #pragma once
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -9,14 +9,14 @@
 
 namespace lab {
 
-// Parses JSON. Throws UserError with the line number for syntax errors, and for deep nesting.
+// Parses JSON. Throws UserError for syntax errors, with the line number, and for deep nesting.
 nlohmann::json parse_json(const std::string& file, const std::string& text);
 
-// An object whose keys are read one by one. Functions throw UserError for values of the wrong type or out of range, and return
-// nothing for absent keys. All numbers are finite.
+// An object whose keys are read one by one. Throws UserError for values of the wrong type or out of range; absent keys give an
+// empty result. All numbers are finite.
 class JsonObject {
   public:
-    // Errors call the object `where`. Throws UserError if it is no object or has a key that is not `known`.
+    // Errors call the object `where`. Throws UserError if it is not an object or has a key that is not `known`.
     JsonObject(const nlohmann::json& value, std::string file, std::string where, std::initializer_list<const char*> known);
 
     bool has(const char* key) const { return value_.contains(key); }
@@ -25,7 +25,7 @@ class JsonObject {
 
     std::optional<double> number(const char* key) const;
     std::optional<vec3> vector(const char* key) const;            // three numbers
-    std::optional<vec3> number_or_vector(const char* key) const;  // one number stands for three equal ones
+    std::optional<vec3> number_or_vector(const char* key) const;  // a single number stands for three equal ones
     std::optional<uint32_t> integer(const char* key, uint32_t low, uint32_t high) const;
     std::optional<bool> boolean(const char* key) const;
     std::optional<std::string> text(const char* key) const;

@@ -25,7 +25,7 @@ double get_world_area(const Scene& scene, const LightTriangle& light) {
     return 0.5 * glm::length(glm::cross(side(1), side(2)));
 }
 
-// Of emissive triangles of several instances in the same place rays find one: keeps the first.
+// Rays find only one of several coincident emissive triangles of different instances: keeps the first.
 void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& lights) {
     std::vector<std::pair<Place, size_t>> places;
     places.reserve(lights.size());
@@ -44,7 +44,7 @@ void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& ligh
 
 LightTable build_light_table(const Scene& scene, double probability) {
     const auto luminance_of = [&](uint32_t triangle) { return get_luminance(scene.material_of(triangle).emission); };
-    std::vector<std::vector<uint32_t>> emissive_triangles;  // of each mesh, which may have many instances
+    std::vector<std::vector<uint32_t>> emissive_triangles;  // per mesh, which may have many instances
     for (const Mesh& mesh : scene.meshes) {
         auto& triangles = emissive_triangles.emplace_back();
         std::ranges::copy_if(mesh.triangles(), std::back_inserter(triangles),
@@ -106,7 +106,7 @@ AliasTable build_alias_table(std::span<const double> weights) {
     while (!small.empty()) {
         const uint32_t item = small.back();
         small.pop_back();
-        // Rounding may leave no large item for the last small ones: the heaviest takes the rest.
+        // Rounding may leave no large item for the last small ones: the heaviest fills them up.
         const uint32_t filler = large.empty() ? static_cast<uint32_t>(heaviest - weights.begin()) : large.back();
         const double quanta = weights[item] > 0 ? std::max(std::floor(share[item] * word_count), 1.0) : 0.0;
         table.entries[item] = {static_cast<uint32_t>(std::min(quanta, word_count - 1)), filler};
@@ -133,10 +133,10 @@ namespace {
 
 constexpr size_t rows_at_once = 64;
 
-// The mean of a row of texels over one of them after linear filtering: each neighbour gets 1/8.
+// One texel of a row averaged over its area after linear filtering: each neighbour contributes 1/8.
 double filtered(double before, double here, double after) { return (before + 6 * here + after) / 8; }
 
-// The mean luminance of the filtered probe in each texel. It wraps around horizontally and ends at the poles.
+// The filtered probe's mean luminance in each texel. It wraps around horizontally and ends at the poles.
 std::vector<float> filtered_luminances(const Image& probe) {
     const size_t width = probe.width, height = probe.height;
     std::vector<float> rows(width * height), texels(width * height);
@@ -163,7 +163,7 @@ std::vector<float> filtered_luminances(const Image& probe) {
     return texels;
 }
 
-// The texels [first, end) that a cell overlaps, in one of the two dimensions.
+// The texels [first, end) that a cell overlaps along one axis.
 struct Range {
     size_t first, end;
 };
@@ -178,7 +178,7 @@ std::vector<ProbeCell> build_probe_table(const Image& probe, double probability)
     const size_t columns = std::min(probe.width, MAX_PROBE_CELL_COLUMNS), rows = std::min(probe.height, MAX_PROBE_CELL_ROWS);
     std::vector<double> weights(columns * rows), solid_angles(rows);
     const auto weigh_row = [&](size_t row) {
-        // cos a - cos b, which would cancel close to the poles.
+        // cos a - cos b without cancellation near the poles.
         const double angle = std::numbers::pi / static_cast<double>(rows);
         solid_angles[row] = 2 * std::numbers::pi / static_cast<double>(columns) * 2 * std::sin(0.5 * angle) *
                             std::sin((static_cast<double>(row) + 0.5) * angle);

@@ -15,10 +15,10 @@ namespace {
 
 using glm::dvec3;
 
-// Larger exponents make lobes narrower than the rounding of 32-bit directions.
+// Larger exponents make lobes narrower than 32-bit directions can resolve.
 constexpr float largest_exponent = 1e8f;
 
-constexpr size_t max_albedos = 1024;  // some seconds of work
+constexpr size_t max_albedos = 1024;  // takes some seconds
 
 struct CornerHash {
     size_t operator()(const ObjCorner& corner) const {
@@ -29,7 +29,7 @@ struct CornerHash {
     }
 };
 
-// Whether a vector has a direction. (In double the square of a float neither overflows nor vanishes.)
+// Whether a vector has a direction. (In double, the square of a float neither overflows nor underflows.)
 bool has_direction(const dvec3& vector) {
     const double square = glm::dot(vector, vector);
     return square > 0 && std::isfinite(square);
@@ -87,7 +87,7 @@ class Assembly {
     }
 
   private:
-    // False if the triangle has no area and so no normal.
+    // Returns false if the triangle has no area and hence no normal.
     bool add_triangle(const ObjFile& obj, const ObjCorner* source) {
         ObjCorner corners[3] = {source[0], source[1], source[2]};
         const dvec3 origin(obj.positions[corners[0].position]);
@@ -96,7 +96,7 @@ class Assembly {
         if (!has_direction(normal)) return false;
         normal = glm::normalize(normal);
 
-        // The front is the side of the vertex normals.
+        // The front is the side that the vertex normals are on.
         double side = 0;
         for (ObjCorner& corner : corners) {
             if (corner.normal == ObjCorner::none) continue;
@@ -116,7 +116,7 @@ class Assembly {
         return true;
     }
 
-    // Finds or adds a vertex. A corner that takes the geometric normal, which belongs to one triangle, is not shared.
+    // Finds or adds a vertex. A corner with the geometric normal, which belongs to one triangle, is not shared.
     uint32_t add_vertex(const ObjFile& obj, ObjCorner corner, const dvec3& geometric_normal) {
         if (!with_texture_coordinates_) corner.texture_coordinates = ObjCorner::none;
         const auto next = static_cast<uint32_t>(scene_.positions.size());
@@ -132,7 +132,7 @@ class Assembly {
         if (with_texture_coordinates_) {
             const bool absent = corner.texture_coordinates == ObjCorner::none;
             const vec2 uv = absent ? vec2(0, 1) : obj.texture_coordinates[corner.texture_coordinates];
-            // v points up in the file and down in the scene.
+            // In the file v points up, in the scene down.
             scene_.texture_coordinates.emplace_back(uv.x, 1 - uv.y);
         }
         return next;
@@ -161,20 +161,20 @@ class Assembly {
         return static_cast<uint32_t>(scene_.materials.size() - 1);
     }
 
-    // Divides Kd and Ks by the largest channel of their sum where that exceeds 1.
+    // Divides Kd and Ks by the largest channel of their sum if it exceeds 1.
     void limit_reflectance(const ObjFile& obj, const std::string& name, Material& material) {
         const dvec3 albedo = dvec3(material.diffuse_albedo) + dvec3(material.specular_albedo);
         const double largest = std::max({albedo.x, albedo.y, albedo.z});
         if (largest <= 1) return;
         scene_.warnings.push_back(obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " +
                                   (specular_ ? "Kd and Ks are" : "Kd is") + " divided by " + std::to_string(largest));
-        // Rounded down, so that the sum does not exceed 1 by a rounding error.
+        // Rounded down, so that rounding errors cannot push the sum above 1.
         constexpr double rounding = 1 - 0x1p-23;
         material.diffuse_albedo = vec3(dvec3(material.diffuse_albedo) / largest * rounding);
         material.specular_albedo = vec3(dvec3(material.specular_albedo) / largest * rounding);
     }
 
-    // Materials often share their roughness, so that few albedos have to be integrated.
+    // Materials often share their roughness, so few albedos need integrating.
     void add_albedo(const ObjFile& obj, Microfacets& microfacets) {
         const auto [known, is_new] = albedos_.try_emplace({microfacets.roughness, microfacets.coat_index}, microfacets);
         if (albedos_.size() > max_albedos)

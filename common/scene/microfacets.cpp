@@ -11,7 +11,7 @@ using glm::dvec3;
 
 constexpr uint32_t entries = MICROFACET_ALBEDO_COUNT;
 
-// Fresnel's reflectance for unpolarised light that comes from outside of the coat.
+// Fresnel reflectance for unpolarised light that arrives from outside the coat.
 double get_reflectance(double cosine, double index) {
     const double refracted = std::sqrt(index * index - 1 + cosine * cosine);
     const double s = (cosine - refracted) / (cosine + refracted);
@@ -19,7 +19,7 @@ double get_reflectance(double cosine, double index) {
     return index == 1 ? 0 : 0.5 * (s * s + p * p);
 }
 
-// What one bounce reflects of light from this direction: the mean of F G2/G1 over the visible normals, with and without F.
+// Reflectance of a single bounce for light from this direction: the mean of F G2/G1 over the visible normals, with and without F.
 dvec2 integrate_direction(double alpha, double cosine, double index) {
     constexpr int rows = 64, columns = 32;
     const auto smith_term = [&](double c) { return std::sqrt(alpha * alpha * (1 - c * c) + c * c); };
@@ -27,7 +27,7 @@ dvec2 integrate_direction(double alpha, double cosine, double index) {
     const dvec3 out(sine, 0, cosine), stretched = glm::normalize(dvec3(alpha * sine, 0, cosine));
     dvec2 sum(0);
     for (int i = 0; i < rows; ++i) {
-        // More rows where normals are steep, since those lose light.
+        // More rows where normals are steep, since those lose energy.
         const double rest = 1 - (i + 0.5) / rows, u = 1 - rest * rest * rest;
         for (int j = 0; j < columns; ++j) {
             // A visible normal as in the shaders. Both sides of the plane of incidence reflect the same.

@@ -19,7 +19,7 @@ constexpr float default_coat_index = 1.5f;  // of plastic and lacquer
 
 constexpr uint64_t max_mtl_bytes = uint64_t{16} << 20;
 
-// How many numbers follow a keyword, and the largest that makes sense; none may be negative.
+// How many numbers follow a keyword, and the largest sensible value; none may be negative.
 struct Numbers {
     size_t count;
     float largest;
@@ -31,7 +31,7 @@ const std::map<std::string_view, Numbers> number_keywords = {
 };
 const std::set<std::string_view> other_keywords = {"newmtl", "map_Kd", "Ka", "illum"};
 
-// What tinyobjloader does not tell: the whole name (its releases differ after a space), and which of these keywords a material
+// What tinyobjloader does not report: the whole name (its releases differ after a space), and which of these keywords a material
 // has at all.
 struct Stated {
     std::string name;
@@ -42,7 +42,7 @@ struct Stated {
     bool metalness = false;
 };
 
-// Checks all numbers: tinyobjloader reads 0 where they are missing or nonsense. An element a material.
+// Checks all numbers, since tinyobjloader reads missing or malformed ones as 0. Returns one element per material.
 std::vector<Stated> check_lines(const std::string& file, std::string_view text, std::vector<std::string>& warnings) {
     std::vector<Stated> materials;
     std::set<std::string> ignored;
@@ -54,7 +54,7 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text, 
         const std::string keyword(words[0]);
         if (keyword == "newmtl") {
             if (name_in(line).empty()) fail("newmtl needs a name");
-            // tinyobjloader would take it for another word.
+            // tinyobjloader would read it as a different keyword.
             if (line.substr(line.find("newmtl")).starts_with("newmtl#")) fail("newmtl needs a space after it");
             materials.emplace_back().name = name_in(line);
         } else if (materials.empty()) {
@@ -95,12 +95,12 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text, 
     return materials;
 }
 
-// A smooth dielectric of the index and the transmittance that the file states.
+// A smooth dielectric with the index and transmittance that the file states.
 void make_dielectric(const std::string& file, const tinyobj::material_t& source, const Stated& stated, Material& material) {
     const auto fail = [&](const std::string& reason) {
         throw UserError(file + ": material " + in_quotes(stated.name) + ": " + reason);
     };
-    // Beyond these bounds nothing is transparent, and Fresnel's formulas would overflow.
+    // Nothing transparent lies outside this range, and Fresnel's formulas would overflow.
     if (!(source.ior >= 0.01f && source.ior <= 100))
         fail("is transparent (d < 1) and needs a refractive index Ni from 0.01 to 100");
     material.refractive_index = source.ior;
@@ -114,7 +114,7 @@ void make_dielectric(const std::string& file, const tinyobj::material_t& source,
 
 vec3 to_vec3(const float (&values)[3]) { return {values[0], values[1], values[2]}; }
 
-// The microfacets that Pr states. What contradicts itself gets a warning that says what counts.
+// Microfacets from Pr. Contradictions get a warning that says what takes effect.
 Microfacets read_microfacets(const std::string& file, const tinyobj::material_t& source, const Stated& stated,
                              std::vector<std::string>& warnings) {
     const std::string subject = file + ": material " + in_quotes(stated.name) + ": ";
@@ -124,7 +124,7 @@ Microfacets read_microfacets(const std::string& file, const tinyobj::material_t&
     if (!stated.roughness) return microfacets;
     if (is_dielectric) {
         if (is_metal) warnings.push_back(subject + "is transparent (d < 1), so that Pm has no effect");
-        // Nothing bends at an index of 1, however rough.
+        // At an index of 1 nothing bends, however rough.
         const bool is_smooth = source.roughness < smallest_roughness || source.ior == 1;
         microfacets.roughness = is_smooth ? 0 : source.roughness * source.roughness;
         return microfacets;
@@ -172,13 +172,13 @@ std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::
         std::filesystem::path texture;
         if (!source.diffuse_texname.empty()) {
             std::string relative = source.diffuse_texname;
-            std::replace(relative.begin(), relative.end(), '\\', '/');  // from Windows
+            std::replace(relative.begin(), relative.end(), '\\', '/');  // as on Windows
             texture = texture_folder / relative;
             if (!stated[i].diffuse) material.diffuse_albedo = vec3(1);
         }
         if (source.dissolve < 1) make_dielectric(name, source, stated[i], material);
         const Microfacets microfacets = read_microfacets(name, source, stated[i], warnings);
-        if (stated[i].roughness) material.specular_albedo = vec3(0);  // they take the place of Phong's lobe
+        if (stated[i].roughness) material.specular_albedo = vec3(0);  // microfacets replace the Phong lobe
         materials.push_back({stated[i].name, material, texture, microfacets});
     }
     return materials;

@@ -21,7 +21,7 @@ constexpr uint64_t max_obj_bytes = uint64_t{1} << 30;
 constexpr int max_polygon_corners = 256;
 constexpr size_t max_library_names = 256;
 
-// Lets tinyobjloader read text in memory, and knows the line that it read last.
+// Lets tinyobjloader read from memory, and knows which line it read last.
 class TextBuffer : public std::streambuf {
   public:
     explicit TextBuffer(std::string& text) {
@@ -37,7 +37,7 @@ class TextBuffer : public std::streambuf {
         return end_before == std::string_view::npos ? line : line.substr(end_before + 1);
     }
 
-    // Counts on from the line that it was asked for last.
+    // Counts on from the previous call.
     size_t last_line_number() const {
         std::string_view text(counted_end_, static_cast<size_t>(gptr() - counted_end_));
         for (; !text.empty(); ++counted_lines_) take_line(text);
@@ -89,8 +89,8 @@ class ObjReader : public tinyobj::MaterialReader {
         return std::move(obj_);
     }
 
-    // Called for a word after mtllib. Exporters do not escape spaces: all words together are tried first, and then each until one
-    // is a file.
+    // Called for a word after mtllib. Exporters do not escape spaces, so all words together are tried first, and then each one
+    // until one of them is a file.
     bool operator()(const std::string&, std::vector<tinyobj::material_t>*, std::map<std::string, int>*, std::string*,
                     std::string*) override {
         std::string all(name_in(buffer_.last_line()));
@@ -100,7 +100,7 @@ class ObjReader : public tinyobj::MaterialReader {
         names[0] = all;
         for (const std::string_view name : names) {
             if (++library_names_ > max_library_names) fail("more than 256 names of material files");
-            std::error_code ignored;  // a name that the file system refuses is that of no file
+            std::error_code ignored;  // a name that the file system refuses is not a file
             if (!std::filesystem::exists(folder / name, ignored)) continue;
             read_library(folder / name);
             return true;
@@ -112,7 +112,7 @@ class ObjReader : public tinyobj::MaterialReader {
   private:
     [[noreturn]] void fail(const std::string& reason) const { fail_at_line(obj_.file, buffer_.last_line_number(), reason); }
 
-    // tinyobjloader reads 0 where there is no finite number.
+    // tinyobjloader reads anything but a finite number as 0.
     void check_numbers(size_t count) const {
         const std::vector<std::string_view> words = words_of(buffer_.last_line());
         if (words.size() < count + 1) fail(std::string(words[0]) + " needs " + std::to_string(count) + " numbers");
@@ -126,7 +126,7 @@ class ObjReader : public tinyobj::MaterialReader {
             fail("texture coordinates beyond 2^23 are whole numbers in 32 bits and place nothing");
     }
 
-    // tinyobjloader reads 0 where there is no number, and wraps those of more than 32 bits.
+    // tinyobjloader reads a missing number as 0, and wraps those of more than 32 bits.
     void check_indices() const {
         std::string_view line = buffer_.last_line();
         line.remove_prefix(line.find('f') + 1);
@@ -138,7 +138,7 @@ class ObjReader : public tinyobj::MaterialReader {
         }
     }
 
-    // Indices count from 1, negative ones from the end; tinyobjloader reports 0 for absent ones.
+    // Indices start at 1, negative ones count from the end; tinyobjloader reports 0 for absent ones.
     uint32_t resolve(int index, size_t count, const char* what) const {
         const int64_t resolved = index > 0 ? int64_t{index} - 1 : static_cast<int64_t>(count) + index;
         if (index == 0 || resolved < 0 || resolved >= static_cast<int64_t>(count))
@@ -174,7 +174,7 @@ class ObjReader : public tinyobj::MaterialReader {
         }
     }
 
-    // tinyobjloader passes over them in silence.
+    // tinyobjloader skips them silently.
     void check_faces_without_corners() const {
         for (size_t end = text_.find("\nf"); end != std::string::npos; end = text_.find("\nf", end + 1)) {
             const size_t next = end + 2;
@@ -195,7 +195,7 @@ class ObjReader : public tinyobj::MaterialReader {
     }
 
     void read_library(const std::filesystem::path& file) {
-        if (!libraries_.insert(file.lexically_normal()).second) return;  // known: the first of a name counts
+        if (!libraries_.insert(file.lexically_normal()).second) return;  // already read: the first material of a name counts
         for (MtlMaterial& material : read_mtl(file, path_.parent_path(), files_, warnings_)) {
             material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));
             obj_.materials.push_back(std::move(material));
@@ -209,7 +209,7 @@ class ObjReader : public tinyobj::MaterialReader {
         material_ = found == material_indices_.end() ? grey_ : found->second;
     }
 
-    // Models from elsewhere often lack their materials: they are drawn in grey, and the first that is missing is named.
+    // Models from elsewhere often lack their materials: they are rendered grey, and the first missing one is named.
     void note_missing(const std::string& what) {
         if (missing_.empty()) missing_ = obj_.file + ":" + std::to_string(buffer_.last_line_number()) + ": " + what;
     }

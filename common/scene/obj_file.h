@@ -1,4 +1,4 @@
-// Wavefront .obj files, and the scene's arrays made from them.
+// Wavefront .obj files, and the scene arrays made from them.
 #pragma once
 #include <limits>
 
@@ -16,7 +16,7 @@ struct ObjCorner {
     bool operator==(const ObjCorner&) const = default;
 };
 
-// An .obj file with its polygons cut into triangles. All numbers are finite, all indices in range.
+// An .obj file whose polygons are cut into triangles. All numbers are finite, all indices in range.
 struct ObjFile {
     std::string file;
     std::vector<vec3> positions;
@@ -28,14 +28,14 @@ struct ObjFile {
     std::vector<MtlMaterial> materials;
 };
 
-// Reads an .obj file and its material files. Throws UserError naming the line for coordinates that are not finite numbers,
-// indices out of range and faces of fewer than 3 or more than 256 corners. Faces without a known material become grey (Kd 0.5),
+// Reads an .obj file and its material files. Throws UserError, naming the line, for coordinates that are not finite numbers,
+// indices out of range, and faces of fewer than 3 or more than 256 corners. Faces without a known material become grey (Kd 0.5),
 // with a warning.
 ObjFile read_obj(const std::filesystem::path& file, SourceFiles& files, std::vector<std::string>& warnings);
 
-// Fills the scene's vertices, triangles, materials, textures and meshes (one per file). Equal corners become one vertex;
-// triangles without area and materials without triangles are left out. Resolves coincident lights. Reads textures. Throws
-// UserError for damaged textures and files in which no triangle has an area. Returns each triangle's line in its file.
+// Fills the scene's vertices, triangles, materials, textures and meshes (one per file), and reads textures. Equal corners become
+// one vertex; triangles without area and materials without triangles are dropped; coincident lights are resolved. Throws
+// UserError for damaged textures and for files in which no triangle has an area. Returns each triangle's line in its file.
 std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene);
 
 }  // namespace lab

@@ -88,7 +88,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
 
     Scene& scene = description.scene;
     scene.file = file;
-    // Errors in files name the scene that refers to them, too.
+    // Errors in files also name the scene that refers to them.
     const auto load = [&](const auto& load_part) {
         try {
             load_part();
@@ -123,7 +123,7 @@ using glm::dvec3;
 CameraPose framing_pose(const Bounds& bounds) {
     const dvec3 low(bounds.low), high(bounds.high);
     const dvec3 centre = 0.5 * (low + high);
-    // The bounding sphere touches the upper and lower edge of the image.
+    // The bounding sphere touches the top and bottom of the image.
     CameraPose pose;
     const double radius = 0.5 * glm::distance(low, high);
     const double distance = radius / std::sin(glm::radians(0.5 * pose.vertical_fov));
@@ -140,7 +140,7 @@ Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
         throw UserError("camera: the vertical field of view must be above 0 and below 180 degrees");
     const dvec3 forward = direction / distance;
 
-    // Looking along `up` leaves the camera's roll open: then -Z (or +Y) is up in the image.
+    // Looking along `up` leaves the camera's roll undefined: then -Z (or +Y) is up in the image.
     dvec3 up(pose.up);
     const double up_length = glm::length(up);
     if (!(up_length > 0) || !std::isfinite(up_length)) throw UserError("camera: up must be finite and not zero");

@@ -12,15 +12,15 @@
 
 namespace lab {
 
-// The triangles of a mesh file, a range of the scene's triangles in object space. Dielectric ones come last, so each material
-// class is a range, too.
+// The triangles of a mesh file, a range of the scene's triangles in object space. Dielectric ones come last, so that each
+// material class is a range, too.
 struct Mesh {
     std::string file;
     uint32_t first_triangle = 0;
     uint32_t triangle_count = 0;
     uint32_t dielectric_count = 0;
 
-    // Indices of all of them.
+    // Indices of all its triangles.
     auto triangles() const { return std::views::iota(first_triangle, first_triangle + triangle_count); }
 };
 
@@ -32,13 +32,13 @@ struct MaterialClassRange {
 };
 std::vector<MaterialClassRange> material_class_ranges(const Mesh& mesh);  // diffuse before dielectric; none is empty
 
-// Longest path length that a scene or a flag may ask for, so that samples end in bounded time.
+// Longest path length that a scene or flag may request, so that samples end in bounded time.
 inline constexpr uint32_t path_length_limit = 1000000;
 
-// Most triangles of a mesh file, and of all instances together for the tree of `compute`.
+// Most triangles in a mesh file, and in all instances together for the tree of `compute`.
 inline constexpr size_t max_triangle_count = (size_t{1} << 28) - 1;
 
-// Defaults, where neither a flag nor the scene says anything.
+// Defaults for what neither a flag nor the scene specifies.
 struct RenderDefaults {
     uint32_t width = 512;
     uint32_t height = 512;
@@ -64,7 +64,7 @@ struct Scene {
     std::vector<uint32_t> triangle_materials;
     std::vector<Material> materials;
     std::vector<Microfacets> microfacets;  // per material; empty if none has any
-    bool multiple_scattering = false;      // light that microfacets reflect several times is added
+    bool multiple_scattering = false;      // whether to add light that microfacets reflect several times
     std::vector<uvec2> double_sided;       // pairs of opaque triangles in one place that face opposite ways; the second has the
                                            // corners of the first in reverse, starting from the same one
     std::vector<Mesh> meshes;
@@ -77,7 +77,7 @@ struct Scene {
     std::optional<Image> light_probe;  // equirectangular, +Y up, image centre towards -Z
     float probe_rotation = 0;          // radians
     RenderDefaults defaults;
-    bool has_added_lobes = false;  // --specular switched Phong lobes on, not the file
+    bool has_added_lobes = false;  // Phong lobes come from --specular, not from the file
 
     std::vector<std::string> warnings;  // for the user, one line each
     uint64_t hash = 0;                  // FNV-1a of all files that the scene was read from
@@ -87,7 +87,7 @@ struct Scene {
     const vec3& corner(uint32_t triangle, int i) const { return positions[triangles[triangle][i]]; }
 };
 
-// Number of triangles of all instances together; does not overflow.
+// Number of triangles in all instances together; cannot overflow.
 uint64_t instanced_triangle_count(const Scene& scene);
 
 // Axis-aligned bounding box.
@@ -96,18 +96,18 @@ struct Bounds {
     vec3 high{-std::numeric_limits<float>::infinity()};
     void grow(const vec3& point) { low = glm::min(low, point), high = glm::max(high, point); }
 };
-// World-space bounds of all instances, tight unless a mesh is rotated. Without instances low > high.
+// World-space bounds of all instances, tight unless a mesh is rotated. Without instances, low > high.
 Bounds world_bounds(const Scene& scene);
 
-// Reads a .json scene or a bare .obj. `specular` switches the Phong lobe on, like the scene's key. The default camera is
+// Reads a .json scene or a bare .obj. `specular` enables Phong lobes, like the key in the scene. The default camera is
 // framing_pose(); a bare .obj without lights gets a white sky. Throws UserError.
 Scene load_scene(const std::filesystem::path& file, bool specular = false);
 
-// A view of everything inside the bounds, from +Z and slightly above, for images that are not upright.
+// A pose that sees everything inside the bounds, from +Z and slightly above, for images at least as wide as high.
 CameraPose framing_pose(const Bounds& bounds);
 
-// The camera of a pose for an image size in pixels. An `up` along the line of sight is replaced. Throws UserError for a pose
-// without a direction or `up`, or with a field of view outside (0,180) degrees.
+// The camera for a pose and an image size in pixels. An `up` along the line of sight is replaced. Throws UserError if the pose
+// has no direction or `up`, or a field of view outside (0,180) degrees.
 Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height);
 
 }  // namespace lab

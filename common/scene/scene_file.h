@@ -11,9 +11,9 @@ struct MeshPlacement {
     glm::dmat4x3 object_to_world{1};  // translation * rotation * scale
 };
 
-// The contents of a scene file. The files that it names are not read yet; their paths start in its folder.
+// The contents of a scene file. The files it names are not read yet; their paths are relative to its folder.
 struct SceneDescription {
-    Scene scene;  // without what is in those files
+    Scene scene;  // without the contents of those files
     std::vector<MeshPlacement> meshes;
     std::filesystem::path light_probe;  // empty for a constant background
     bool has_camera = false;

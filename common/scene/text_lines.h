@@ -1,4 +1,4 @@
-// The files that a scene is read from, and text line by line, for the checks that tinyobjloader leaves out: it reads what is not
+// The files that a scene is read from, and text line by line, for checks that tinyobjloader lacks: it reads anything that is not
 // a number as 0.
 #pragma once
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace lab {
 
-// Reads files and hashes their contents in reading order, so that changed scenes are recognised.
+// Reads files and hashes their contents in reading order, to recognise changed scenes.
 class SourceFiles {
   public:
-    // As read_file().
+    // Like read_file().
     std::string read(const std::filesystem::path& file, uint64_t max_bytes) {
         std::string bytes = read_file(file, max_bytes);
         hash_ = hash_text(bytes, hash_);
@@ -26,19 +26,19 @@ class SourceFiles {
     uint64_t hash_ = hash_text("");
 };
 
-// Throws the UserError "<file>:<line>: <reason>"; lines count from 1.
+// Throws a UserError "<file>:<line>: <reason>"; lines count from 1.
 [[noreturn]] void fail_at_line(const std::string& file, size_t line, const std::string& reason);
 
-// Removes the first line from the text and returns it. Lines end with \n, \r\n or \r.
+// Removes and returns the first line of the text. Lines end with \n, \r\n or \r.
 std::string_view take_line(std::string_view& text);
 
 // The words of a line, separated by spaces and tabs, up to a comment (#).
 std::vector<std::string_view> words_of(std::string_view line);
 
-// The name that follows a line's keyword, without spaces and tabs around it. It may contain spaces and #.
+// The name after a line's keyword, without surrounding spaces and tabs. It may contain spaces and #.
 std::string_view name_in(std::string_view line);
 
-// The word as a number. Nothing if it is no number, or if it is infinite or NaN in 32 bits.
+// The word as a number. Empty if it is not one, or if it is infinite or NaN in 32 bits.
 std::optional<float> to_number(std::string_view word);
 
 }  // namespace lab

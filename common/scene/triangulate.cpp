@@ -12,10 +12,10 @@ using glm::dvec3;
 // Twice the signed area of a triangle: positive if counter-clockwise.
 double area(const dvec2& a, const dvec2& b, const dvec2& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-// The polygon along the axis closest to its normal, such that it is counter-clockwise.
+// Projects the polygon along the axis closest to its normal, so that it is counter-clockwise.
 std::vector<dvec2> project(std::span<const vec3> polygon) {
     const dvec3 origin(polygon[0]);
-    dvec3 normal(0);  // sum of the cross products of a fan: right for concave polygons, too
+    dvec3 normal(0);  // sum over a fan: also right for concave polygons
     for (size_t i = 1; i + 1 < polygon.size(); ++i)
         normal += glm::cross(dvec3(polygon[i]) - origin, dvec3(polygon[i + 1]) - origin);
     const dvec3 size = glm::abs(normal);
@@ -36,8 +36,8 @@ std::vector<std::array<uint32_t, 3>> triangulate(std::span<const vec3> polygon) 
     std::iota(rest.begin(), rest.end(), 0u);
     const std::vector<dvec2> points = polygon.size() > 3 ? project(polygon) : std::vector<dvec2>();
     while (rest.size() > 3) {
-        // An ear is a convex corner whose triangle contains no other corner. Every polygon has one; where rounding or crossing
-        // edges hide it, any corner is cut off.
+        // An ear is a convex corner whose triangle contains no other corner. Every polygon has one; if rounding or crossing edges
+        // hide it, any corner will do.
         size_t ear = 1;
         for (size_t i = 1; i <= rest.size(); ++i) {
             const uint32_t a = rest[i - 1], b = rest[i % rest.size()], c = rest[(i + 1) % rest.size()];

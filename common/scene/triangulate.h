@@ -1,4 +1,4 @@
-// Polygons to triangles.
+// Triangulates polygons.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace lab {
 
-// Cuts n >= 3 corners, nearly in a plane, into n - 2 triangles of indices into `polygon`, with its winding. Convex polygons
-// become a fan around corner 0, concave ones are cut by ear clipping; polygons that cross themselves give some triangles, too.
-// Takes O(n^3) steps at worst.
+// Cuts n >= 3 nearly coplanar corners into n - 2 triangles of indices into `polygon`, with its winding. Convex polygons become a
+// fan around corner 0, concave ones are cut by ear clipping; self-intersecting polygons also give triangles. Takes O(n^3) steps
+// at worst.
 std::vector<std::array<uint32_t, 3>> triangulate(std::span<const vec3> polygon);
 
 }  // namespace lab

@@ -42,7 +42,7 @@ std::vector<Part> parts_of(const Scene& scene) {
     return parts;
 }
 
-// A part whose box lies inside that of another.
+// A part whose box lies inside another part's box.
 struct Nesting {
     const Part* inner = nullptr;
     const Part* outer = nullptr;
@@ -61,7 +61,7 @@ struct WorldTriangle {
     Bounds bounds;
 };
 
-// Triangles of a part that may touch what lies in the box.
+// Triangles of a part that may touch anything in the box.
 std::vector<WorldTriangle> triangles_near(const Scene& scene, const Part& part, const Bounds& box) {
     std::vector<WorldTriangle> triangles;
     const glm::dmat4x3 object_to_world(scene.instances[part.instance].object_to_world);
@@ -77,7 +77,7 @@ std::vector<WorldTriangle> triangles_near(const Scene& scene, const Part& part, 
     return triangles;
 }
 
-// Whether an edge of `a` passes through `b` and reaches further than `depth` on both sides.
+// Whether an edge of `a` passes through `b` and extends further than `depth` on both sides.
 bool pierces(const WorldTriangle& a, const WorldTriangle& b, double depth) {
     const dvec3 normal = glm::normalize(glm::cross(b.corners[1] - b.corners[0], b.corners[2] - b.corners[0]));
     for (int i = 0; i < 3; ++i) {
@@ -93,7 +93,7 @@ bool pierces(const WorldTriangle& a, const WorldTriangle& b, double depth) {
     return false;
 }
 
-// Whether the surfaces of two parts cross by more than 1/10,000 of the glass.
+// Whether the surfaces of two parts cross by more than 1/10,000 of the size of the glass.
 bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, size_t& pair_count) {
     const double depth = 1e-4 * glm::distance(dvec3(glass.bounds.low), dvec3(glass.bounds.high));
     const auto glass_triangles = triangles_near(scene, glass, object.bounds);
@@ -106,13 +106,13 @@ bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, s
     return false;
 }
 
-// Counts edges at which a mesh's dielectric surface ends, or a front meets a back.
+// Counts edges where a mesh's dielectric surface ends, or where a front meets a back.
 size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
     if (mesh.dielectric_count > max_glass_triangles) return 0;
     std::vector<std::pair<std::pair<Point, Point>, int>> edges;  // and +1 or -1 for the triangle's direction along it
     for (const uint32_t triangle : mesh.triangles() | std::views::drop(mesh.triangle_count - mesh.dielectric_count))
         for (int i = 0; i < 3; ++i) {
-            // Vertices in the same place are one, whatever their normals.
+            // Coincident vertices are one, whatever their normals.
             const vec3 a = scene.corner(triangle, i) + 0.0f, b = scene.corner(triangle, (i + 1) % 3) + 0.0f;
             const Point from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
             edges.push_back({std::minmax(from, to), from < to ? 1 : -1});
@@ -127,7 +127,7 @@ size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
     return count;
 }
 
-constexpr double rounding = 0x1p-24;  // of 32-bit numbers, relative
+constexpr double rounding = 0x1p-24;  // relative, of 32-bit numbers
 
 std::string to_text(double number, int digits = 2) {
     char text[16];
@@ -215,7 +215,7 @@ std::vector<std::string> precision_warnings(const Scene& scene) {
     if (!scene.instances.empty()) {
         const Bounds bounds = world_bounds(scene);
         const glm::dvec3 low(bounds.low), high(bounds.high), farthest = glm::max(glm::abs(low), glm::abs(high));
-        // As get_surface_point() of shaders/world/shading_data.glsl moves rays off a surface that is not slender.
+        // The offset of get_surface_point() in shaders/world/shading_data.glsl for a triangle that is not slender.
         const double offset = 8 * rounding * (farthest.x + farthest.y + farthest.z);
         const double part = offset / glm::distance(low, high);
         if (part > 1e-3)

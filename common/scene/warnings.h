@@ -1,16 +1,16 @@
-// Warnings about a scene: what its author probably did not intend, or what the renderer does not compute.
+// Warnings about a scene: what its author probably did not intend, or what the renderer cannot compute.
 #pragma once
 #include "scene/scene.h"
 
 namespace lab {
 
-// One line per kind: a dielectric that may lie inside another, an opaque object that may lie inside absorbing glass (both by
-// bounding boxes), one that reaches into it, and glass whose surface is not closed. Looks at the first ten million triangles and
-// pairs; glass of more than a million triangles counts as closed.
+// One line per kind: a dielectric that may lie inside another, an opaque object that may lie inside absorbing glass (both judged
+// by bounding boxes) or reaches into it, and glass whose surface is not closed. Examines the first ten million triangles and
+// pairs only; glass of more than a million triangles counts as closed.
 std::vector<std::string> dielectric_warnings(const Scene& scene);
 
 // One line each where 32-bit numbers are too coarse:
-// - for each mesh with texture coordinates so large that neighbouring floats are more than a texel apart;
+// - for each mesh whose texture coordinates are so large that neighbouring floats are more than a texel apart;
 // - if the scene is so far from the origin that rays start more than 1/1000 of its size off the surface, which loses shadows in
 //   corners;
 // - if directions are rounded by more than a tenth of a pixel.

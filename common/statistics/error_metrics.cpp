@@ -9,7 +9,7 @@
 namespace lab {
 namespace {
 
-// `squared_error(i)` and `variance(i)` of number i of the image, relative to the values of `scale`.
+// `squared_error(i)` and `variance(i)` of element i of the image, relative to the values of `scale`.
 template <typename SquaredError, typename Variance>
 ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, const Variance& variance) {
     const size_t size = scale.pixels.size();
@@ -21,7 +21,7 @@ ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, cons
                                                     return sum;
                                                 }) /
                         count;
-    // Of errors and variances, each also relative.
+    // Sums of errors and variances, each also relative.
     const auto sums = sum_in_parallel<glm::dvec4>(size, [&](size_t begin, size_t end) {
         glm::dvec4 sum(0);
         for (size_t i = begin; i < end; ++i) {
@@ -42,7 +42,7 @@ ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, cons
     return result;
 }
 
-// Every pixel replaced by the mean of its block of 8 x 8 pixels.
+// Replaces every pixel by the mean of its block of 8 x 8 pixels.
 Image block_means(const Image& image) {
     constexpr uint32_t size = 8;
     Image result = image;

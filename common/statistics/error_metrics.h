@@ -11,7 +11,7 @@
 
 namespace lab {
 
-// The error of a number x is x - r. Where the variance of the reference r is known, it is subtracted.
+// The error of a value x is x - r. If the variance of the reference r is known, it is subtracted.
 struct ErrorMetrics {
     double mse = 0;                  // mean over pixels and channels of (x - r)^2
     double rel_mse = 0;              // mean of (x - r)^2 / (r^2 + 0.01 r̄^2), r̄ the mean of the reference
@@ -22,7 +22,7 @@ struct ErrorMetrics {
 
 struct Reference {
     Image mean;
-    std::optional<Image> variance;                       // of the mean, from the channels variance.R, variance.G, variance.B
+    std::optional<Image> variance;                       // of the mean, from channels variance.R, variance.G, variance.B
     std::map<std::string, std::string> attributes = {};  // of the file: scene, scene_hash, max_path_length, …
 
     // Mean of a channel over a rectangle of pixels, and the variance of that mean (0 if unknown).
@@ -36,7 +36,7 @@ struct Reference {
 // Throws UserError if the file is damaged.
 Reference read_reference(const std::filesystem::path& file);
 
-// Image and reference have the same size.
+// Image and reference must have the same size.
 ErrorMetrics compare(const Image& image, const Reference& reference);
 
 // Estimates the error of a film from the halves of its samples. Errors are relative to means over 8 x 8 pixels, since a noisy
@@ -47,14 +47,14 @@ std::optional<ErrorMetrics> estimate_error(const FilmImage& film);
 // The noise of a rectangle of pixels.
 struct NoiseEstimate {
     glm::dvec3 mean{0};
-    // Root mean square of the pixels' standard errors, over pixels and channels; relative to the rectangle's mean below.
+    // Root mean square of the pixels' standard errors over pixels and channels; below, relative to the rectangle's mean.
     double standard_error = 0;
     double relative_error = 0;
-    double samples = 0;  // a pixel, on average
+    double samples = 0;  // per pixel, on average
     uint64_t invalid_samples = 0;
 };
 
-// Estimates noise from the halves of the samples. Pixels with fewer than two have none.
+// Estimates noise from the halves of the samples, ignoring pixels with fewer than two.
 NoiseEstimate estimate_noise(const FilmImage& film, glm::uvec2 corner, glm::uvec2 size);
 
 }  // namespace lab

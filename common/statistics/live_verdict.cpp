@@ -12,18 +12,18 @@ namespace {
 constexpr uint32_t tile = 8;  // pixels of the reference
 constexpr uint32_t first_test = 16;
 constexpr double power = 0.99;
-// Paths that make a region's mean normally distributed even if only one in 1000 meets a light.
+// Paths after which a region's mean is normally distributed even if only one in 1000 meets a light.
 constexpr double reliable_paths = 1 << 17;
 // Differences below this fraction of the image's mean count as noise.
 constexpr double tile_floor = 5e-4;
-// Another renderer rounds differently.
+// Allowance for a renderer that rounds differently.
 constexpr double renderer_rounding = 1e-5;
 
 double square(double x) { return x * x; }
 
 }  // namespace
 
-// Rounded to the first digit of the interval.
+// Rounds to the first digit of the interval.
 std::string interval_text(const Difference& difference) {
     const double half_width = 1.96 * difference.standard_error;
     const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(100 * half_width, 1e-9)))), 0, 3);
@@ -66,7 +66,7 @@ Reference::Part LiveVerdict::expected(const Region& region, int channel) const {
     return reference_.part(channel, corner, end - corner);
 }
 
-// Of a channel's mean over a region, in radiance.
+// Difference of a channel's mean over a region, in radiance.
 Difference LiveVerdict::difference(const Region& region, int channel) const {
     const glm::uvec2 corner = region.first * tile;
     const glm::uvec2 end = glm::min(region.end * tile, glm::uvec2(reference_.mean.width, reference_.mean.height));
@@ -74,12 +74,12 @@ Difference LiveVerdict::difference(const Region& region, int channel) const {
     for (uint32_t y = corner.y; y < end.y; ++y)
         for (uint32_t x = corner.x; x < end.x; ++x)
             pixels.push_back(differences_[size_t{y} * reference_.mean.width + x][channel]);
-    // A single pixel has no spread.
+    // A single pixel has no variance.
     if (pixels.size() == 1) return {.standard_error = INFINITY, .degrees_of_freedom = 1};
     Difference difference = difference_from(pixels, 0);
     double variance = square(difference.standard_error);
-    // Too few chance hits of a light make mean and spread too small together. The variance of rare events is proportional to
-    // their mean: scale it to the reference's.
+    // Too few chance hits of a light make both mean and spread too small. The variance of rare events is proportional to their
+    // mean: scale it to the reference's.
     const Reference::Part reference = expected(region, channel);
     const double mean = reference.mean + difference.value;
     if (mean > 0) variance *= std::max(reference.mean / mean, 1.0);
@@ -90,7 +90,7 @@ Difference LiveVerdict::difference(const Region& region, int channel) const {
     return difference;
 }
 
-// Edge in tiles of the smallest square regions with enough paths; 0 if not even the image has enough.
+// Edge, in tiles, of the smallest square regions with enough paths; 0 if not even the image has enough.
 uint32_t LiveVerdict::finest_reliable_edge() const {
     const double paths_of_tile = square(tile * scale_) * samples_;
     for (uint32_t edge = 1; edge < std::max(tiles_.x, tiles_.y); edge *= 2)

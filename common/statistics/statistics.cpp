@@ -7,8 +7,9 @@
 namespace lab {
 namespace {
 
-// Wallace's transformation of Student's t with ν degrees of freedom to a standard normal number of the same p-value (Annals of
-// Mathematical Statistics 30(4), 1959), and its inverse: z within 0.01 for ν > 20, and closer to 0 than it should be for all ν.
+// Wallace's transformation of Student's t with ν degrees of freedom to a standard normal variable of equal p-value (Annals of
+// Mathematical Statistics 30(4), 1959), and its inverse. z is accurate to 0.01 for ν > 20, and closer to 0 than it should be for
+// all ν.
 double wallace_factor(double degrees_of_freedom) { return (8 * degrees_of_freedom + 1) / (8 * degrees_of_freedom + 3); }
 double normal_of_student(double t, double degrees_of_freedom) {
     return wallace_factor(degrees_of_freedom) * std::sqrt(degrees_of_freedom * std::log1p(t * t / degrees_of_freedom));
@@ -24,7 +25,7 @@ double normal_p_value(double z) { return std::erfc(std::abs(z) / std::numbers::s
 
 double normal_quantile(double probability) {
     if (probability > 0.5) return -normal_quantile(1 - probability);
-    // Newton's method. The lower tail is convex, so from the second step on it approaches the solution from above.
+    // Newton's method. The lower tail is convex, so from the second step on it approaches the root from above.
     double z = -std::sqrt(-2 * std::log(probability));
     for (int step = 0; step < 60; ++step) {
         const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
@@ -54,8 +55,7 @@ double Difference::z() const {
 double Difference::p_value() const { return normal_p_value(z()); }
 
 double Difference::smallest_detectable(double level, double power) const {
-    // Of the noncentral t-distribution: near the critical value t the statistic has a variance of
-    // 1 + t²/(2ν).
+    // From the noncentral t-distribution: near the critical value t the variance of the statistic is 1 + t²/(2ν).
     const double t = student_of_normal(normal_quantile(0.5 * level), degrees_of_freedom);
     return standard_error * (t + normal_quantile(power) * std::sqrt(1 + 0.5 * t * t / degrees_of_freedom));
 }

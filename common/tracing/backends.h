@@ -1,4 +1,4 @@
-// Shared by the backends and build_acceleration_structure().
+// What the backends and build_acceleration_structure() share.
 #pragma once
 #include "tracing/tracer.h"
 
@@ -9,10 +9,10 @@ std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device,
 std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene);
 std::unique_ptr<AccelerationStructure> build_native_backend(const GpuScene& scene);
 
-// A shader of shaders/ compiled for this scene and estimator.
+// A shader of shaders/, with the defines for this scene and estimator.
 ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator);
 
-// A scene's tree and the tracer for it. Backends add their shaders.
+// A scene's tree and the tracers for it. Backends add their shaders.
 template <typename Tree, typename TreeTracer>
 class SceneTree : public AccelerationStructure {
   public:

@@ -16,11 +16,11 @@ namespace {
 
 constexpr size_t max_bin_count = 32;
 constexpr size_t max_leaf_triangles = 4;
-// Where this many splits might lie above each other, ranges are halved instead, which bounds the stack of the traversal. Only
-// triangles whose sizes fall geometrically need so many.
+// At this many splits above each other, ranges are halved instead, which bounds the stack of the traversal. Only triangles whose
+// sizes shrink geometrically need so many.
 constexpr size_t max_depth = 64;
 
-// Four lanes of a register; the fourth means nothing unless stated.
+// Four SIMD lanes; the fourth is meaningless unless stated.
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = int;
 
@@ -42,7 +42,7 @@ struct Box {
 
 // The bounds of a triangle, with its index in the fourth lane of the upper corner.
 struct Primitive {
-    static constexpr uint32_t id_bits = 1u << 30;  // make an index a normal float, which is quick to compute with
+    static constexpr uint32_t id_bits = 1u << 30;  // turns an index into a normal float, which is fast to compute with
     static_assert(max_triangle_count < id_bits);
     Float4 low, high;
 
@@ -51,13 +51,13 @@ struct Primitive {
     Float4 centre() const { return low + high; }  // twice the centre
 };
 
-// Primitives side by side that become one subtree.
+// Adjacent primitives that become one subtree.
 struct Range {
     std::span<Primitive> primitives;
-    Primitive* room;  // for as many: its halves lie there, and theirs here again
+    Primitive* room;  // scratch memory of the same size: the halves go there, and theirs back here
     Box box;
-    uint32_t first;  // of its triangles in the order of the leaves
-    uint32_t depth;  // splits above it
+    uint32_t first;  // of its triangles, in leaf order
+    uint32_t depth;  // number of splits above it
     double area = box.half_area();
 };
 using Halves = std::array<Range, 2>;
@@ -74,14 +74,14 @@ struct Side {
     double cost() const { return box.half_area() * count; }  // NaN for an empty side
 };
 
-// A plane between two bins.
+// A split plane between two bins.
 struct Plane {
-    double cost = std::numeric_limits<double>::infinity();  // surface area cost of both sides
+    double cost = std::numeric_limits<double>::infinity();  // surface area heuristic, both sides together
     int axis = 0;
-    int bin = 0;  // the first on the right
+    int bin = 0;  // the first one on the right
 };
 
-// The primitives of a range, counted by their centres in bins of equal width along each axis.
+// The primitives of a range, counted by centre in bins of equal width along each axis.
 class Bins {
   public:
     explicit Bins(const Range& range) : count_(static_cast<int>(std::min(max_bin_count, 4 + range.primitives.size() / 2))) {
@@ -89,10 +89,10 @@ class Bins {
         for (const Primitive& primitive : range.primitives) centres.add({primitive.centre(), primitive.centre()});
         low_ = centres.low;
         last_ = Float4{} + (static_cast<float>(count_) - 0.5f);
-        // An axis along which the bins have hardly any width keeps all primitives in bin 0.
+        // Along an axis where the bins have almost no width, all primitives go to bin 0.
         const Float4 scale = static_cast<float>(count_) / (centres.high - low_);
         bins_per_length_ = scale <= std::numeric_limits<float>::max() ? scale : Float4{};
-        // Neighbours often share a bin, which would have to wait for the one before: so the two halves by turns.
+        // Neighbours often share a bin and would have to wait for each other's sum: so alternate between the two halves.
         const auto primitives = range.primitives;
         const size_t middle = primitives.size() / 2;
         for (size_t i = 0; i < middle; ++i) {
@@ -134,7 +134,7 @@ class Bins {
         const Float4 place = (primitive.centre() - low_) * bins_per_length_;
         const Int4 bins = __builtin_convertvector(place < last_ ? place : last_, Int4);
         const Side one{primitive.box(), 1};
-        // Not in a loop, so that the compiler knows the lanes.
+        // Unrolled, so that the compiler knows the lanes.
         axes_[0][static_cast<uint32_t>(bins[0])].add(one);
         axes_[1][static_cast<uint32_t>(bins[1])].add(one);
         axes_[2][static_cast<uint32_t>(bins[2])].add(one);
@@ -147,7 +147,7 @@ class Bins {
 
     int count_;
     Float4 low_, bins_per_length_;
-    Float4 last_;  // the middle of the last bin, counted in bins
+    Float4 last_;  // the middle of the last bin, in bins
     std::array<std::array<Side, max_bin_count>, 3> axes_;
 };
 
@@ -162,7 +162,7 @@ Halves halves_of(const Range& range, const Side& left, const Side& right) {
     return {half(0, left), half(left.count, right)};
 }
 
-// Halves along the longest axis, where all centres coincide or the tree is too deep.
+// Halves a range along its longest axis, for coincident centres and trees that are too deep.
 Halves halve(const Range& range) {
     const Float4 size = range.box.high - range.box.low;
     const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
@@ -174,12 +174,12 @@ Halves halve(const Range& range) {
     return halves_of(range, sides[0], sides[1]);
 }
 
-// The cheapest of all ways to divide a few primitives in two, if any is cheaper than a leaf. The first stays on the left.
+// The cheapest of all partitions of a few primitives, if any is cheaper than a leaf. The first one stays on the left.
 std::optional<Halves> split_few(const Range& range) {
     const auto primitives = range.primitives;
     if (primitives.size() < 2) return {};
-    double best_cost = range.area * static_cast<double>(primitives.size() - 1);  // of a leaf, less that of a node
-    uint32_t best = 0;  // has a bit for each primitive that goes to the right
+    double best_cost = range.area * static_cast<double>(primitives.size() - 1);  // of a leaf, minus that of a node
+    uint32_t best = 0;  // one bit per primitive, set if it goes to the right
     std::array<Side, 2> best_sides;
     for (uint32_t right = 2; right < 1u << primitives.size(); right += 2) {
         std::array<Side, 2> sides;
@@ -197,7 +197,7 @@ std::optional<Halves> split_few(const Range& range) {
     return halves_of(range, best_sides[0], best_sides[1]);
 }
 
-// The two halves of a range, or nothing where a leaf is cheaper. A node costs as much as a triangle.
+// The two halves of a range, or nothing if a leaf is cheaper. A node costs as much as a triangle.
 std::optional<Halves> split(const Range& range) {
     const size_t count = range.primitives.size();
     if (count <= max_leaf_triangles) return split_few(range);
@@ -207,7 +207,7 @@ std::optional<Halves> split(const Range& range) {
     if (!std::isfinite(plane.cost)) return halve(range);
     const Halves halves = halves_of(range, bins.left(plane), bins.right(plane));
     size_t left = 0, right = halves[0].primitives.size();
-    for (const Primitive& primitive : range.primitives) {  // without a branch to mispredict
+    for (const Primitive& primitive : range.primitives) {  // branch-free: the branch would be mispredicted
         const bool is_left = bins.is_left(primitive, plane);
         range.room[is_left ? left : right] = primitive;
         left += is_left;
@@ -222,7 +222,7 @@ struct Children {
     size_t count = 1;
 };
 
-// The children of a node that covers `range`: the largest is split until there are four or all are leaves.
+// The children of a node that covers `range`: splits the largest until there are four or all are leaves.
 Children open(const Range& range) {
     Children children{{range}};
     std::array<bool, 4> is_leaf{};
@@ -267,14 +267,14 @@ BvhNode make_node(const Children& children) {
 
 struct Subtree {
     uint32_t reference = 0;
-    uint32_t stack_entries = 0;  // most that a traversal leaves behind on its way down
+    uint32_t stack_entries = 0;  // most entries that a traversal leaves on the stack on its way down
 };
 
 class Builder {
   public:
     explicit Builder(size_t triangle_count) : order(triangle_count), task_size_(std::max<size_t>(32'768, triangle_count / 64)) {}
 
-    // Appends the node with these children, and all below it: depth first, whatever the number of threads.
+    // Appends the node with these children and everything below it, depth first, whatever the number of threads.
     Subtree add_node(const Children& children, LargeArray<BvhNode>& nodes) {
         const size_t index = nodes.size();
         nodes.push_back(make_node(children));
@@ -287,7 +287,7 @@ class Builder {
                 below[slot] = add(children.ranges[slot], parts[slot]);
             });
             for (size_t slot = 0; slot < children.count; ++slot) {
-                const auto part = std::move(parts[slot]);  // its memory goes back at once
+                const auto part = std::move(parts[slot]);  // frees its memory right away
                 const auto offset = static_cast<uint32_t>(nodes.size());
                 const auto move = [&](uint32_t& reference) {
                     if (!is_bvh_leaf(reference) && reference != 0) reference += offset;
@@ -319,7 +319,7 @@ class Builder {
         return {static_cast<uint32_t>(range.primitives.size() << bvh_leaf_shift | range.first), 0};
     }
 
-    size_t task_size_;  // triangles that one thread builds a tree of
+    size_t task_size_;  // triangles in a subtree that one thread builds
 };
 
 }  // namespace

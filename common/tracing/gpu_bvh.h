@@ -1,4 +1,4 @@
-// Our bounding volume hierarchy on the device, as shaders/engine/trace_ray/bvh.glsl declares it.
+// Our bounding volume hierarchy on the device, laid out as shaders/engine/trace_ray/bvh.glsl declares it.
 #pragma once
 #include "gpu/compute_kernel.h"
 #include "tracing/bvh.h"
@@ -7,8 +7,8 @@ namespace lab {
 
 class GpuBvh {
   public:
-    // Checks before minutes of building whether the device can hold the scene's triangles. Throws UserError for more than the
-    // tree can count, DeviceFailure for more than fit.
+    // Checks, before minutes of building, whether the device can hold the scene's triangles. Throws UserError for more than the
+    // tree can address, DeviceFailure for more than fit.
     static void require_room(const Device& device, const Scene& scene);
 
     // Throws DeviceFailure if the device cannot hold or address it. The device must outlive the result.

@@ -10,14 +10,14 @@ namespace lab {
 
 namespace {
 
-// An array that is to be copied to the device.
+// An array to be copied to the device.
 struct Array {
     uint32_t binding;
     std::span<const std::byte> data;
 };
 
-// Throws DeviceFailure for more textures than shaders can see. They see the light probe and both arrays of the backend compute as
-// images, too, and each other binding takes a place.
+// Throws DeviceFailure for more textures than shaders can bind. The light probe and both arrays of the backend `compute` count as
+// images, too, and every other binding takes a slot.
 void require_visible(const Device& device, size_t texture_count) {
     const auto& limits = device.limits();
     const size_t most = std::min(std::max(limits.maxPerStageDescriptorSampledImages, 3u) - 3,
@@ -120,7 +120,7 @@ void GpuScene::add_images(const Device& device, const SceneFeatures& features) {
         defines_.push_back("TEXTURE_COUNT " + std::to_string(scene_->textures.size()));
     }
     if (features.light_probe) {
-        // Four channels: few devices have images of three floats. 32 bits, since a sun is brighter than 16 bits hold.
+        // Four channels, since few devices support images of three floats; 32 bits, since the sun exceeds the range of 16.
         const Image& probe = *scene_->light_probe;
         std::vector<float> rgba;
         rgba.reserve(probe.pixels.size() / 3 * 4);

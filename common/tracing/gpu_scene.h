@@ -10,16 +10,16 @@
 
 namespace lab {
 
-// How an estimator finds light: by light samples and bounces, weighted, or by one of the two alone.
+// How an estimator finds light: by light samples and bounces, weighted, or by only one of the two.
 enum class Strategy { both, light, bounces };
 inline constexpr std::array all_strategies{Strategy::both, Strategy::light, Strategy::bounces};
 std::string to_string(Strategy strategy);
 
 class GpuScene {
   public:
-    // The lights get tables to sample from, unless bounces alone find them; a light probe gets one if the estimator samples it.
+    // Builds tables to sample lights from, unless only bounces find them; a light probe gets one if the estimator samples it.
     // Materials have microfacets if the estimator handles them.
-    // Throws DeviceFailure before it allocates anything if the device cannot hold the scene.
+    // If the device cannot hold the scene, throws DeviceFailure before allocating anything.
     GpuScene(const Device& device, const Scene& scene, Strategy strategy = Strategy::both, bool samples_probe = false,
              bool handles_microfacets = false);
 
@@ -31,7 +31,7 @@ class GpuScene {
     const std::vector<Binding>& bindings() const { return bindings_; }
     const std::vector<std::string>& defines() const { return defines_; }
 
-    // What it takes on the device, one for each array and image.
+    // Its device memory, one entry per array and image.
     const std::vector<MemoryNeed>& memory_needs() const { return memory_needs_; }
 
   private:

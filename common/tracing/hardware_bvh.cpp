@@ -19,8 +19,8 @@ uint32_t hit_record_offset(const Scene& scene, const Mesh& mesh) {
     return static_cast<uint32_t>(std::find(classes.begin(), classes.end(), ranges.front().material_class) - classes.begin());
 }
 
-// The scene's instance for the driver. With one geometry per material class in a mesh and one hit record per class, the driver
-// finds the record of a hit as instance offset + geometry index · stride, with stride 1 (the blog's equation).
+// Describes an instance to the driver. With one geometry per material class in a mesh and one hit record per class, the driver
+// finds the record of a hit at instance offset + geometry index · stride, with stride 1 (the blog's equation).
 vk::AccelerationStructureInstanceKHR describe_instance(const Scene& scene, uint32_t index, vk::DeviceAddress mesh_address) {
     const Mesh& mesh = scene.mesh_of(index);
     vk::AccelerationStructureInstanceKHR instance;
@@ -56,7 +56,7 @@ HardwareBvh::HardwareBvh(const Device& device, const GpuScene& scene) : device_(
     for (const uint32_t mesh : scene.scene().instance_meshes) {
         for (const auto& range : material_class_ranges(scene.scene().meshes[mesh]))
             first_triangles.push_back(range.first_triangle);
-        first_triangles.resize((first_triangles.size() + 1) / 2 * 2);  // two geometries an instance at most
+        first_triangles.resize((first_triangles.size() + 1) / 2 * 2);  // at most two geometries per instance
     }
     first_triangles_.emplace(device, std::span<const uint32_t>(first_triangles), vk::BufferUsageFlagBits::eStorageBuffer);
 }

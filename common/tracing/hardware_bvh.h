@@ -1,4 +1,4 @@
-// The driver's acceleration structure for `pipeline` and `query`: a bottom level (BLAS) per mesh file, a top level (TLAS) of
+// The driver's acceleration structure for `pipeline` and `query`: a bottom level (BLAS) per mesh file and a top level (TLAS) of
 // instances.
 #pragma once
 #include <optional>
@@ -7,12 +7,12 @@
 
 namespace lab {
 
-// Material classes of the scene in ascending order: the pipeline has a hit group for each.
+// Material classes in the scene, in ascending order: the pipeline has one hit group for each.
 std::vector<uint32_t> material_classes(const Scene& scene);
 
 class HardwareBvh {
   public:
-    // Builds and compacts. The device must support acceleration structures. Throws DeviceFailure if memory runs out.
+    // Builds and compacts it. The device must support acceleration structures. Throws DeviceFailure if memory runs out.
     HardwareBvh(const Device& device, const GpuScene& scene);
 
     // The top level, and the first triangle of each geometry of each instance.

@@ -1,4 +1,4 @@
-// The `native` backend: the shaders of `compute` as C++ on the CPU. Rays are Embree's where the lab is built with it.
+// The `native` backend: the shaders of `compute` as C++ on the CPU. Embree traces the rays if the lab is built with it.
 #ifdef LAB_EMBREE
 #if LAB_EMBREE == 4
 #include <embree4/rtcore.h>
@@ -17,7 +17,7 @@ namespace lab {
 namespace {
 
 template <typename T>
-native::Bindings::Range range_of(std::span<const T> data) {  // shaders write what GLSL lets them
+native::Bindings::Range range_of(std::span<const T> data) {  // const is cast away: shaders write only where GLSL lets them
     return {reinterpret_cast<std::byte*>(const_cast<T*>(data.data())), data.size_bytes()};
 }
 
@@ -172,7 +172,7 @@ class NativeBackend : public AccelerationStructure {
     }
 
     std::unique_ptr<Tracer> make_tracer(const Estimator& estimator, std::span<const Binding> bindings) const override {
-        // Errors in a shader are those of the other backends.
+        // Reports errors in a shader as the other backends do.
         ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
         source.defines.insert(source.defines.end(), {"BVH_STACK_SIZE 1", "BVH_IN_STORAGE_BUFFERS"});
         compile_shader(source);

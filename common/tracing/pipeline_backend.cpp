@@ -13,7 +13,7 @@ constexpr auto all_stages =
 
 vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
 
-// Shaders in the order of their records: ray generation, the miss shader, a hit group per material class.
+// Shaders in the order of their records: ray generation, miss, then one hit group per material class.
 constexpr uint32_t first_miss_group = 1;
 constexpr uint32_t first_hit_group = 2;
 
@@ -62,15 +62,15 @@ class PipelineTracer : public Tracer {
         pipeline_ = {device.handle(), nullptr, device.pipeline_cache(), info};
     }
 
-    // Fills the driver's table of shader handles. Sections of records must be aligned to the larger of two alignments; here every
-    // record is.
+    // Fills the shader binding table with the driver's handles. Sections of records must be aligned to the larger of two
+    // alignments; here every record is.
     void fill_shader_binding_table(const Device& device, uint32_t group_count) {
         const auto properties = device.properties<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
         const vk::DeviceSize handle_size = properties.shaderGroupHandleSize;
         const vk::DeviceSize alignment = std::max(properties.shaderGroupBaseAlignment, properties.shaderGroupHandleAlignment);
         const vk::DeviceSize stride = align(handle_size, alignment);
         const auto handles = pipeline_.getRayTracingShaderGroupHandlesKHR<uint8_t>(0, group_count, group_count * handle_size);
-        // Buffers start at an address of their own, so the table is moved to the next aligned one.
+        // Buffers start at arbitrary addresses, so the table is moved to the next aligned one.
         table_.emplace(device, group_count * stride + alignment,
                        vk::BufferUsageFlagBits::eShaderBindingTableKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress);
         const vk::DeviceAddress start = align(table_->address(), alignment);

@@ -17,7 +17,7 @@ void require_support(Backend backend, const DeviceDescription& device) {
                       to_string(backend) + "'; these work on it: " + working);
 }
 
-// These shaders of shaders/ and all that they include.
+// These shaders of shaders/ and everything they include.
 std::set<std::filesystem::path> files_of(std::initializer_list<const char*> names, const Estimator& estimator) {
     std::set<std::filesystem::path> files;
     for (const char* name : names)

@@ -1,4 +1,4 @@
-// Runs an estimator on a scene by one of the backends.
+// Runs an estimator on a scene with one of the backends.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -18,20 +18,20 @@ namespace lab {
 struct Estimator {
     std::filesystem::path file;
     std::vector<std::string> defines = {};
-    // If `file` observes another estimator: that one's file, included as "observed.glsl", and an edit of the text of both.
+    // If `file` observes another estimator: that one's file, included as "observed.glsl", and an edit to both texts.
     std::filesystem::path observed = {};
     std::function<std::string(const std::string&)> edit = {};
 };
 
-// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. The chapter's folder may replace the
+// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. The chapter's folder may override the
 // defaults of "brdf.glsl", "random_words.glsl" and "sample_loop.glsl" by files of these names.
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator);
 
-// All files that an estimator is compiled from with any backend.
+// All files that an estimator is compiled from, with any backend.
 std::set<std::filesystem::path> shader_files(const Estimator& estimator);
 
-// Hash of an estimator's defines and shaders, without those that depend on backend or device. Renders with equal hashes can be
-// joined.
+// Hash of an estimator's defines and shaders, except for shaders that depend on backend or device. Renders with equal hashes can
+// be merged.
 uint64_t estimator_hash(const Estimator& estimator);
 
 // An estimator compiled for a scene and a backend.
@@ -48,7 +48,7 @@ class Tracer {
 class AccelerationStructure {
   public:
     virtual ~AccelerationStructure() = default;
-    // The shaders of make_tracer(), main program first.
+    // The shaders that make_tracer() compiles, main program first.
     virtual std::vector<ShaderSource> shaders(const Estimator& estimator) const = 0;
     // `bindings`: render parameters, film, ray counters, and samples of shared pixels. Throws UserError if the estimator does not
     // compile.
@@ -58,7 +58,7 @@ class AccelerationStructure {
     virtual double build_seconds() const = 0;          // on the CPU or the device
 };
 
-// Device and scene must outlive the result. Throws DeviceError if the device lacks the backend.
+// Device and scene must outlive the result. Throws DeviceError if the device does not support the backend.
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device, const GpuScene& scene);
 
 }  // namespace lab

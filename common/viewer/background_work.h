@@ -1,4 +1,4 @@
-// Work in a background thread while the window continues.
+// Work in a background thread while the window keeps going.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace lab {
 
-// Call in a handler of the work's exceptions: returns the message for the window, or rethrows the loss of the device.
+// For handlers of the work's exceptions: returns the message for the window, or rethrows the loss of the device.
 inline std::string window_message(const std::exception& error) {
     if (dynamic_cast<const vk::DeviceLostError*>(&error)) throw;
     return failure_of(error).message;
@@ -20,13 +20,13 @@ inline std::string window_message(const std::exception& error) {
 template <typename Result>
 class BackgroundWork {
   public:
-    // Abandons work in progress. The work must only refer to what outlives this object.
+    // Abandons work in progress. The work must refer only to what outlives this object.
     void start(std::function<Result()> work) {
         abandon();
         work_ = std::async(std::launch::async, std::move(work));
     }
 
-    // Gives up the result without waiting. The destructor waits.
+    // Discards the result without waiting. The destructor waits.
     void abandon() {
         std::erase_if(abandoned_, [](const auto& work) { return is_ready(work); });
         if (work_.valid()) abandoned_.push_back(std::move(work_));

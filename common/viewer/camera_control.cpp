@@ -11,21 +11,21 @@ namespace {
 
 using glm::dvec3;
 
-constexpr double radians_per_height = 2;    // of the picture dragged
+constexpr double radians_per_height = 2;    // per picture height dragged
 constexpr double speed_per_notch = 1.2;     // of the wheel
 constexpr double distance_per_notch = 0.9;  // in orbit
-constexpr double steepest_sine = 0.999;     // of elevation: beyond, left and right would swap
+constexpr double steepest_sine = 0.999;     // of elevation: beyond it, left and right would swap
 
 dvec3 rotate(const dvec3& v, double angle, const dvec3& axis) { return glm::angleAxis(angle, axis) * v; }
 
-// Turns a direction about the upright axis, then up or down, never past that axis.
+// Turns a direction about the upright axis, then up or down, but never past that axis.
 dvec3 turn(dvec3 direction, const dvec3& up, double right_angle, double up_angle) {
     direction = rotate(direction, -right_angle, up);
     const double elevation = std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
     const double limit = std::asin(steepest_sine);
     const double turned = std::clamp(elevation + up_angle, std::min(-limit, elevation), std::max(limit, elevation));
     dvec3 level = direction - glm::dot(direction, up) * up;
-    if (glm::length(level) < 1e-9) return direction;  // straight up: no direction to turn to
+    if (glm::length(level) < 1e-9) return direction;  // straight up: no heading to turn
     level = glm::normalize(level);
     return std::cos(turned) * level + std::sin(turned) * up;
 }
@@ -35,7 +35,7 @@ dvec3 turn(dvec3 direction, const dvec3& up, double right_angle, double up_angle
 void CameraControl::fit_to(const Bounds& bounds) {
     const float diagonal = glm::distance(bounds.low, bounds.high);
     size_ = std::isfinite(diagonal) && diagonal > 0 ? diagonal : 1;
-    speed_ = 0.25f * size_;  // through the scene in four seconds
+    speed_ = 0.25f * size_;  // crosses the scene in four seconds
 }
 
 CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motion) {

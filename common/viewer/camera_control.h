@@ -23,7 +23,7 @@ class CameraControl {
     void fit_to(const Bounds& bounds);
 
     // First person: dragging turns the head, the wheel changes the speed. Orbit: dragging turns the camera about its target, the
-    // wheel changes the distance. Steps move both camera and target. `up` stays the upright axis.
+    // wheel changes the distance. Steps move both camera and target. `up` remains the upright axis.
     CameraPose move(const CameraPose& pose, const CameraMotion& motion);
 
     Navigation navigation = Navigation::first_person;

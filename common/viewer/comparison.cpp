@@ -8,7 +8,7 @@
 namespace lab {
 namespace {
 
-// `own` with the scene and view of `shown`.
+// The options `own`, but with the scene and view of `shown`.
 Options with_same_view(Options own, const Options& shown) {
     own.scene = shown.scene;
     own.image = shown.image;
@@ -40,7 +40,7 @@ void Comparison::start(const Session& first, const std::string& chapter) {
             std::find(strategies.begin(), strategies.end(), *options.estimator.strategy) == strategies.end())
             options.estimator.strategy.reset();
     }
-    // Equal random numbers would make differences look smaller than they are.
+    // With equal random numbers, differences would look smaller than they are.
     ++options.samples.seed;
     options.run.resume.clear();
     work_.start([&device = device_, of = chapter_, options, scene = first.build().job.scene] {
@@ -69,7 +69,7 @@ void Comparison::update(Session& first, double seconds, bool is_moving) {
     std::erase_if(ending_, [](const auto& session) { return session->can_end(); });
     first.waits = false;
     if (!second_) return first.update(seconds, is_moving);
-    if (!had_second) first.restart();  // both start together
+    if (!had_second) first.restart();  // start both at the same time
     second_->change(with_same_view(second_->options(), first.options()));
     second_->is_paused = first.is_paused;
     const auto progress = [&](const Session& session) { return equal == Equal::time ? session.seconds() : session.samples(); };
@@ -104,7 +104,7 @@ std::optional<Difference> Comparison::difference(const Session& first) const {
     const NoiseEstimate noise_a = estimate_noise(a, {0, 0}, size), noise_b = estimate_noise(b, {0, 0}, size);
     const auto mean = [](const NoiseEstimate& noise) { return (noise.mean[0] + noise.mean[1] + noise.mean[2]) / 3; };
     if (!(mean(noise_b) > 0)) return std::nullopt;
-    // Pixels are independent, the channels of a pixel are not.
+    // Pixels are independent; the channels of a pixel are not.
     const double pixels = static_cast<double>(a.pixels.size());
     const Difference difference{mean(noise_a) - mean(noise_b),
                                 std::hypot(noise_a.standard_error, noise_b.standard_error) / std::sqrt(pixels), pixels};

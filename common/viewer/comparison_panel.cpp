@@ -51,7 +51,7 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
 
 std::string half_label(const Session& session, const Session& other) {
     std::string label = std::filesystem::path(session.chapter().name).filename().string();
-    std::replace(label.begin(), label.end(), '_', ' ');  // where lines may break
+    std::replace(label.begin(), label.end(), '_', ' ');  // allows line breaks
     if (session.chapter().name != other.chapter().name) return label;
     const std::string flags = session.build().job.record.settings + " --", others = other.build().job.record.settings + " --";
     for (size_t from = 0, to; (to = flags.find(" --", from)) != std::string::npos; from = to + 1)
@@ -68,7 +68,7 @@ void draw_halves(const Comparison& comparison, const Session& first, const Recta
     const auto draw_label = [&](const std::string& label, float from, float to) {
         const ImVec2 corner = placement.at({from, 0}), end = placement.at({to, 1});
         const float margin = 0.3f * ImGui::GetFontSize(), width = end.x - corner.x - 2 * margin;
-        if (width < ImGui::GetFontSize()) return;  // hardly anything is seen of this half
+        if (width < ImGui::GetFontSize()) return;  // this half is almost invisible
         const ImVec2 size = ImGui::CalcTextSize(label.c_str(), nullptr, false, width);
         list.PushClipRect(corner, end, true);
         list.AddRectFilled(corner, {corner.x + size.x + 2 * margin, corner.y + size.y + 2 * margin}, IM_COL32(0, 0, 0, 160));

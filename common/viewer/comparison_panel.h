@@ -4,7 +4,7 @@
 
 namespace lab {
 
-// Names a half of the picture: its chapter, or for equal chapters also the settings that differ.
+// Names a half of the picture: its chapter, and if both are the same, also the settings that differ.
 std::string half_label(const Session& session, const Session& other);
 
 // Draws the dividing line and the labels. Call between Screen::begin_frame() and Screen::show().

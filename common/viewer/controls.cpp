@@ -16,11 +16,11 @@
 namespace lab {
 namespace {
 
-constexpr int longest_shown_path = 16;  // of the sliders, like the slides' rows of pictures
+constexpr int longest_shown_path = 16;  // of the sliders, like the rows of pictures on the slides
 
 float panel_width() { return 24 * ImGui::GetFontSize(); }
 
-// A slider with a checkbox; unchecked leaves the number to `automatic`.
+// A slider with a checkbox; unchecked leaves the number at `automatic`.
 void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t automatic, int high) {
     ImGui::PushID(label);
     bool is_given = value.has_value();
@@ -36,7 +36,7 @@ void optional_slider(const char* label, std::optional<uint32_t>& value, uint32_t
     ImGui::PopID();
 }
 
-// A field for a whole number that takes effect on Enter.
+// An input field for a whole number, which takes effect on Enter.
 bool number_field(const char* label, uint32_t& number) {
     return ImGui::InputScalar(label, ImGuiDataType_U32, &number, nullptr, nullptr, "%u", ImGuiInputTextFlags_EnterReturnsTrue);
 }

@@ -13,9 +13,9 @@ class Controls {
   public:
     Controls();
 
-    // Call between Screen::begin_frame() and Screen::show(). `further` draws other sections of the panel.
+    // Call between Screen::begin_frame() and Screen::show(). `further` draws more sections of the panel.
     void draw(Session& session, CameraControl& camera_control, double frames_per_second, const std::function<void()>& further);
-    int width() const;                               // pixels of the framebuffer
+    int width() const;                               // in framebuffer pixels
     vec2 seed_field() const { return seed_field_; }  // for tests
 
   private:
@@ -26,7 +26,7 @@ class Controls {
     void save(Session& session, const char* ending);
 
     std::vector<std::filesystem::path> scenes_;  // of assets/scenes
-    std::string notice_;                         // what was done last
+    std::string notice_;                         // the latest action
     vec2 seed_field_{0};
 };
 

@@ -8,7 +8,7 @@
 namespace lab {
 namespace {
 
-// Radiance as the picture shows it without exposure.
+// Radiance as the picture shows it at exposure 0.
 uint32_t colour_of(const vec3& radiance) {
     const auto channel = [&](int i) { return std::lround(255 * linear_to_srgb(radiance[i])); };
     return IM_COL32(channel(0), channel(1), channel(2), 255);
@@ -36,7 +36,7 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
             draw_line(vertex.position, light.point, light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200),
                       1);
     for (const PathVertex& vertex : vertices) {
-        if (vertex.parent < 0) continue;  // the camera's own ray is a point in the picture
+        if (vertex.parent < 0) continue;  // the camera's own ray is a single point in the picture
         const vec3 start = vertices[static_cast<size_t>(vertex.parent)].position;
         constexpr float far = 1e3f;
         const vec3 end = vertex.is_hit ? vertex.position : start + far * glm::length(start - camera.position) * vertex.direction;

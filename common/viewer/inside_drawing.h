@@ -7,7 +7,7 @@
 
 namespace lab {
 
-// The picture in coordinates of the user interface, which are the framebuffer's without its scale.
+// The picture in user interface coordinates: framebuffer pixels divided by the scale.
 struct Placement {
     explicit Placement(const Rectangle& picture);
     ImVec2 at(const vec2& image_position) const {
@@ -17,10 +17,10 @@ struct Placement {
     glm::vec2 corner, size;
 };
 
-// Draws a path over the picture: rays blue, light samples yellow or, if occluded, grey; the chosen vertex stands out.
+// Draws a path over the picture: rays in blue, light samples in yellow or, if occluded, grey; the chosen vertex is highlighted.
 void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, const Rectangle& picture);
 
-// Draws the disc of a HemisphereView times a factor, coarser to be fast.
+// Draws a disc of HemisphereView times a factor, at reduced resolution for speed.
 void draw_disc(const Image& picture, float scale, float width);
 
 }  // namespace lab

@@ -99,7 +99,7 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
 
 void InsidePanel::draw_verdict(const Session& session) {
     const VerdictState state = session.verdict_state();
-    // Of constant height, so that nothing below jumps.
+    // Constant height, so that nothing below jumps.
     ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false, ImGuiWindowFlags_NoScrollbar);
     ImGui::PushStyleColor(ImGuiCol_Text, colour_of(state));
     ImGui::TextWrapped("%s", session.verdict_text().c_str());
@@ -132,7 +132,7 @@ void InsidePanel::draw_pixel(const Session& session) {
 void InsidePanel::draw_sample() {
     auto& selection = *inspection_.selection();
     const RecordedPath& path = *inspection_.path();
-    // Buttons first, so that numbers do not move them.
+    // Buttons first, so that changing numbers do not move them.
     if (ImGui::SmallButton("<") && selection.sample > 0) --selection.sample;
     ImGui::SameLine();
     if (ImGui::SmallButton(">")) ++selection.sample;
@@ -181,7 +181,7 @@ void InsidePanel::draw_hemisphere() {
     }
     const HemisphereView& view = inspection_.hemisphere();
     if (view.samples() < 1) return;
-    // Updates at twice the samples, or after the point has changed.
+    // Updates whenever the sample count has doubled, or the point has changed.
     if (pictures_samples_ < 0 || view.samples() < pictures_samples_ || view.samples() >= 2 * pictures_samples_) {
         pictures_ = view.pictures();
         pictures_samples_ = std::floor(view.samples());
@@ -215,7 +215,7 @@ static bool has_brdf(const PathVertex& vertex, const Scene& scene) {
     return vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
 }
 
-// Whether the tools for the session's estimator are there; if not, starts making them.
+// Whether the tools for the session's estimator are ready; if not, starts building them.
 bool Inspection::have_tools(const Session& session) {
     if (work_.is_under_way()) {
         if (!work_.is_done()) return false;
@@ -269,7 +269,7 @@ void Inspection::update(const Session& session, double seconds) {
         if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample)
             path_ = tools_->recorder->record(parameters, selection_->pixel, parameters.first_sample + selection_->sample);
         has_hemisphere_ = false;
-        if (const auto& vertices = path_->vertices; !vertices.empty()) {  // else it traced no ray
+        if (const auto& vertices = path_->vertices; !vertices.empty()) {  // otherwise it traced no ray
             selection_->vertex = std::min(selection_->vertex, vertices.size() - 1);
             const PathVertex& vertex = vertices[selection_->vertex];
             has_hemisphere_ = has_brdf(vertex, *tools_->scene);

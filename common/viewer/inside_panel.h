@@ -1,4 +1,4 @@
-// The inside view: live verdict, tiles, a pixel's path, and what its points see.
+// The inside view: live verdict, tiles, a pixel's path, and what its vertices see.
 #pragma once
 #include "inside/hemisphere_view.h"
 #include "viewer/session.h"
@@ -6,7 +6,7 @@
 
 namespace lab {
 
-// The paths of a selected pixel, one at a time, and what their points see.
+// The paths of a selected pixel, one at a time, and what their vertices see.
 class Inspection {
   public:
     explicit Inspection(const Device& device) : device_(device) {}
@@ -23,19 +23,19 @@ class Inspection {
     std::optional<Selection>& selection() { return selection_; }
     const std::optional<Selection>& selection() const { return selection_; }
 
-    // Updates the path, and renders the hemisphere for about so many seconds.
+    // Updates the path, and renders the hemisphere for about this many seconds.
     void update(const Session& session, double seconds);
 
     bool is_building() const { return work_.is_under_way(); }  // shaders, in the background
     const std::string& message() const { return message_; }    // why there is nothing to see, or empty
-    // None while shaders compile or the camera moves.
+    // Empty while shaders compile or the camera moves.
     const std::optional<RecordedPath>& path() const { return path_; }
     const RenderParameters& parameters() const { return parameters_; }  // of the path
     bool has_hemisphere() const { return has_hemisphere_; }             // at the chosen vertex
     const HemisphereView& hemisphere() const { return *tools_->hemisphere; }
 
   private:
-    // Keep what they need of a build that may be replaced.
+    // Keep alive what they need of a build that may be replaced.
     struct Tools {
         std::shared_ptr<const Scene> scene;
         std::shared_ptr<const GpuScene> gpu_scene;
@@ -64,7 +64,7 @@ class InsidePanel {
   public:
     explicit InsidePanel(const Device& device) : inspection_(device) {}
 
-    // Draws over the picture, and a panel for the path of a selected pixel. Renders hemispheres for about so many seconds. Call
+    // Draws over the picture, and a panel for the path of a selected pixel. Renders hemispheres for about this many seconds. Call
     // between Screen::begin_frame() and Screen::show().
     void draw(const Session& session, const Rectangle& picture, const Rectangle& panel, double seconds);
     int height() const;  // of the panel, in framebuffer pixels
@@ -85,7 +85,7 @@ class InsidePanel {
     Inspection inspection_;
     TileOverlay overlay_;
     std::optional<glm::uvec2> hovered_;  // pixel
-    bool was_dragged_ = false;           // since the mouse button went down
+    bool was_dragged_ = false;           // since the mouse button was pressed
     HemisphereView::Pictures pictures_;
     double pictures_samples_ = -1;
 };

@@ -19,7 +19,7 @@ void check(VkResult result) {
     if (result < 0) throw DeviceFailure("drawing the user interface failed: " + vk::to_string(vk::Result(result)));
 }
 
-// We encode sRGB ourselves: prefer formats without.
+// We encode sRGB ourselves, so prefer formats that do not.
 vk::SurfaceFormatKHR choose_format(const Device& device) {
     const auto formats = device.physical().getSurfaceFormatsKHR(*device.surface());
     for (const auto& format : formats)
@@ -27,7 +27,7 @@ vk::SurfaceFormatKHR choose_format(const Device& device) {
     return formats.front();
 }
 
-// A readable font that most systems have, or Dear ImGui's bitmap font.
+// A readable font that most systems have, or else Dear ImGui's bitmap font.
 void add_font(ImFontAtlas& fonts, float scale) {
     for (const char* file : {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",    // Debian, Ubuntu
                              "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",  // Fedora
@@ -40,7 +40,7 @@ void add_font(ImFontAtlas& fonts, float scale) {
     fonts.AddFontDefault(&font);
 }
 
-// Draws over an image that a blit has written, for presenting.
+// Draws on top of an image that a blit has written, for presentation.
 vk::raii::RenderPass make_render_pass(const Device& device, vk::Format format) {
     const vk::AttachmentDescription attachment({}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad,
                                                vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
@@ -58,7 +58,7 @@ vk::raii::RenderPass make_render_pass(const Device& device, vk::Format format) {
 
 Screen::Screen(const Device& device, const Window& window) : device_(&device), window_(&window), format_(choose_format(device)) {
     render_pass_ = make_render_pass(device, format_.format);
-    constexpr uint32_t texture_count = 8;  // of the user interface: its font
+    constexpr uint32_t texture_count = 8;  // for the user interface: its font
     const vk::DescriptorPoolSize textures(vk::DescriptorType::eCombinedImageSampler, texture_count);
     descriptor_pool_ = {device.handle(), vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                                                       texture_count, textures)};
@@ -72,7 +72,7 @@ Screen::Screen(const Device& device, const Window& window) : device_(&device), w
 
 Screen::~Screen() {
     const auto lock = device_->lock_queue();
-    device_->handle().getDispatcher()->vkDeviceWaitIdle(*device_->handle());  // a lost device waits for nothing
+    device_->handle().getDispatcher()->vkDeviceWaitIdle(*device_->handle());  // returns at once if the device is lost
     ImGui_ImplVulkan_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -83,10 +83,10 @@ void Screen::start_user_interface() {
     ImGui::CreateContext();
     ImGui::StyleColorsDark();
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;  // leave no file behind
+    io.IniFilename = nullptr;  // write no settings file
     const float scale = window_->scale();
     add_font(*io.Fonts, scale);
-    ImGui::GetStyle().FramePadding.y = 2;  // all controls fit into a window of 700 pixels
+    ImGui::GetStyle().FramePadding.y = 2;  // fits all controls into a window 700 pixels high
     ImGui::GetStyle().ScaleAllSizes(scale);
     ImGui_ImplGlfw_InitForVulkan(window_->handle(), true);
 
@@ -167,7 +167,7 @@ double Screen::show(std::span<const Layer> layers) {
     const auto start = Clock::now();
     uint32_t image = 0;
     try {
-        // A hidden window may get no image, but must be able to close.
+        // A hidden window may never get an image, but must be able to close.
         constexpr uint64_t longest_wait = 100'000'000;  // ns
         const auto [result, index] = swapchain_.acquireNextImage(longest_wait, *acquired_);
         if (result == vk::Result::eTimeout || result == vk::Result::eNotReady) return seconds_since(start);
@@ -228,18 +228,18 @@ void Screen::draw(const vk::raii::CommandBuffer& commands, vk::Image image, cons
     constexpr auto target_layout = vk::ImageLayout::eTransferDstOptimal;
     const Rectangle& where = layer.where;
     const glm::ivec2 end = where.corner + where.size;
-    // False if the window has just changed its size.
+    // False if the window's size has just changed.
     const bool fits =
         glm::all(glm::greaterThan(where.size, glm::ivec2(0))) && glm::all(glm::lessThanEqual(end, glm::ivec2(size())));
     const int width = static_cast<int>(layer.pass->picture().width()), height = static_cast<int>(layer.pass->picture().height());
-    // Parts begin and end between pixels of the picture.
+    // Halves are split between pixels of the picture.
     const auto pixel_at = [&](float fraction) {
         return std::clamp(static_cast<int>(std::lround(fraction * static_cast<float>(width))), 0, width);
     };
     const int from = pixel_at(layer.from), to = pixel_at(layer.to);
     if (!fits || from >= to) return;
     const auto place = [&](int pixel) { return where.corner.x + static_cast<int>(int64_t{pixel} * where.size.x / width); };
-    change_layout(commands, image, target_layout, target_layout);  // what came before this blit
+    change_layout(commands, image, target_layout, target_layout);  // wait for the previous blit
     const vk::Image source = layer.pass->picture().handle();
     change_layout(commands, source, vk::ImageLayout::eGeneral, vk::ImageLayout::eTransferSrcOptimal);
     const vk::ImageBlit blit(whole_layer, {vk::Offset3D(from, 0, 0), vk::Offset3D(to, height, 1)}, whole_layer,

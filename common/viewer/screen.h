@@ -15,16 +15,16 @@ namespace lab {
 // Shows a film without reading it back: to_display() on the device.
 class DisplayPass {
   public:
-    // Device and film must outlive the pass. A film of any size fills the picture.
+    // Device and film must outlive the pass. A film of any size is scaled to the picture.
     DisplayPass(const Device& device, const Film& film, std::shared_ptr<StorageImage> picture);
 
-    // Updates the picture; pixels without samples stay as they were. `exposure` in stops.
+    // Updates the picture; pixels without samples stay as they are. `exposure` in stops.
     void record(const vk::raii::CommandBuffer& commands, DisplayTransform transform, float exposure) const;
     const StorageImage& picture() const { return *picture_; }
     const std::shared_ptr<StorageImage>& shared_picture() const { return picture_; }
 
   private:
-    // A pass over the picture for each window of the film.
+    // One pass over the picture for each window of the film.
     void record_parts(const vk::raii::CommandBuffer& commands, DisplayParameters parameters) const;
 
     const Device* device_;
@@ -34,7 +34,7 @@ class DisplayPass {
     ComputeKernel kernel_;
 };
 
-// Pixels of the window's framebuffer.
+// In pixels of the window's framebuffer.
 struct Rectangle {
     glm::ivec2 corner{0};
     glm::ivec2 size{0};
@@ -51,15 +51,15 @@ struct Layer {
 
 class Screen {
   public:
-    // The device must have the window's surface, and both must outlive the screen. At most one exists at a time, because Dear
-    // ImGui has one context.
+    // The device must support the window's surface, and both must outlive the screen. Only one may exist at a time, because Dear
+    // ImGui has a single context.
     Screen(const Device& device, const Window& window);
     ~Screen();
 
     // Starts a frame: use Dear ImGui until show().
     void begin_frame();
 
-    // Ends and shows the frame, unless the window is minimised. Returns the seconds of waiting for the display.
+    // Finishes and shows the frame, unless the window is minimised. Returns the seconds spent waiting for the display.
     double show(std::span<const Layer> layers);
 
     uvec2 size() const { return {extent_.width, extent_.height}; }  // pixels
@@ -69,14 +69,14 @@ class Screen {
 
   private:
     void start_user_interface();
-    // Needs the queue's lock once something else uses it.
+    // Needs the queue's lock once anything else uses the queue.
     void make_swapchain();
     // An image of the swapchain.
     struct Target {
         vk::Image image;
         vk::raii::ImageView view;
         vk::raii::Framebuffer framebuffer;
-        vk::raii::Semaphore drawn;  // one each, since presenting may still wait for it
+        vk::raii::Semaphore drawn;  // one per image, since presenting may still wait for it
     };
     void record(const vk::raii::CommandBuffer& commands, const Target& target, std::span<const Layer> layers);
     void draw(const vk::raii::CommandBuffer& commands, vk::Image image, const Layer& layer) const;

@@ -14,7 +14,7 @@
 namespace lab {
 namespace {
 
-// Whether a render can continue with other options.
+// Whether a render can continue under the other options.
 bool has_same_samples(const Options& a, const Options& b) {
     return a.samples == b.samples && a.camera == b.camera && a.light == b.light;
 }
@@ -54,7 +54,7 @@ void Session::set_camera(const CameraPose& pose) {
     change(options);
 }
 
-// Flags apply to the scene of the command line.
+// Flags apply to the scene on the command line only.
 CameraOptions Session::first_camera() const {
     return options_.scene.file == first_options_.scene.file ? first_options_.camera : CameraOptions{};
 }
@@ -80,7 +80,7 @@ void Session::update(double dispatch_seconds, bool is_moving) {
         begin(find_reduction(dispatch_seconds));
     else if (reduction_ > 1 && !is_moving && build_->renderer->samples() >= 1)
         begin(1);
-    // The build matters more than the picture that it replaces; both may need the same processor.
+    // The build matters more than the picture it replaces; both may need the same processor.
     render(is_building() ? 0.1 * dispatch_seconds : dispatch_seconds);
 }
 
@@ -92,7 +92,7 @@ void Session::look_for_changed_shaders() {
             // The broken shader may include other files than the last good one.
             watched_shaders_ = shader_files(make_estimator(chapter_, options_));
         } catch (const UserError&) {
-            // One is missing: the message says so.
+            // A file is missing: the message already says so.
         }
     if (const uint64_t hash = hash_of(watched_shaders_); hash != 0) shader_hash_ = hash;
     if (failed_shader_hash_ != 0 && shader_hash_ == build_->shader_hash) {
@@ -135,7 +135,7 @@ void Session::adopt_finished_build() {
 
 void Session::take_back(const std::string& why) {
     message_ = shortened(why);
-    // Blame the shaders only if nothing else was new and they are still the compiled ones.
+    // Blame the shaders only if nothing else changed and they are still the compiled ones.
     if (work_stage_ == BuildStage::nothing && hash_of(watched_shaders_) == work_shader_hash_)
         failed_shader_hash_ = work_shader_hash_;
     options_ = build_->job.options;
@@ -161,7 +161,7 @@ void Session::begin(uint32_t reduction) {
     verdict_ = find_verdict();
 }
 
-// Starts a verdict, or says why there is none.
+// Starts a live verdict, or says why there is none.
 std::variant<LiveVerdict, std::string> Session::find_verdict() const {
     const RenderJob& job = build_->job;
     if (reduction_ > 1) return "the picture is reduced";
@@ -188,7 +188,7 @@ std::string Session::verdict_text() const {
 
 uint32_t Session::find_reduction(double seconds) const {
     constexpr uint32_t largest = 16;
-    if (paths_per_second_ <= 0) return 4;  // nothing is known yet
+    if (paths_per_second_ <= 0) return 4;  // nothing measured yet
     const uvec2 size = build_->job.parameters.image_size;
     const double affordable = std::max(paths_per_second_ * seconds, 1.0);
     const double pixels = static_cast<double>(size.x) * size.y;
@@ -202,7 +202,7 @@ void Session::render(double seconds) {
     double elapsed = 0;
     // A reduced picture should be complete when shown, unless that takes far too long.
     const auto goes_on = [&] {
-        // Changes show even while paused.
+        // Changes must show even while paused.
         if ((is_paused || waits) && renderer.samples() >= 1) return false;
         return elapsed < 0.75 * seconds || (reduction_ > 1 && renderer.samples() < 1 && elapsed < 2 * seconds);
     };
@@ -249,7 +249,7 @@ std::optional<double> Session::relative_error() const {
 }
 
 void Session::save(const std::vector<std::filesystem::path>& files) {
-    if (samples() < 1) {  // closed at once, or while the camera moved
+    if (samples() < 1) {  // closed right away, or while the camera moved
         begin(1);
         while (build_->renderer->advance(1)) {
         }
@@ -287,7 +287,7 @@ uint64_t hash_of(const std::set<std::filesystem::path>& files) {
 std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first,
                                                const WindowBuild* before) {
     auto build = std::make_unique<WindowBuild>();
-    // Hash before compiling, so that changes in between show.
+    // Hash before compiling, so that changes made meanwhile are noticed.
     build->shader_files = shader_files(job.estimator);
     build->shader_hash = hash_of(build->shader_files);
     static_cast<Build&>(*build) = make_build(device, chapter, std::move(job), first, before);

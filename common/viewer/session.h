@@ -11,21 +11,21 @@
 
 namespace lab {
 
-// A build and its display: made in the background, because it takes long.
+// A build and its display pass, made in the background because it takes long.
 struct WindowBuild : Build {
     std::set<std::filesystem::path> shader_files;
     uint64_t shader_hash = 0;  // of their contents
     std::unique_ptr<DisplayPass> display;
 };
 
-// make_build(), and a pass that shows the film.
+// Calls make_build() and adds a pass that displays the film.
 std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job,
                                                BuildStage first = BuildStage::scene, const WindowBuild* before = nullptr);
 
-// Hash of all contents; 0 if a file cannot be read, as while an editor replaces it.
+// Hash of the contents of all files; 0 if one cannot be read, such as while an editor replaces it.
 uint64_t hash_of(const std::set<std::filesystem::path>& files);
 
-// State of the live verdict. Outdated: the shader does not compile, so the one before is rendered.
+// State of the live verdict. Outdated: the shader does not compile, so the previous one is being rendered.
 enum class VerdictState { none, agrees, biased, outdated };
 
 class Session {
@@ -35,22 +35,22 @@ class Session {
 
     const Chapter& chapter() const { return chapter_; }
     const WindowBuild& build() const { return *build_; }
-    // The wanted options: those of the render unless a build is in progress.
+    // The requested options: those of the render unless a build is in progress.
     const Options& options() const { return options_; }
     CameraPose camera() const;
     vec3 background() const;
 
-    // Changes options. Parameters take effect at the next update(); what must be built is built in the background while the
-    // picture stays. Impossible changes are reverted, and message() says why.
+    // Changes options. Parameters take effect at the next update(); anything that needs a build is built in the background while
+    // the picture stays. Impossible changes are reverted, and message() says why.
     void change(const Options& options);
     void set_camera(const CameraPose& pose);
-    void reset_camera();  // to the first one
+    void reset_camera();  // to the initial one
     bool has_moved() const { return options_.camera != first_camera(); }
     void open_scene(const std::filesystem::path& file);  // with its own camera and background
     void restart() { needs_restart_ = true; }
 
-    // Does a frame's work: adopts finished builds, looks for changed shaders, and renders for about so many seconds. After a
-    // restart and while the camera moves, the image is reduced so that a sample per pixel fits into that time.
+    // Does one frame's work: takes over finished builds, checks for changed shaders, and renders for about this many seconds.
+    // After a restart and while the camera moves, the image is reduced so that one sample per pixel fits into that time.
     void update(double dispatch_seconds, bool is_moving);
 
     bool is_paused = false;
@@ -58,30 +58,30 @@ class Session {
     bool is_building() const { return work_.is_under_way(); }
     // Whether the session can end without waiting for a build.
     bool can_end() const { return !is_building() || work_.is_done(); }
-    // Another scene is being loaded; camera and background are its own already.
+    // Whether another scene is being loaded, although camera and background are already the new ones.
     bool is_loading_scene() const { return reloads_scene_ || options_.scene.file != build_->job.options.scene.file; }
     const std::string& message() const { return message_; }  // the last failure, or empty
 
     // --- Progress since the last restart.
     uint32_t target_samples() const;             // per pixel; UINT32_MAX without --samples
-    double samples() const;                      // per pixel; 0 of a reduced image
+    double samples() const;                      // per pixel; 0 for a reduced image
     double seconds() const { return seconds_; }  // spent on rendering
     uint64_t rays() const { return build_->renderer->rays(); }
     uint32_t reduction() const { return reduction_; }  // width of a rendered pixel in pixels of the picture
-    // Relative error (root of rel_mse) estimated from the halves of the samples.
+    // Relative error (root of rel_mse), estimated from the halves of the samples.
     std::optional<double> relative_error() const;
 
-    // Test against the scene's reference; null without one, and verdict_text() says why.
+    // The test against the scene's reference; null without one, and verdict_text() says why.
     const LiveVerdict* verdict() const { return std::get_if<LiveVerdict>(&verdict_); }
-    // Its latest verdict, or null.
+    // The test's latest verdict, or null.
     const Verdict* latest_verdict() const { return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr; }
     VerdictState verdict_state() const;
     std::string verdict_text() const;
 
-    // Writes the picture so far in the formats of the files' extensions.
+    // Writes the current picture in the formats given by the files' extensions.
     void save(const std::vector<std::filesystem::path>& files);
     const FilmImage& last_snapshot() const { return snapshot_; }
-    // After a failure: keep_after() with the last snapshot.
+    // After a failure: calls keep_after() with the last snapshot.
     [[noreturn]] void keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const;
 
   private:
@@ -94,7 +94,7 @@ class Session {
     void take_snapshots(uint32_t samples, double seconds);
     std::variant<LiveVerdict, std::string> find_verdict() const;
     void write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmRecord& record) const;
-    FilmRecord record(double seconds) const;  // after so many seconds of rendering
+    FilmRecord record(double seconds) const;  // after this many seconds of rendering
     uint32_t find_reduction(double seconds) const;
     void take_back(const std::string& why);
 
@@ -104,10 +104,10 @@ class Session {
     const Options first_options_;
     std::unique_ptr<WindowBuild> build_;
     BackgroundWork<std::unique_ptr<WindowBuild>> work_;
-    BuildStage work_stage_ = BuildStage::nothing;  // of the build in progress, changed shaders aside
-    bool reloads_scene_ = false;                   // even if its name stays the same
+    BuildStage work_stage_ = BuildStage::nothing;  // of the build in progress, apart from changed shaders
+    bool reloads_scene_ = false;                   // even if its name is the same
     std::set<std::filesystem::path> watched_shaders_;
-    uint64_t shader_hash_ = 0;         // of their contents, when last looked at
+    uint64_t shader_hash_ = 0;         // of their contents, at the last check
     uint64_t work_shader_hash_ = 0;    // at the start of the build in progress
     uint64_t failed_shader_hash_ = 0;  // contents that did not compile; 0 if the last ones did
     Clock::time_point last_look_{};

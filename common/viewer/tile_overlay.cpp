@@ -12,9 +12,9 @@ namespace lab {
 namespace {
 
 constexpr float opacity = 0.7f;
-constexpr uint32_t most_tiles = 64;  // per row: more would be slow to draw
+constexpr uint32_t most_tiles = 64;  // per row: drawing more would be slow
 
-// From dark blue for 0 to yellow for 1.
+// From dark blue at 0 to yellow at 1.
 uint32_t heat(double value) {
     const float x = static_cast<float>(std::clamp(value, 0.0, 1.0));
     return ImGui::GetColorU32(ImVec4(std::min(1.6f * x, 1.0f), x, 0.4f * (1 - x), opacity));
@@ -26,14 +26,14 @@ std::string text(const char* format, double a, double b) {
     return buffer;
 }
 
-// The bias of saturated colour, rounded up to 1, 2, 5, … 100 %.
+// The bias shown in saturated colour, rounded up to 1, 2, 5, … 100 %.
 double full_colour_at(double largest) {
     for (const double part : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
         if (largest <= part) return part;
     return 1;
 }
 
-// Edge of square tiles, neither too small nor too many.
+// Edge length of the square tiles: not too small, and not too many of them.
 uint32_t tile_size_for(const glm::uvec2& image_size) {
     return std::max(8u, (std::max(image_size.x, image_size.y) + most_tiles - 1) / most_tiles);
 }
@@ -56,7 +56,7 @@ void TileOverlay::draw(const Session& session, const Rectangle& picture) {
         }
 }
 
-// Recolours only if something is new.
+// Recolours only when something has changed.
 void TileOverlay::update(const Session& session) {
     if (shown == Overlay::none || session.reduction() > 1) {
         colours_.clear();
@@ -111,13 +111,13 @@ void TileOverlay::explain(const Session& session, const glm::uvec2& pixel) const
     const Verdict* verdict = session.latest_verdict();
     if (!shows_bias() || !verdict || colours_.empty()) return;
     const glm::uvec2 at = pixel / verdict->map_tile_size;
-    if (at.x >= verdict->map.width || at.y >= verdict->map.height) return;  // of another image, soon replaced
+    if (at.x >= verdict->map.width || at.y >= verdict->map.height) return;  // of another image, about to be replaced
     const size_t i = size_t{at.y} * verdict->map.width + at.x;
     ImGui::SetTooltip("this tile: %s of the reference,\n%+.1f standard errors",
                       interval_text(verdict->map_differences[i]).c_str(), verdict->map.values[i]);
 }
 
-// Colours each tile by `heat_of` its estimate.
+// Colours each tile by `heat_of` of its estimate.
 void TileOverlay::colour_tiles(const FilmImage& film, const std::function<double(const NoiseEstimate&)>& heat_of) {
     for (uint32_t y = 0; y < tiles_.y; ++y)
         for (uint32_t x = 0; x < tiles_.x; ++x)

@@ -1,4 +1,4 @@
-// Colours tiles of the picture by bias, noise or sample count.
+// Colours the tiles of the picture by bias, noise or sample count.
 #pragma once
 #include <functional>
 #include <string>
@@ -21,7 +21,7 @@ class TileOverlay {
 
     // Draws over the picture. Call between Screen::begin_frame() and Screen::show().
     void draw(const Session& session, const Rectangle& picture);
-    // Shows a tile's bias in numbers at the pointer.
+    // Shows in numbers the bias of the tile under the pointer.
     void explain(const Session& session, const glm::uvec2& pixel) const;
     const std::string& legend() const { return legend_; }  // of the colours
 
@@ -38,7 +38,7 @@ class TileOverlay {
     Clock::time_point last_update_{};
     uint32_t tile_size_ = 8;  // in pixels of the image
     glm::uvec2 tiles_{0};
-    std::vector<uint32_t> colours_;  // as Dear ImGui has them
+    std::vector<uint32_t> colours_;  // in Dear ImGui's format
     std::string legend_;
 };
 

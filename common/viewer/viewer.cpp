@@ -12,7 +12,7 @@
 namespace lab {
 namespace {
 
-// Exponential moving average over about ten numbers.
+// Exponential moving average over about ten values.
 double smooth(double average, double number) { return average + 0.1 * (number - average); }
 
 // Makes the first build in the background while the window says so.
@@ -64,7 +64,7 @@ bool Viewer::frame() {
     window_.clear_events();
 
     const auto rendering = Clock::now();
-    constexpr double rest = 0.2;  // seconds without motion before the picture is rendered at full size
+    constexpr double rest = 0.2;  // seconds without motion before rendering at full size
     comparison_.update(session_, budget, seconds_since(last_motion_) < rest);
     const double rendered = seconds_since(rendering);
 
@@ -116,7 +116,7 @@ void Viewer::move_camera(double seconds) {
     }
     if (motion.is_none()) return;
     const CameraPose pose = session_.camera(), moved = camera_control_.move(pose, motion);
-    if (moved.position == pose.position && moved.target == pose.target) return;  // the wheel set the speed
+    if (moved.position == pose.position && moved.target == pose.target) return;  // the wheel only changed the speed
     session_.set_camera(moved);
     last_motion_ = Clock::now();
 }

@@ -1,4 +1,4 @@
-// The window of a chapter: shows the picture while it renders, and lets users change everything.
+// A chapter's window: shows the picture while it renders, and lets the user change everything.
 #pragma once
 #include <algorithm>
 
@@ -17,7 +17,7 @@ class Viewer {
     // Window and device (made for this window) must outlive the viewer. Throws like make_build().
     Viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
 
-    // Handles input, renders and shows a frame. False once the window is closed.
+    // Handles input, renders and shows one frame. Returns false once the window is closed.
     bool frame();
 
     Session& session() { return session_; }
@@ -26,7 +26,7 @@ class Viewer {
     const InsidePanel& inside_panel() const { return inside_panel_; }
     Comparison& comparison() { return comparison_; }
     Rectangle picture_rectangle() const;  // in the window
-    Rectangle path_rectangle() const;     // panel of the selected path below; of height 0 without one
+    Rectangle path_rectangle() const;     // panel below for the selected path; of height 0 without one
 
   private:
     void move_camera(double seconds);
@@ -41,19 +41,19 @@ class Viewer {
     InsidePanel inside_panel_;
     Comparison comparison_;
     bool shows_controls_ = true;
-    double interface_seconds_ = 0.01;  // of a frame, smoothed
+    double interface_seconds_ = 0.01;  // per frame, smoothed
     double frames_per_second_ = 0;     // smoothed
     Clock::time_point last_frame_ = Clock::now();
     Clock::time_point last_motion_{};
 };
 
-// Renders until the window is closed, then writes the outputs. Throws DeviceFailure if the device is lost, after writing what was
-// last read.
+// Renders until the window is closed, then writes the outputs. If the device is lost, writes the last snapshot and throws
+// DeviceFailure.
 void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job);
 
-// Seconds of a frame for rendering, given those of everything else but waiting. A fast device fills the display's period. Where
-// the interface is slow, as on a CPU, frames get longer, so that most of the time goes into the picture, but not below 5 frames
-// per second if the interface allows.
+// Seconds of a frame to spend on rendering, given the seconds of everything else except waiting. A fast device fills the
+// display's period. With a slow interface, as on a CPU, frames get longer so that most of the time goes into the picture, but not
+// below 5 frames per second if the interface allows.
 inline double rendering_seconds(double refresh_seconds, double interface_seconds) {
     constexpr double slowest_frame = 0.16;  // leaves room for blocks that take longer than expected
     constexpr double shortest = 0.002;

@@ -18,14 +18,14 @@ std::string glfw_error() {
     return text ? text : "GLFW does not work here";
 }
 
-// Starts GLFW, which has a choice from version 3.4 on; by itself that tries Wayland first, asked for or not.
+// Starts GLFW. From version 3.4 on it offers a choice; by default it tries Wayland first, whether wanted or not.
 bool start_glfw() {
     for ([[maybe_unused]] const WindowSystem system : window_systems()) {
 #ifdef GLFW_PLATFORM
         if (system != WindowSystem::other)
             glfwInitHint(GLFW_PLATFORM, system == WindowSystem::wayland ? GLFW_PLATFORM_WAYLAND : GLFW_PLATFORM_X11);
 #endif
-        // GLFW 3.4 dies on Wayland's compositors without a seat, which have neither keyboard nor mouse.
+        // GLFW 3.4 crashes on Wayland compositors without a seat, that is, without keyboard and mouse.
         if (would_survive(glfwInit) && glfwInit()) return true;
     }
     return false;
@@ -68,7 +68,7 @@ void Window::install_callbacks() {
             self.keys_down_.erase(key);
         }
     });
-    // Another window receives the releases of keys that are held while this one loses the focus.
+    // While this window lacks the focus, another one receives the releases of keys that are held.
     glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int is_focused) {
         if (!is_focused) static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_down_.clear();
     });
@@ -99,7 +99,7 @@ uvec2 Window::framebuffer_size() const {
 }
 
 float Window::scale() const {
-    // Where window coordinates are scaled already, the content scale is part of them.
+    // Where window coordinates are already scaled, they include the content scale.
     float scale = 1;
     int window_width = 0, pixel_width = 0, ignored = 0;
     glfwGetWindowContentScale(window_, &scale, nullptr);

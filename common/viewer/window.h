@@ -14,28 +14,28 @@ namespace lab {
 
 class Window {
   public:
-    // Throws UserError if no window can be opened. There is at most one at a time.
+    // Throws UserError if no window can be opened. Only one may exist at a time.
     Window(const std::string& title, uvec2 size);
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    // What a device needs to show pictures in this window.
+    // Instance extensions that a device needs to present to this window.
     std::vector<const char*> instance_extensions() const;
     VkSurfaceKHR make_surface(VkInstance instance) const;
 
     GLFWwindow* handle() const { return window_; }
     uvec2 framebuffer_size() const;  // pixels; 0 while the window is minimised
-    float scale() const;             // how much larger than on a common screen text has to be
-    double refresh_seconds() const;  // between two pictures of the display
+    float scale() const;             // factor by which text has to be larger than on a common screen
+    double refresh_seconds() const;  // between two refreshes of the display
     bool should_close() const;
 
-    // Collects what happened, waiting for it at most so long.
+    // Collects events, waiting for them at most this long.
     void poll_events(double max_wait_seconds = 0);
-    void clear_events();                                                  // once they are handled
+    void clear_events();                                                  // after they have been handled
     bool is_key_down(int key) const { return keys_down_.contains(key); }  // GLFW_KEY_...
     bool was_key_pressed(int key) const { return keys_pressed_.contains(key); }
-    // Files dropped on the window.
+    // Files dropped onto the window.
     const std::vector<std::filesystem::path>& dropped_files() const { return dropped_files_; }
 
   private:

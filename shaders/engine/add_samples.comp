@@ -1,5 +1,5 @@
 #version 460
-// Adds the samples of pixels that several threads share to the film, in the order of their indices.
+// Adds the samples of shared pixels, which several threads render, to the film in index order.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
 #include "blocks.glsl"

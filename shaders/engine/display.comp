@@ -1,5 +1,5 @@
 #version 460
-// What a screen shows of a film: the same as common/film/display.cpp on the CPU, to one step of 8 bits.
+// Tone-maps a film for the screen, as to_display() in common/film/film_image.cpp does on the CPU, within one step of 8 bits.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
 #include "blocks.glsl"
@@ -7,7 +7,7 @@
 layout(scalar, push_constant) uniform DisplayParametersBlock { DisplayParameters display; };
 layout(scalar, set = 0, binding = BINDING_FILM) readonly buffer Film { FilmPixel film[]; };
 layout(set = 0, binding = BINDING_PICTURE, rgba8) writeonly uniform image2D picture;
-// The bits of the largest value. Those of non-negative floats compare like the floats.
+// The bits of the largest value: as integers, those of non-negative floats are ordered like the floats.
 layout(scalar, set = 0, binding = BINDING_LARGEST_VALUE) buffer LargestValue { uint largest_value; };
 
 layout(local_size_x = BLOCK_SIZE) in;
@@ -20,9 +20,9 @@ void show_pixel(uvec2 position) {
     if (any(greaterThanEqual(position, display.image_size))) return;
     uvec2 film_position = position * display.film_size / display.image_size;
     uint film_index = film_position.y * display.film_size.x + film_position.x - display.first_film_pixel;
-    if (film_index >= film.length()) return;  // in another part of a large film; also where it lies before this one
+    if (film_index >= film.length()) return;  // outside the bound part of a large film; before it, the index has wrapped around
     FilmPixel pixel = film[film_index];
-    // A new picture replaces the one before pixel by pixel.
+    // Until the new picture has a sample here, the previous one stays.
     if (pixel.sample_count == 0u) return;
     vec3 radiance = (pixel.sum + pixel.compensation) / float(pixel.sample_count);
 

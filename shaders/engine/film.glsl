@@ -3,7 +3,7 @@
 // True for infinities and NaN. Looks at the bits, since compilers may assume that isnan() and isinf() are false.
 bool is_invalid(float number) { return (floatBitsToUint(number) & 0x7f800000u) == 0x7f800000u; }
 
-// Adds a sample by Kahan's compensated summation: in 32 bits a plain sum of 10^7 samples is wrong by percents.
+// Adds a sample by Kahan's compensated summation: in 32 bits a plain sum of 10^7 samples is off by percents.
 // An invalid sample adds nothing but is counted.
 void add_sample(inout FilmPixel pixel, vec3 radiance) {
     float sign_of_half = (pixel.sample_count & 1u) == 0u ? 1.0 : -1.0;
@@ -15,7 +15,7 @@ void add_sample(inout FilmPixel pixel, vec3 radiance) {
     // `precise` forbids the algebra that would cancel the compensation to zero.
     precise vec3 corrected = radiance + pixel.compensation;
     precise vec3 sum = pixel.sum + corrected;
-    if (is_invalid(sum.r) || is_invalid(sum.g) || is_invalid(sum.b)) {  // finite samples can overflow together
+    if (is_invalid(sum.r) || is_invalid(sum.g) || is_invalid(sum.b)) {  // the sum of finite samples can overflow
         pixel.invalid_count += 1u;
         return;
     }

@@ -1,4 +1,4 @@
-// What every backend runs for a pixel: renders its samples up to the requested number, or this thread's share of them.
+// What all backends run for a pixel: brings it to the requested number of samples, or renders this thread's share of them.
 #include "world/constants.glsl"
 #include "world/random.glsl"
 #include "world/frame.glsl"
@@ -18,7 +18,7 @@ layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uin
 layout(scalar, set = 0, binding = BINDING_SAMPLES) writeonly buffer Samples { vec3 samples[]; };
 #endif
 
-// Whether light that arrives after this many bounces belongs to the picture: --only-path-length shows a single length.
+// Whether light with this many bounces counts: --only-path-length keeps a single length.
 bool is_counted(uint path_length) {
     return parameters.only_path_length < 0 || parameters.only_path_length == int(path_length);
 }
@@ -27,7 +27,7 @@ bool is_counted(uint path_length) {
 //   vec3 path_trace(Ray ray, inout uvec2 seed) estimates the radiance L(x_0, ω_0) that arrives along a camera ray.
 #include "path_trace.glsl"
 
-// The camera ray through a random point of a pixel, for the sample of this index, and the state of its random numbers.
+// Generates the camera ray through a random point of the pixel for the sample with this index, and seeds its random numbers.
 Ray start_sample(uvec2 position, uint index, out uvec2 seed) {
     uint pixel_index = position.y * parameters.image_size.x + position.x;
     seed = random_start_state(pixel_index, parameters.first_sample + index, parameters.seed_key);
@@ -35,9 +35,9 @@ Ray start_sample(uvec2 position, uint index, out uvec2 seed) {
     return get_camera_ray(image_position);
 }
 
-// The pixel of this thread stays in memory: kept in registers, its eleven numbers would be saved around every call that
-// traces a ray. Where several threads share it, they store their samples, and add_samples.comp adds them in the order of
-// their indices.
+// This thread's pixel stays in memory: kept in registers, its eleven numbers would be spilled around every call that traces
+// a ray. Threads that share a pixel store their samples one by one, and add_samples.comp adds them to the film in index
+// order.
 uint film_index;
 uint sample_place, sample_stride;
 void finish_sample(vec3 radiance) {
@@ -52,15 +52,15 @@ void finish_sample(vec3 radiance) {
 // void render_samples(uvec2 position, uint first, uint end, uint step)
 #include "sample_loop.glsl"
 
-// Invocations of a dispatch are numbered: first the pixels of a block, then the other threads that share these pixels, then
-// the next block.
+// Numbering of invocations: the pixels of a block come first, then the further threads that share these pixels, then the next
+// block.
 void render_pixel(uint invocation) {
     uint group = invocation / BLOCK_SIZE;
     uint index = invocation % BLOCK_SIZE;
     uint block = group / dispatch.threads_per_pixel;
     uvec2 position = get_pixel_position(dispatch.first_block + block, index, parameters.image_size);
     if (any(greaterThanEqual(position, parameters.image_size))) return;
-#ifdef ONLY_PIXEL  // that a debugger looks at
+#ifdef ONLY_PIXEL  // the one that a debugger inspects
     if (position != ONLY_PIXEL) return;
 #endif
     uint pixel_index = position.y * parameters.image_size.x + position.x;

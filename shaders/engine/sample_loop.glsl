@@ -1,5 +1,5 @@
-// Renders samples of a pixel one after the other: those with the indices first, first + step, ... below `end`. A chapter
-// whose folder has a file of this name brings its own loop.
+// Renders the samples first, first + step, ... below `end` of a pixel, one after the other. A chapter's folder may bring its own
+// loop in a file of this name.
 void render_samples(uvec2 position, uint first, uint end, uint step) {
     for (uint i = first; i < end; i += step) {
         uvec2 seed;

@@ -1,6 +1,6 @@
-// Lets an estimator, a chapter's path_trace.glsl, run at a single surface point: the first ray that it traces hits a
-// made-up triangle, all others miss it and see a sky of radiance 1. So the estimator's own code can be tested direction
-// by direction: the radiance that it returns is the weight of the direction that it has chosen.
+// Runs an estimator, a chapter's path_trace.glsl, at a single surface point: the first ray that it traces hits a made-up
+// triangle, all others miss it and see a sky of radiance 1. So tests can check the estimator's own code direction by direction:
+// the radiance that it returns is the weight of the direction that it has chosen.
 #extension GL_EXT_scalar_block_layout : require
 #define FEATURE_SKY
 #define FEATURE_VERTEX_NORMALS
@@ -40,7 +40,7 @@ bool trace_ray(Ray ray, float t_max, out Hit hit) {
 
 bool is_counted(uint path_length) { return true; }
 
-// `max_path_length` is 1, but no constant: with one, Mesa 25.0.7 for CPUs translates the estimators' loop wrongly.
+// `max_path_length` is 1 but not a constant: with a constant, Mesa 25.0.7 for CPUs miscompiles the estimators' loop.
 void set_surface(vec3 normal, Material material, uint max_path_length) {
     vec3 tangent = normalize(cross(normal, abs(normal.x) > 0.5 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
     vec3 corners[3] = {vec3(0.0), tangent, cross(normal, tangent)};

@@ -1,13 +1,13 @@
-// Takes the place of a chapter's estimator, calls it, and writes down what it does for one sample of one pixel.
+// Wraps a chapter's estimator and records what it does for one sample of one pixel.
 //
 // trace_ray() and is_occluded() are replaced here. After the estimator's assignments to `throughput`, `radiance` and
-// `survival_probability` common/inside/recording_calls.cpp has put calls of the functions record_…() below.
+// `survival_probability`, common/inside/recording_calls.cpp has inserted calls of the functions record_…() below.
 #include "observation/recorded_path.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_PATH) buffer RecordedPath {
     uint recorded_pixel;   // index, row by row
     uint recorded_sample;  // index
-    uint event_count;      // of all, also those for which there is no room
+    uint event_count;      // of all events, including those that no longer fit
     RecordedEvent events[];
 };
 
@@ -60,7 +60,7 @@ void record_throughput(uint kind, float throughput) { record_value(kind, vec3(th
 void record_radiance(uint kind, vec3 radiance, uint variable) { record_value(kind, radiance, variable); }
 void record_survival(float probability) { record_value(EVENT_SURVIVAL, vec3(probability), 0u); }
 
-// Once for all hits, since drivers compile a function again wherever it is called.
+// At one place for all hits, since drivers compile a function again for every call.
 void add_shading_data() {
     for (uint i = 0u; i < min(event_count, events.length()); ++i) {
         if (events[i].kind != EVENT_RAY || events[i].is_hit == 0u) continue;
@@ -79,7 +79,7 @@ void add_shading_data() {
 #include "observation/observed_estimator.glsl"
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
-    // All samples of all pixels have different random numbers, so these tell which one it is.
+    // Every sample of every pixel starts with different random numbers, so these identify it.
     uvec2 recorded_seed = random_start_state(recorded_pixel, recorded_sample, parameters.seed_key);
     get_random_numbers(recorded_seed);
     is_recording = seed == recorded_seed;

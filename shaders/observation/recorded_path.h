@@ -1,4 +1,4 @@
-// What an estimator has done for one sample of one pixel, in order. Shared by C++ and GLSL.
+// The steps of an estimator for one sample of one pixel, in order. Shared by C++ and GLSL.
 #ifdef __cplusplus
 #include <shaders/interface.h>
 namespace lab {
@@ -17,15 +17,15 @@ SHARED_CONSTANT EVENT_RESULT = 7u;             // what path_trace() returned
 
 struct RecordedEvent {
     uint kind;
-    // Of radiance: which of the variables of this name, counted through the text from 1; 0 is the member of a struct.
+    // For radiance: which variable of this name, numbered from 1 through the text; 0 is a struct's member.
     uint variable;
     vec3 value;  // of throughput and radiance after the assignment, or survival probability
 
     vec3 origin;  // of a ray
     vec3 direction;
-    float end;    // of a ray, in lengths of the direction: where it would have ended without a hit
+    float end;    // of a ray, in lengths of its direction: t_max
     uint is_hit;  // 0 or 1
-    // Of a hit that is not a shadow ray's.
+    // For hits, except those of shadow rays.
     uint instance;
     uint triangle;  // index into the scene's triangles
     vec2 barycentrics;

@@ -1,4 +1,4 @@
-// The point whose hemisphere is looked at. Shared by C++ and GLSL.
+// The point whose hemisphere is shown. Shared by C++ and GLSL.
 #ifdef __cplusplus
 #include <shaders/interface.h>
 namespace lab {
@@ -10,8 +10,8 @@ struct ShadingPoint {
     uint instance;
     uint triangle;  // index into the scene's triangles
     vec2 barycentrics;
-    vec3 ray_direction;  // of the ray that has hit it, unit length
-    vec3 up;             // what is upwards in the pictures as far as it lies in the surface
+    vec3 ray_direction;  // of the ray that hit it, unit length
+    vec3 up;             // points upwards in the pictures, projected onto the surface
 };
 
 #ifdef __cplusplus

@@ -1,9 +1,9 @@
-// Takes the place of a chapter's estimator and shows the hemisphere over a shading point as three discs side by side:
-// the factors of the rendering equation's integrand L_i(x, ω) ρ(x, ω, ω_o) n·ω. The incoming radiance L_i is what the
-// chapter estimates along the ray x, ω.
+// Replaces a chapter's estimator and shows the hemisphere over a shading point as three discs side by side, one for each factor
+// of the rendering equation's integrand L_i(x, ω) ρ(x, ω, ω_o) n·ω. The incoming radiance L_i is what the chapter estimates along
+// the ray x, ω.
 //
-// The discs are maps of equal area (Lambert): every pixel has the same solid angle. The normal is in the middle, the
-// horizon at the rim; the hemisphere is seen from above.
+// The discs are equal-area maps (Lambert): every pixel covers the same solid angle. The normal is in the middle, the horizon at
+// the rim; the hemisphere is seen from above.
 #include "observation/shading_point.h"
 
 #include "observation/observed_estimator.glsl"
@@ -27,7 +27,7 @@ mat3 get_upright_space(vec3 normal, vec3 up) {
 }
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
-    // The camera looks along z, so that its ray tells the position in the image of three discs.
+    // The camera looks along z, so its ray gives the position in the image of three discs.
     vec2 position = vec2(3.0 * ray.direction.x, ray.direction.y) / ray.direction.z;
     float disc = clamp(floor(0.5 * (position.x + 3.0)), 0.0, 2.0);
     position.x -= 2.0 * disc - 2.0;

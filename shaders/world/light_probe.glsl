@@ -2,8 +2,8 @@
 // towards -Z before the rotation about +Y.
 
 #ifdef FEATURE_LIGHT_PROBE
-// The position on the probe that shows a unit direction: (0,0) is the upper left corner, (1,1) the lower right one. The
-// first number may lie outside of [0,1], since the probe repeats.
+// Maps a unit direction to its position on the probe: (0,0) is the upper left corner, (1,1) the lower right one. The first
+// coordinate may lie outside [0,1], since the probe repeats.
 vec2 get_probe_position(vec3 direction) {
     // Straight up and down the azimuth is undefined, and so is atan().
     bool is_pole = direction.x == 0.0 && direction.z == 0.0;
@@ -29,12 +29,12 @@ vec2 get_probe_position(vec3 direction) { return vec2(0.0); }
 #ifdef FEATURE_LIGHT_PROBE_CELLS
 const bool HAS_LIGHT_PROBE_CELLS = true;
 
-// Columns and rows of the cells from which light samples choose: one cell per texel, unless the probe is very large.
+// Columns and rows of the cells that light samples choose from: one cell per texel, unless the probe is very large.
 uvec2 get_probe_cell_count() {
     return min(uvec2(textureSize(light_probe, 0)), uvec2(MAX_PROBE_CELL_COLUMNS, MAX_PROBE_CELL_ROWS));
 }
 
-// Chooses a cell in constant time by an alias table, and two numbers for a direction in it.
+// Chooses a cell in constant time from an alias table, and returns two numbers for a direction in it.
 uint choose_probe_cell(inout uvec2 seed, out vec2 u) {
     uvec2 words = get_random_words(seed);
     u = to_numbers(words);
@@ -42,10 +42,10 @@ uint choose_probe_cell(inout uvec2 seed, out vec2 u) {
     return gives_way(digits, probe_cells[index].threshold, u.x) ? probe_cells[index].alias : index;
 }
 
-// The density, with respect to solid angle, with which light samples find the directions of a cell.
+// The density with which light samples find a direction of the cell, with respect to solid angle.
 float get_probe_cell_density(uint index) { return probe_cells[index].density; }
 #else
-// There is no probe, or only bounces find it: estimators compile, but never call these.
+// Without a probe, or if only bounces find it, estimators still compile but never call these.
 const bool HAS_LIGHT_PROBE_CELLS = false;
 uvec2 get_probe_cell_count() { return uvec2(1u); }
 uint choose_probe_cell(inout uvec2 seed, out vec2 u) {

@@ -28,7 +28,7 @@ LightTriangle choose_light_triangle(inout uvec2 seed) {
     return light_triangles[index];
 }
 
-// The same. One pair of words serves for the choice and for `u`, two numbers for a point on the triangle.
+// The same, but one pair of words serves both the choice and `u`, two numbers for a point on the triangle.
 LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
     uvec2 words = get_random_words(seed);
     u = to_numbers(words);
@@ -37,7 +37,7 @@ LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
     return light_triangles[index];
 }
 
-// The point of a light with the barycentric coordinates w_1 and w_2.
+// The point on a light with the barycentric coordinates w_1 and w_2.
 LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
     Hit hit;
     hit.instance = light.instance;
@@ -49,7 +49,7 @@ LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
                       material.emission, material.light_density);
 }
 #else
-// Nothing emits, or --strategy bounces: estimators compile, but never call these.
+// If nothing emits, or with --strategy bounces, estimators still compile but never call these.
 const bool HAS_LIGHT_TRIANGLES = false;
 LightTriangle choose_light_triangle(inout uvec2 seed) { return LightTriangle(0u, 0u, 0u, 0u, 0.0); }
 LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {

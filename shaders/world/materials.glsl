@@ -1,7 +1,7 @@
-// What a surface does with light. Every material of world/materials/ evaluates and samples its part.
+// How surfaces scatter light. Each file in world/materials/ evaluates and samples one material.
 #include "world/materials/phong.glsl"
 
-// What sampling a material gives: the direction ω_k of a bounce and what its path needs to know of it.
+// The result of sampling a material: the direction ω_k of a bounce and what its path needs to know about it.
 struct BsdfSample {
     vec3 direction;         // ω_k, unit length
     vec3 weight;            // ρ |n·ω_k| over its density; 0 where no light leaves into ω_k
@@ -10,5 +10,5 @@ struct BsdfSample {
     float radiance_scale;   // the change of radiance at a refraction: 1/η², else 1
 };
 
-// get_brdf(), unless the chapter's folder has a file of this name: its materials.
+// The default get_brdf(), unless the chapter's folder brings its own materials in a file of this name.
 #include "brdf.glsl"

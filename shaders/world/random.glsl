@@ -12,8 +12,8 @@ void advance_random_state(inout uvec2 seed) {
     seed ^= (seed >> 16u);
 }
 
-// A distinct state for each pixel and index: for a given key, all steps are bijections. (The slides' pixel_index +
-// 2^16 * frame_index gives most samples of an image the numbers of another sample.)
+// A distinct state for each pixel and index: for a given key, all steps are bijections. (With the slides' pixel_index + 2^16 *
+// frame_index most samples of an image repeat the numbers of another sample.)
 uvec2 get_state(uint pixel_index, uint index, uvec2 key) {
     uvec2 state = uvec2(pixel_index, index);
     advance_random_state(state);
@@ -22,7 +22,7 @@ uvec2 get_state(uint pixel_index, uint index, uvec2 key) {
     return state;
 }
 
-// random_start_state() and get_random_words(): independent numbers, unless the chapter's folder has a file of this name.
+// random_start_state() and get_random_words(): independent numbers, unless the chapter's folder brings a file of this name.
 #include "random_words.glsl"
 
 // Random words as numbers in [0,1). Uses 24 bits only, since 32 bits would sometimes round up to 1.0.
@@ -31,9 +31,9 @@ vec2 to_numbers(uvec2 words) { return vec2(words >> 8u) * (1.0 / 16777216.0); }
 // Two independent numbers, uniform in [0,1).
 vec2 get_random_numbers(inout uvec2 seed) { return to_numbers(get_random_words(seed)); }
 
-// A uniform index below `count` from 64 digits: those of words.x, extended by a hash of both words. Of 32 digits, some
-// entries of a large table would have more than others: of 10^7 entries 430, and others 429. `digits` returns the 32 bits
-// that choosing the index leaves unused.
+// A uniform index below `count` from 64 bits: those of words.x, extended by a hash of both words. With 32 bits, the entries of a
+// large table would get unequal shares: of 10^7 entries some would get 430 words and others 429. `digits` returns the 32 bits
+// that are left over after the choice of the index.
 uint get_random_index(uint count, uvec2 words, out uint digits) {
     uint index, first, more, unused, carry;
     umulExtended(words.x, count, index, first);
@@ -43,9 +43,9 @@ uint get_random_index(uint count, uvec2 words, out uint digits) {
     return index + carry;
 }
 
-// Whether an entry of an alias table gives way to its alias: whether `digits` are at or above the threshold. `rest` is
-// where they lie on their side of it, uniform in [0,1). If the digits are stratified, so is `rest` for each entry. A
-// decision by a second random word would lose that.
+// Whether an entry of an alias table gives way to its alias: whether `digits` are at or above the threshold. `rest` is their
+// position on that side of it, uniform in [0,1). If the digits are stratified, so is `rest` for each entry; deciding by a second
+// random word would lose that.
 bool gives_way(uint digits, uint threshold, out float rest) {
     bool is_above = digits >= threshold;
     float width = is_above ? float(~threshold) + 1.0 : float(threshold);

@@ -1,6 +1,6 @@
 // The default source of random words: a stream of independent words for each sample.
 
-// The state from which a sample of a pixel starts.
+// The state that a pixel's sample starts from.
 uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
     return get_state(pixel_index, sample_index, key);
 }

@@ -15,7 +15,7 @@ struct Hit {
 #endif
 };
 
-// As t_max: no limit to the length of a ray.
+// t_max of a ray of unlimited length.
 const float NO_LIMIT = 3.402823466e38;
 
 // Rays traced by this invocation so far. Every trace_ray() and is_occluded() adds one.

@@ -27,7 +27,7 @@ layout(scalar, set = 0, binding = BINDING_TEXTURE_SIZES) readonly buffer Texture
 #endif
 #ifdef FEATURE_DOUBLE_SIDED
 layout(scalar, set = 0, binding = BINDING_OTHER_SIDES) readonly buffer OtherSides {
-    uint other_sides[];  // of each triangle: the one that is its back, or itself
+    uint other_sides[];  // per triangle: the one that is its back, or itself
 };
 #endif
 #ifdef FEATURE_TRANSFORMS

@@ -1,13 +1,13 @@
-// Shading data: what an estimator needs to know about the point that a ray has hit.
+// Shading data: what an estimator needs to know about the point that a ray hits.
 
 struct ShadingData {
     vec3 position;          // x_k
     vec3 out_direction;     // ω_o = -ω_{k-1}, unit length: from x_k back along the ray
     vec3 normal;            // n(x_k), interpolated, unit length, on the same side as the geometric normal
     vec3 geometric_normal;  // of the triangle, unit length, on the side of out_direction
-    float offset;           // distance by which rays must start off the surface so that they miss it, in world units
+    float offset;           // distance off the surface at which rays must start to miss it, in world units
     vec3 emission;          // L_e(x_k, ω_o)
-    float light_density;    // with which light samples choose x_k, with respect to area; 0 where it does not emit
+    float light_density;    // of light samples at x_k, with respect to area; 0 where it does not emit
     vec3 diffuse_albedo;    // in [0,1]
 #ifdef FEATURE_SPECULAR
     vec3 specular_albedo;  // in [0,1]
@@ -16,12 +16,12 @@ struct ShadingData {
     vec2 texture_coordinates;  // (0,0) on scenes without textures
     bool is_dielectric;
     float relative_index;  // η of a dielectric: refractive index beyond the surface over that on the ray's side
-    vec3 transmittance;    // of the medium between the ray's origin and x_k, for each colour
+    vec3 transmittance;    // of the medium between the ray's origin and x_k, per colour channel
 #ifdef FEATURE_MICROFACETS
     uint material;             // index into the scene's materials
     float roughness;           // α of its microfacets, 0 if it has none
-    float metalness;           // how much of it is metal, in [0,1]
-    bool is_rough_dielectric;  // light goes through its microfacets; is_dielectric is false then
+    float metalness;           // fraction that is metal, in [0,1]
+    bool is_rough_dielectric;  // its microfacets transmit light; is_dielectric is false then
 #endif
 };
 
@@ -36,7 +36,7 @@ vec3 interpolate(vec3 a, vec3 b, vec3 c, vec3 weights) { return weights.x * a + 
 
 float max_component(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
-// The unit vector along v. Scales v first, since the squared length of a tiny or huge vector is not a float.
+// The unit vector along v. Scales v first, since the squared length of a tiny or huge vector under- or overflows.
 vec3 normalize_scaled(vec3 v) { return normalize(v / max_component(v)); }
 
 // The barycentric coordinates w_0, w_1, w_2 of a hit.
@@ -48,10 +48,10 @@ vec3 get_scaled_normal(vec3 edge_1, vec3 edge_2) {
     return cross(edge_1 / size, edge_2 / size);
 }
 
-// The distance by which a ray must start off a triangle so that it misses it: a bound on rounding errors of relative size
-// 2^-24 in the position, whose coordinates have the given magnitudes, and in the intersection with the same triangle.
-// Measured: without self-intersections from a factor of 4 on; we use 8. Intersections with slender triangles are less
-// exact. The limit of the slenderness keeps rays from skipping what is close to a very slender triangle.
+// The distance off a triangle at which a ray must start to miss it: a bound on rounding errors of relative size 2^-24 in the
+// position, whose coordinates have the given magnitudes, and in the intersection with the same triangle. Measured: no
+// self-intersections from a factor of 4 on; we use 8. Intersections with slender triangles are less accurate. Limiting the
+// slenderness keeps rays from skipping what is close to a very slender triangle.
 float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
     float slenderness = 1.0 / max(max_component(scaled_normal), 1.0 / 256.0);  // about length over height
     return 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
@@ -79,8 +79,8 @@ SurfacePoint get_surface_point(Hit hit) {
     mat3 linear = mat3(instance.object_to_world);
     point.position = linear * point.position + instance.object_to_world[3];
     magnitude = mat3(abs(linear[0]), abs(linear[1]), abs(linear[2])) * magnitude + abs(instance.object_to_world[3]);
-    // Some backends intersect in the space of the mesh and others in the world, so the bound covers both. A distance
-    // from the triangle grows on its way into the world as the length of the normal shrinks.
+    // Some backends intersect in object space and others in world space, so the bound covers both. The transformation into world
+    // space stretches a distance from the triangle by as much as it shortens the normal.
     normal = instance.normal_to_world * point.geometric_normal;
     point.geometric_normal = normalize_scaled(normal);
     point.offset = max(point.offset / dot(normal, point.geometric_normal),
@@ -89,12 +89,12 @@ SurfacePoint get_surface_point(Hit hit) {
     return point;
 }
 
-// The shading data where a ray of the given unit direction hits.
+// Computes the shading data where a ray with this unit direction hits.
 ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     SurfacePoint point = get_surface_point(hit);
     bool is_front = dot(point.geometric_normal, ray_direction) < 0.0;
 #ifdef FEATURE_DOUBLE_SIDED
-    // Of two triangles in the same place that face opposite ways, a ray may find either. It sees the one that faces it.
+    // A ray may find either of two coincident triangles that face opposite ways. It sees the one that faces it.
     if (!is_front && other_sides[hit.triangle] != hit.triangle) {
         is_front = true;
         hit.triangle = other_sides[hit.triangle];
@@ -117,7 +117,7 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
 #ifdef FEATURE_TRANSFORMS
     normal = instances[hit.instance].normal_to_world * normal;
 #endif
-    // Vertex normals may cancel each other: then the triangle has only its own.
+    // Vertex normals may cancel each other out: then the geometric normal has to do.
     if (normal != vec3(0.0)) s.normal = normalize_scaled(normal);
 #endif
 
@@ -125,7 +125,7 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     s.diffuse_albedo = material.diffuse_albedo;
     s.texture_coordinates = vec2(0.0);
 #ifdef FEATURE_TEXTURES
-    // Textures repeat. Without their integer part, coordinates far from 0 are as exact as others.
+    // Textures repeat. Without the integer part, coordinates far from 0 are as accurate as others.
     vec2 uv = texture_coordinates[corners.x];
     s.texture_coordinates = fract(uv) + w.y * (texture_coordinates[corners.y] - uv) +
                             w.z * (texture_coordinates[corners.z] - uv);

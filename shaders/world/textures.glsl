@@ -1,5 +1,5 @@
-// Images of the scene, filtered linearly. The weights are computed here since samplers round them to 1/256, each
-// device in its own way: all devices and backends are to give the same image.
+// Images of the scene, filtered linearly. The weights are computed here, since samplers round them to 1/256, each device in its
+// own way, and all devices and backends should give the same image.
 
 // The four texels around a point of an image and the weights of the right and the lower ones.
 struct TexelNeighbours {
@@ -30,16 +30,16 @@ vec3 mix_texels(vec4 upper_left, vec4 upper_right, vec4 lower_left, vec4 lower_r
 }
 
 #ifdef FEATURE_TEXTURES
-// Linear colour of a texel that is encoded as sRGB (IEC 61966-2-1). Samplers decode, too, but one of the devices that
-// we measured only to 8 bits.
+// Linear colour of a texel that is encoded as sRGB (IEC 61966-2-1). Samplers decode it, too, but on one of the devices that we
+// measured only to 8 bits.
 vec4 fetch_colour(int index, ivec2 texel) {
     vec3 encoded = texelFetch(textures[nonuniformEXT(index)], texel, 0).rgb;
     vec3 curved = pow((encoded + 0.055) / 1.055, vec3(2.4));
     return vec4(mix(curved, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045))), 1.0);
 }
 
-// Linear colour of a texture. Its size is not that of textureSize(): where the threads of a group have different textures,
-// there is a driver that tells all of them the size of one.
+// Linear colour of a texture. Its size does not come from textureSize(): where the threads of a group use different textures, one
+// driver returns the same size to all of them.
 vec3 get_texture_colour(int index, vec2 uv) {
     TexelNeighbours t = get_texel_neighbours(uv, ivec2(texture_sizes[index]), true);
     return mix_texels(fetch_colour(index, t.upper_left),

@@ -1,5 +1,5 @@
-"""A chapter is added by copying a folder and nothing else, as docs/extending.md says: every command, the C++ tests, the book and the
-handout take it up. So they do with a folder that brings a technique and a material of its own."""
+"""A chapter is added by copying a folder and nothing else, as docs/extending.md says: every command, the C++ tests, the book and
+the handout pick it up. The same goes for a folder with its own technique and material."""
 
 import json
 import os
@@ -14,9 +14,9 @@ from image_files import Exr
 from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest
 
 SOURCE, COPY = "03_next_event_estimation", "20_light_choice"
-# What the copy's estimator is replaced by: a colour that no other chapter shows.
+# Replaces the copy's estimator: a colour that no other chapter shows.
 PURPLE = "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.5, 0.0, 1.0); }\n"
-# Of a chapter that has these besides: another map of the square to the hemisphere, and the Lambertian BRDF.
+# For a chapter that has these as well: another map of the square to the hemisphere, and the Lambertian BRDF.
 TECHNIQUE = """// Shirley and Chiu's concentric map of the square to the disk, lifted to the hemisphere: density cos θ / π.
 vec3 sample_concentrically(vec2 u) {
     vec2 p = 2.0 * u - 1.0;
@@ -40,7 +40,7 @@ WRONG = [{"name": "own-brdf-twice", "explanation": "The BRDF is added twice.", "
 
 
 class Tree(ProgramTest):
-    """The project with one more chapter, configured anew. Only that chapter is built: the framework is as it was."""
+    """The project with one more chapter, configured from scratch. Only that chapter is built: the framework is unchanged."""
 
     def run_in_tree(self, *command, **environment):
         result = subprocess.run(list(map(str, command)), cwd=self.tree, capture_output=True, text=True, env=os.environ | environment)
@@ -60,8 +60,8 @@ class Tree(ProgramTest):
         shutil.copytree(self.tree / "chapters" / SOURCE, self.chapter)
 
     def build(self):
-        """The copy's program: compiled and linked as CMake says, but with the framework that is built already. That configures the
-        tests, too, which register the mistakes of all folders."""
+        """The copy's program: compiled and linked by CMake, but with the framework that is already built. This also configures
+        the tests, which register the mistakes of all folders."""
         cache = (BINARIES.parent / "CMakeCache.txt").read_text()
         same = [f"-D{name}={re.search(rf'^{name}:.*=(.*)$', cache, re.MULTILINE)[1]}"
                 for name in ("CMAKE_BUILD_TYPE", "CMAKE_CXX_FLAGS", "CMAKE_CXX_COMPILER", "LAB_SANITIZE")]
@@ -77,12 +77,12 @@ class Tree(ProgramTest):
         return self.tree / "build/bin" / COPY
 
     def rename(self, title="My choice of lights", **more):
-        """With a title of its own, the chapter is no copy any more."""
+        """With its own title, the chapter no longer counts as a copy."""
         description = json.loads((self.chapter / "chapter.json").read_text(encoding="utf-8"))
         (self.chapter / "chapter.json").write_text(json.dumps(description | {"title": title} | more), encoding="utf-8")
 
     def bring_technique_and_material(self):
-        """Makes the chapter one of bounces whose folder has functions that no other one has."""
+        """Makes it a chapter of bounces whose folder has functions that no other one has."""
         shutil.rmtree(self.chapter)
         shutil.copytree(self.tree / "chapters/02_cosine_sampling", self.chapter)
         self.rename("Concentric sampling: a map of another kind")
@@ -100,7 +100,7 @@ class Tree(ProgramTest):
         (self.chapter / "exercise.json").write_text(json.dumps(exercise), encoding="utf-8")
 
     def run_tests(self, kind, tests):
-        """Runs tests of a test program on this tree, at least one."""
+        """Runs tests of a test program on this tree; at least one must run."""
         binary = self.tree / "bin" / f"{kind}_tests"
         binary.parent.mkdir(exist_ok=True)
         shutil.copy(BINARIES / binary.name, binary)

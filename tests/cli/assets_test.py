@@ -1,4 +1,4 @@
-"""python3 tools assets: the meshes, textures and light probes in assets/ are those that its formulas give."""
+"""python3 tools assets: the meshes, textures and light probes in assets/ are what its formulas give."""
 
 import unittest
 from unittest import mock

@@ -22,7 +22,7 @@ class SceneFiles(ProgramTest):
         self.refuse("bad.json", r"bad\.json", *words)
 
     def refuse_change(self, key, value, *words):
-        """The good scene with one key changed: 'camera.up' is a key inside another."""
+        """The good scene with one key changed: 'camera.up' is a key inside another one."""
         scene = json.loads((self.folder / "quad.json").read_text())
         *path, last = key.split(".")
         target = scene
@@ -160,13 +160,13 @@ class MeshFiles(ProgramTest):
 
 
 def one_coloured_hdr(width, height):
-    """A light probe with a radiance of 1 everywhere, in rows that are not compressed."""
+    """A light probe with radiance 1 everywhere, in uncompressed rows."""
     return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width) + bytes([128, 128, 128, 129]) * (width * height)
 
 
 class ImageFiles(ProgramTest):
     def damaged(self):
-        """Contents that no reader of images should take."""
+        """Contents that every image reader must refuse."""
         exr = bytes.fromhex("762f3101") + bytes([2, 0, 0, 0])
         png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\x7f\xff\xff\xff\x7f\xff\xff\xff\x08\x06\0\0\0"
         hdr = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2000000000 +X 2000000000\n"

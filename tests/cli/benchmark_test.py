@@ -1,4 +1,4 @@
-"""./lab benchmark: the table that it prints and the file behind it."""
+"""./lab benchmark: the table it prints and the file behind it."""
 
 import json
 import math
@@ -20,7 +20,7 @@ class BenchmarkTest(ProgramTest):
         self.assertEqual(process.returncode, 0, err)
         record = json.loads((self.folder / "benchmark.json").read_text())
         self.assertTrue(record["is_complete"])
-        case, row = record["cases"][0], record["summary"][0]  # on GPUs there is a larger one, too
+        case, row = record["cases"][0], record["summary"][0]  # GPUs have a larger one as well
         self.assertEqual([run["seed"] for run in case["runs"]], [1, 2, 3, 4, 5])
         self.assertEqual((row["scene"], row["backend"], len(row["paths_per_second"])), ("cornell_box", "compute", 5))
         seconds = [run["rows"][-1]["seconds"] * run["rows"][-1]["rel_mse"] / 0.01**2 for run in case["runs"]]

@@ -1,4 +1,4 @@
-"""./lab book: a site that a browser opens from the disk without a complaint."""
+"""./lab book: a site that a browser opens from disk without complaints."""
 
 import re
 import shutil
@@ -14,8 +14,8 @@ from book import readability
 from browser import CHROMIUM, Browser
 from project import CHAPTERS
 
-NARROW = 400  # pixels, as wide as a telephone
-# Of a page: the names that links may lead to, where its own links lead, pictures that are missing, formulas that are not typeset, and
+NARROW = 400  # pixels, the width of a phone
+# For a page: the names that links may target, the targets of its own links, missing pictures, formulas that are not typeset, and
 # what is wider than the screen and cannot be scrolled by itself.
 INSPECT = r"""(() => {
     const text = document.querySelector("article").cloneNode(true);
@@ -93,7 +93,7 @@ class BookInBrowser_all(Site, unittest.TestCase):
         cls.browser.resize(NARROW)
 
     def problems(self, page):
-        """What is wrong with a page, and where its links lead: {(file, name)}."""
+        """What is wrong with a page, and the targets of its links: {(file, name)}."""
         self.browser.visit(page.as_uri())
         seen = self.browser.evaluate(INSPECT)
         found = self.browser.complaints() + [f"a formula is text: {formula}" for formula in seen["formulas"]]
@@ -109,7 +109,7 @@ class BookInBrowser_all(Site, unittest.TestCase):
                 name and name not in (self.names.get(file) or re.findall(r'id="([^"]*)"', file.read_text(encoding="utf-8")))]
 
     def setUp(self):
-        self.names = {}  # page: where its links may lead
+        self.names = {}  # page: names that links may target
 
     def test_every_page(self):
         pages = [page for page in self.site.rglob("*.html") if page.name == "index.html" or page.parent.name == "docs"]

@@ -1,4 +1,4 @@
-"""A headless Chromium that is driven through a pipe by its DevTools protocol."""
+"""A headless Chromium, controlled by its DevTools protocol through a pipe."""
 
 import base64
 import json
@@ -8,11 +8,11 @@ import subprocess
 import tempfile
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-TIMEOUT = 60  # seconds for a page
+TIMEOUT = 60  # seconds per page
 
 
 class Browser:
-    """Visits pages one by one, and remembers what each has said and loaded."""
+    """Visits pages one by one, and records their messages and requests."""
 
     def __enter__(self):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a child may outlive the browser
@@ -41,7 +41,7 @@ class Browser:
         self.profile.cleanup()
 
     def receive(self):
-        """The next message. Events are kept."""
+        """The next message. Events are stored."""
         while b"\0" not in self.buffer:
             piece = os.read(self.answers, 1 << 20)
             if not piece:
@@ -69,7 +69,7 @@ class Browser:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
 
     def visit(self, url):
-        """Loads a page to its end, its scripts included."""
+        """Loads a page completely, including its scripts."""
         self.events = []
         self.call("Page.navigate", url=url)
         while not any(event["method"] == "Page.loadEventFired" for event in self.events):
@@ -83,7 +83,7 @@ class Browser:
         return result["result"].get("value")
 
     def complaints(self):
-        """What the page has said as an error or a warning, and what it threw."""
+        """Errors and warnings that the page logged, and exceptions it threw."""
         found = []
         for event in self.events:
             parameters = event["params"]
@@ -96,7 +96,7 @@ class Browser:
         return found
 
     def loaded(self):
-        """The addresses of all that the page has asked for."""
+        """The addresses of everything that the page requested."""
         return [event["params"]["request"]["url"] for event in self.events if event["method"] == "Network.requestWillBeSent"]
 
     def screenshot(self, file):

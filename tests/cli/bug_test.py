@@ -1,4 +1,4 @@
-"""./lab bug: the gallery gives no name away, each bug can be planted, and what is wrong shows."""
+"""./lab bug: the gallery does not give names away, every bug can be planted, and its effect shows."""
 
 import re
 import unittest
@@ -10,7 +10,7 @@ from PIL import Image
 from course import bug, mistakes
 from project import CHAPTERS, UserError
 
-# A chapter that keeps its arguments and its shader instead of rendering.
+# A chapter that stores its arguments and its shader instead of rendering.
 NOTING = """#!/bin/sh
 echo "$@" >'{folder}/arguments'
 cp "$(dirname "$0")/../chapters/{chapter}/path_trace.glsl" '{folder}/shader'
@@ -23,7 +23,7 @@ def index_of(chapter, name):
 
 class BugTest(ProgramTest):
     def bug(self, *arguments):
-        """Standard output of ./lab bug, which runs in this process."""
+        """Standard output of ./lab bug, run in this process."""
         code, out, err = self.run_here(bug.main, *arguments)
         self.assertEqual(code, 0, err)
         return out
@@ -93,7 +93,7 @@ class BugTest(ProgramTest):
             out = self.bug(1, index_of(1, name), "--samples", 8, "--scene", "furnace", "--backend", "compute")
             word, red = re.search(r"verdict +(\w+).* red ([+-][\d.]+).* against the right picture", out).groups()
             verdicts[name] = word, float(red)
-        # In a furnace either of the first two doubles what each bounce brings, and the directions do not matter.
+        # In a furnace either of the first two doubles the contribution of each bounce, and directions do not matter.
         (cosine, too_much), (sine, as_much), (directions, little) = verdicts.values()
         self.assertEqual((cosine, sine, directions), ("biased", "biased", "nothing"))
         self.assertGreater(too_much, 100)

@@ -1,4 +1,4 @@
-"""What the chapters have beyond the common command line: options of their own, scenes that they refuse."""
+"""What chapters add to the common command line: their own options, and scenes that they refuse."""
 
 import json
 
@@ -14,7 +14,7 @@ def description(chapter):
 
 
 def options_of(chapter):
-    """Those of its own."""
+    """The chapter's own options."""
     says = description(chapter)
     return ["--strategy"] * ("strategies" in says) + says.get("options", [])
 

@@ -25,9 +25,9 @@ ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
     return vec3(sum);
 }
 """
-NO_UTF8 = [os.fsdecode(name) for name in (b"m\xfcller.glsl", b"m\xfdller.glsl")]  # as archives from elsewhere have
+NO_UTF8 = [os.fsdecode(name) for name in (b"m\xfcller.glsl", b"m\xfdller.glsl")]  # as in archives from elsewhere
 FEW = (3, "--runs", 5, "--samples", 4)
-# A chapter that notes its arguments.
+# A chapter that logs its arguments.
 NOTING = """#!/bin/sh
 echo "$@" >>'{notes}'
 exec '{program}' "$@"
@@ -35,19 +35,19 @@ exec '{program}' "$@"
 
 
 class CheckTest(ProgramTest):
-    judged = {}  # what judge() has found, for all tests
+    judged = {}  # results of judge(), shared by all tests
 
     def setUp(self):
         super().setUp()
         self.judge = mock.Mock(side_effect=self.judge_once)
-        # One render at a time: the others then need not compile its shader as well.
+        # One render at a time, so that the others need not compile its shader as well.
         for where, what, stand_in in ((command, "judge", self.judge), (command, "diagnose", self.diagnose_once), (grading, "JOBS", 1)):
             patch = mock.patch.object(where, what, stand_in)
             patch.start()
             self.addCleanup(patch.stop)
 
     def judge_once(self, chapter, file, settings, watch):
-        """judge(), which renders a shader once for all forms in which the command tells the same verdict."""
+        """judge(), but renders a shader only once for all formats in which the command reports the same verdict."""
         key = (file.read_bytes(), *grading.SCENES[chapter][1], *(settings[name] for name in ("runs", "samples", "first_seed")))
         if key not in self.judged:
             early = []
@@ -64,7 +64,7 @@ class CheckTest(ProgramTest):
         return deepcopy(self.judged[key])
 
     def check(self, *arguments):
-        """Exit code, standard output and standard error of the command, which runs in this process."""
+        """Exit code, standard output and standard error of the command, run in this process."""
         return self.run_here(command.main, "--backend", "compute", *arguments)
 
     def check_few(self, *arguments):
@@ -73,7 +73,7 @@ class CheckTest(ProgramTest):
         return code, json.loads(out)
 
     def in_one_scene(self):
-        """Where what a test looks at shows as well in the first scene alone."""
+        """For tests whose subject shows just as well in the first scene alone."""
         return mock.patch.dict(grading.SCENES, {3: (4, ["check_room_2"])})
 
     def wrong(self):
@@ -95,7 +95,7 @@ class CheckTest(ProgramTest):
             self.assertLess(max(test["detectable"] for test in scene["image"]), 0.2, "too weak")
 
     def test_a_mistake_is_biased_to_its_side(self):
-        made = mistake.load()["wrong-measure"]  # too bright: it forgets to divide by the squared distance
+        made = mistake.load()["wrong-measure"]  # too bright: the division by the squared distance is missing
         self.assertEqual(PROJECT / made["file"], TECHNIQUE)
         file = self.write("mine.glsl", TECHNIQUE.read_text(encoding="utf-8").replace(made["find"], made["replace"]))
         code, result = self.check_few(file)
@@ -119,7 +119,7 @@ class CheckTest(ProgramTest):
             self.assertEqual("distance-not-squared" in out, is_named, out)
 
     def test_tells_early_what_is_sure(self):
-        """That of a shader with a mistake is told where a teacher gets its name."""
+        """For a shader with a mistake, it tells it where a teacher gets the mistake's name."""
         self.assertRegex(self.check(*FEW)[1], r"\Aso far +[^\n]*no picture is wrong by")
 
     def test_the_chapters_own_noise_is_compared_render_by_render(self):
@@ -154,7 +154,7 @@ class CheckTest(ProgramTest):
         self.write("all/bob.glsl", "nothing")
         for name in NO_UTF8:
             self.write(Path("all") / name, text)
-        self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # no rays
+        self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # traces no rays
         (self.folder / "all/gone.glsl").symlink_to("nowhere")
         self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
         grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
@@ -192,7 +192,7 @@ class CheckTest(ProgramTest):
         self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")
 
     def test_checks_with_other_seeds_share_no_render(self):
-        """Also with more runs: otherwise a false alarm comes back with another --seed."""
+        """Also with more runs: otherwise a false alarm would recur with another --seed."""
         program = self.write(f"binaries/{SHADER.parent.name}", NOTING.format(
             notes=self.folder / "notes", program=BINARIES / SHADER.parent.name))
         program.chmod(0o755)
@@ -219,7 +219,7 @@ class CheckTest(ProgramTest):
         self.assertEqual((code, result["unfinished_line"], result["diagnosis"]), (1, line, None))
 
     def test_more_noise_and_rays_than_needed_are_reported(self):
-        # A path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
+        # One path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
         text = SHADER.read_text(encoding="utf-8").replace("vec3 path_trace(", "vec3 trace_path(") + (
             "vec3 path_trace(Ray ray, inout uvec2 seed) {\n"
             "    trace_path(ray, seed);\n"
@@ -228,7 +228,7 @@ class CheckTest(ProgramTest):
             code, result = self.check_few(self.write("mine.glsl", text))
         box = result["scenes"][0]
         self.assertEqual((code, box["verdict"]), (1, "noisy"), box["noise"])
-        self.assertGreater(box["noise"][2], 2)  # it is 2 + (mean / deviation)² in each pixel
+        self.assertGreater(box["noise"][2], 2)  # 2 + (mean / deviation)² in each pixel
         self.assertAlmostEqual(box["rays"], 1.5, delta=0.02)
 
     def planted(self, chapter, find, replace):
@@ -281,7 +281,7 @@ class CheckTest(ProgramTest):
                 self.assertIn(r"m\xfcller.glsl", (out + err).encode().decode())
 
     def test_where_no_picture_can_be_written_the_verdict_stays(self):
-        """In a checkout that is read-only."""
+        """In a read-only checkout."""
         (self.folder / "read_only").mkdir()
         self.write("read_only/output", "no folder")
         with mock.patch.object(command, "ROOT", self.folder / "read_only"):
@@ -292,7 +292,7 @@ class CheckTest(ProgramTest):
         self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
 
     def test_an_endless_loop_is_ended(self):
-        """Also one outside of the shader: that over the bounces of a path whose end never comes."""
+        """Also one outside the shader: the loop over the bounces of a path that never ends."""
         path = self.planted(7, "get_background_radiance(path.ray.direction);\n        return false;",
                             "get_background_radiance(path.ray.direction);\n        return true;")
         for chapter, file in ((3, self.write("endless.glsl", ENDLESS)), (7, path)):

@@ -1,4 +1,4 @@
-"""The command lab as a checkout has it: its line ends, and what it builds for a tool."""
+"""The command lab in a checkout: its line ends, and what it builds for each tool."""
 
 import os
 import re
@@ -25,7 +25,7 @@ class LineEnds(ProgramTest):
 
 
 class WhatIsBuilt(ProgramTest):
-    """lab in a tree of its own, where everything is installed and nothing is built. Chapter 20 is a copy of chapter 3."""
+    """lab in its own tree, where everything is installed and nothing is built. Chapter 20 is a copy of chapter 3."""
 
     def setUp(self):
         super().setUp()
@@ -44,7 +44,7 @@ class WhatIsBuilt(ProgramTest):
             self.write(f"tree/bin/{name}", script.format(notes=self.folder / "notes")).chmod(0o755)
 
     def noted(self, *arguments, code=0):
-        """What a command of lab calls, a line each."""
+        """What a command of lab calls, one line each."""
         path = f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"
         actual, _, err = self.run_program(*arguments, program=self.folder / "tree/lab", environment={"PATH": path})
         self.assertEqual(actual, code, err)

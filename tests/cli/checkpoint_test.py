@@ -1,4 +1,4 @@
-"""Long renders: they stop when told to, lose nothing, and go on where they were."""
+"""Long renders: they stop when told to, lose nothing, and continue where they stopped."""
 
 import json
 import math
@@ -13,12 +13,13 @@ from program import BINARIES, MERGE, PROJECT, QUAD_JSON, QUAD_MTL, QUAD_OBJ, Ren
 
 
 class Interruption(RenderTest):
-    """A large image, so that an interruption finds pixels with different numbers of samples."""
+    """A large image, so that an interruption finds pixels with different sample counts."""
 
     size = (320, 320)
 
     def interrupt(self, signal_number, file, *arguments):
-        """Interrupts an endless render that has written the file; returns exit code, seconds until its end, its text."""
+        """Interrupts an endless render once it has written the file; returns exit code, seconds until it ended, and its
+        output."""
         command = self.command("--samples=4000000000", "--output", file, *arguments, size=self.size)
         with self.start(*command) as process:
             self.wait_for(file, process)
@@ -30,7 +31,7 @@ class Interruption(RenderTest):
         return process.returncode, time.monotonic() - start, out + err
 
     def assert_resumes(self, checkpoint):
-        """Resumed and uninterrupted renders are the same."""
+        """Resumed and uninterrupted renders are identical."""
         total = int(Exr(checkpoint).text("samples")) + 3
         resumed = self.picture("resumed", f"--samples={total}", f"--resume={checkpoint}", size=self.size)
         self.assert_close(resumed, self.picture("uninterrupted", f"--samples={total}", size=self.size))
@@ -92,7 +93,7 @@ class Checkpoints(RenderTest):
                 self.assert_refused(self.command("--samples=8", "--resume=cut.exr"), r"cut\.exr")
 
     def test_a_failed_write_keeps_the_old_file(self):
-        """A limit on file sizes, set while the program runs, stands for a full disk."""
+        """A file size limit, set while the program runs, simulates a full disk."""
         files = [self.folder / f"old.{ending}" for ending in ("exr", "hdr", "png", "jpg", "json")]
         outputs = [argument for file in files[:-1] for argument in ("--output", file)]
         command = self.command("--samples=4000000000", "--save-every=0.2", *outputs, "--report", files[-1])
@@ -100,7 +101,7 @@ class Checkpoints(RenderTest):
             self.wait_for(files[-1], process)
             resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (100, 100))
             before = [file.read_bytes() for file in files]
-            time.sleep(1)  # the render goes on, for the disk may have room again when it ends
+            time.sleep(1)  # the render continues: the disk may have room again when it ends
             self.assertIsNone(process.poll())
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=60)
@@ -114,7 +115,7 @@ class Checkpoints(RenderTest):
 
 
 class EditedShaders(RenderTest):
-    """A copy of the project, whose shaders are edited between two renders."""
+    """A copy of the project whose shaders are edited between two renders."""
 
     def setUp(self):
         super().setUp()
@@ -163,7 +164,7 @@ class StoppingEarly(RenderTest):
             self.assertLessEqual(errors[target], target)
             self.assertGreater(errors[target], 0.8 * target)
             self.assertLess(len(rows), math.log2(samples[target]) + 5)
-        # The error goes like one over the square root, so three times less takes about nine times as many samples.
+        # The error falls with the square root, so a third of it takes about nine times as many samples.
         self.assertTrue(5 < samples[0.3] / samples[0.9] < 16, samples)
 
     def test_target_error_is_met_against_a_reference(self):
@@ -173,7 +174,7 @@ class StoppingEarly(RenderTest):
         self.assertGreater(math.sqrt(relative_mse(stopped, reference)), 0.1)
 
     def test_target_error_is_met_without_a_reference(self):
-        """The error that the image estimates for itself is about its error against a good reference."""
+        """The error that the image estimates for itself is close to its error against a good reference."""
         reference = self.picture("reference", "--samples=4096", "--seed=77")
         for target in (2, 0.7, 0.3):
             with self.subTest(target=target):
@@ -181,7 +182,7 @@ class StoppingEarly(RenderTest):
                 self.assertLessEqual(math.sqrt(relative_mse(stopped, reference)), 2 * target)
 
     def test_a_film_without_radiance_has_an_unknown_error(self):
-        """A lamp so tiny that no path has met it yet: what is black is not exact."""
+        """A lamp so tiny that no path has hit it yet: black does not mean exact."""
         self.write("lamp.obj", QUAD_OBJ.replace("quad.mtl", "lamp.mtl") + "v 0 0 4\nv 0 1e-4 4\nv 1e-4 0 4\nusemtl lamp\nf 5 6 7\n")
         self.write("lamp.mtl", QUAD_MTL + "newmtl lamp\nKe 1e6 1e6 1e6\n")
         scene = json.loads(QUAD_JSON) | {"meshes": [{"file": "lamp.obj"}], "background": {"radiance": [0, 0, 0]}}

@@ -1,4 +1,4 @@
-"""docs/cluster.md: its commands, run as they stand there, give the picture of one long render."""
+"""docs/cluster.md: its commands, run as written, give the picture of one long render."""
 
 import os
 import re
@@ -9,7 +9,7 @@ import time
 from image_files import Exr
 from program import BINARIES, MERGE, PROJECT, RenderTest
 
-# What the reader adapts: the settings before the first empty line of a block.
+# What readers adapt: the settings before the first empty line of a block.
 SETTINGS = """
 renderer='build/bin/05_russian_roulette cornell_box --backend compute --width 24 --height 20'
 devices='0'
@@ -17,14 +17,14 @@ samples=5
 starts='0 5'
 hosts='1/first,1/second'
 """
-# In the place of ssh: both "hosts" are this machine. The second one dies in the middle of its first render, and stays dead.
+# Replaces ssh: both "hosts" are this machine. The second one dies in the middle of its first render, and stays dead.
 SSH = """#!/bin/bash
 host=$1 && shift && [[ $1 != -- ]] || shift
 echo "$host" >>hosts
 [[ $host == first ]] && exec bash -c "$*"
 setsid bash -c "$*" & sleep 0.2; kill -KILL -- -$! 2>/dev/null; exit 255
 """
-# In the place of ./lab, which would install and build first.
+# Replaces ./lab, which would install and build first.
 LAB = f"""#!/bin/sh
 [ "$1" = merge ] && shift && exec '{MERGE}' "$@"
 """
@@ -52,7 +52,7 @@ class Cluster(RenderTest):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def assert_is_one_render(self, file, samples=10):
-        """The picture equals that of one render with all samples, to 2 ulp."""
+        """The picture equals that of a single render with all samples, to 2 ulp."""
         merged = Exr(self.folder / file)
         self.assertEqual(merged.text("samples"), str(samples))
         self.render("cornell_box", "--backend=compute", "--width=24", "--height=20", f"--samples={samples}", "--quiet",
@@ -67,7 +67,7 @@ class ClusterTest(Cluster):
         self.assert_is_one_render("whole.exr")
 
     def test_slurm_array(self):
-        """Slurm runs the script once for each number; a task that runs again resumes its part."""
+        """Slurm runs the script once per number; a task that runs again resumes its part."""
         script = self.block("A cluster")
         for task in ("1", "0", "1"):
             self.run_shell(script, SLURM_ARRAY_TASK_ID=task)
@@ -83,9 +83,9 @@ class ClusterRehearsal_all(Cluster):
         self.run_shell(commands, PARALLEL_SSH=str(ssh))
         hosts = (self.folder / "hosts").read_text().split()
         self.assertIn("second", hosts)
-        self.assertGreaterEqual(hosts.count("first"), 2)  # its own part, and that of the dead machine
+        self.assertGreaterEqual(hosts.count("first"), 2)  # its own part, and the dead machine's
         self.assert_is_one_render("whole.exr")
-        # A part that is rendered twice, on another machine: the log of the first render is gone.
+        # A part rendered twice, on another machine: the log of the first render is gone.
         before = (self.folder / "parts/5.exr").read_bytes()
         (self.folder / "parts/log").unlink()
         self.run_shell(commands, PARALLEL_SSH=str(ssh))
@@ -102,7 +102,7 @@ class ClusterRehearsal_all(Cluster):
             time.sleep(0.02)
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        done = int(Exr(part).text("samples"))  # the checkpoint is whole
+        done = int(Exr(part).text("samples"))  # the checkpoint is intact
         self.assertTrue(0 < done < 100000, done)
         samples = 2 * done
         script = script.replace("samples=5", f"samples={samples}")

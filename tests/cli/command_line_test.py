@@ -1,4 +1,4 @@
-"""The command line: what it understands, and that it refuses everything else with one clear line."""
+"""The command line: what it accepts, and that it refuses everything else with one clear line."""
 
 import re
 
@@ -107,7 +107,7 @@ class WrongArguments(ProgramTest):
 
 
 class WrongOutputs(ProgramTest):
-    """Found before anything is rendered: this many samples would take longer than the test may."""
+    """Detected before rendering: this many samples would take longer than the test may."""
 
     def refuse(self, name, *words, option="--output"):
         self.assert_refused(["quad.json", "--samples=4000000000", option, name], *words)

@@ -1,4 +1,4 @@
-"""./lab debug and the page that shows it: the searches of docs/debugging.md find what they say."""
+"""./lab debug and its page: the searches of docs/debugging.md find what they claim."""
 import json
 import os
 import re
@@ -18,7 +18,7 @@ SHADER = "chapters/01_uniform_sampling/path_trace.glsl"
 
 
 class CopiedLab(ProgramTest):
-    """A tree of the lab with shaders of its own and the program of chapter 1."""
+    """A copy of the lab with its own shaders and the program of chapter 1."""
 
     def setUp(self):
         super().setUp()
@@ -36,7 +36,7 @@ class CopiedLab(ProgramTest):
         self.shader = self.tree / SHADER
 
     def plant(self, text):
-        """Makes the replacements that a text of the page asks for, from the shader as it is."""
+        """Makes the replacements that a text of the page asks for, starting from the original shader."""
         code = (PROJECT / SHADER).read_text(encoding="utf-8")
         for old, new in re.findall(r"replace\s+`([^`]+)`\s+by\s+`([^`]+)`", text):
             self.assertEqual(code.count(old), 1, old)
@@ -55,7 +55,7 @@ class CopiedLab(ProgramTest):
 
 class DebugTest(CopiedLab):
     def search(self, title):
-        """A section of the page with its blocks: the command, what gdb is to do, and what must be seen."""
+        """A section of the page with its blocks: the command, gdb's input, and the output to expect."""
         section = re.search(rf"^## {title}.*?(?=^## )", PAGE, re.MULTILINE | re.DOTALL)[0]
         blocks = dict(re.findall(r"^```(\w+)\n(.*?)^```", section, re.MULTILINE | re.DOTALL))
         self.plant(section)
@@ -93,7 +93,7 @@ class DebugTest(CopiedLab):
         [configuration] = launch["configurations"]
         inputs = {found["id"] for found in launch["inputs"]}
         self.assertEqual(set(re.findall(r"\$\{input:(\w+)\}", json.dumps(configuration))), inputs)
-        # Again is fine, and another's file is kept.
+        # Running it again is fine, and foreign files are kept.
         self.assertEqual(self.execute(sys.executable, "-B", "tools", "debug", "--vscode").returncode, 0)
         (self.tree / ".vscode/launch.json").write_text("{}", encoding="utf-8")
         refused = self.execute(sys.executable, "-B", "tools", "debug", "--vscode")
@@ -111,7 +111,7 @@ class DebugTest(CopiedLab):
 
 
 class NativeFailures_all(CopiedLab):
-    """What can go wrong where shaders become programs."""
+    """What can go wrong when shaders are compiled into programs."""
     SIZE = ("--headless", "--width=32", "--height=32", "--samples=2")
 
     def render(self, *arguments, backend="native", **environment):
@@ -155,11 +155,11 @@ class NativeFailures_all(CopiedLab):
         [code] = (self.tree / "cache/path_tracing_lab").glob("native-*")
         good = code.read_bytes()
         for bad in (b"", good[:1000], good[:-9] + b"x" + good[-8:]):
-            code.unlink()  # a program that runs it keeps its own
+            code.unlink()  # a program that runs it keeps its own copy
             code.write_bytes(bad)
             self.assertEqual(self.render().returncode, 0)
             self.assertEqual(len(code.read_bytes()), len(good))
-        self.assertEqual(self.render(**self.compiler("exit 1\n")).returncode, 1)  # another compiler has other code
+        self.assertEqual(self.render(**self.compiler("exit 1\n")).returncode, 1)  # another compiler produces other code
 
     def test_two_that_compile_the_same(self):
         command_line = [self.program, *self.SIZE, "--backend=native"]

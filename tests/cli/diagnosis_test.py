@@ -1,4 +1,4 @@
-"""What ./lab check finds out about a shader that is not correct: experiments, facts, and the names that they leave."""
+"""What ./lab check finds out about an incorrect shader: experiments, facts, and the names they leave."""
 
 import json
 import re
@@ -18,7 +18,7 @@ from project import course
 
 KNOWLEDGE_OF = learn.read_knowledge(course())
 KNOWN = {chapter: entry["mistakes"] for chapter, entry in KNOWLEDGE_OF.items()}
-LEAST = 8  # mistakes that are known of each chapter
+LEAST = 8  # known mistakes of each chapter
 
 
 def sight(mean, error=0.001):
@@ -26,7 +26,7 @@ def sight(mean, error=0.001):
 
 
 def seen(values, quantity=None, x=(20.0, 40.0, 60.0, 75.0), expected=None, error=0.001, **details):
-    """The fact of an experiment whose points show multiples of what is right."""
+    """The fact of an experiment whose points show these multiples of the right values."""
     points = [Point({}, f"at {x_i:g}", x_i) for x_i, _ in zip(x, values)]
     expected = expected or [0.5] * len(values)
     shown = [sight(value * (right or max(expected)), error) for value, right in zip(values, expected)]
@@ -108,7 +108,7 @@ class ExperimentsTest(unittest.TestCase):
                 self.assertTrue(one.subject and one.points and all(point.scene for point in one.points), (chapter, one.name))
 
     def test_a_chapter_uses_only_what_it_or_an_earlier_one_describes(self):
-        """Otherwise a student's tree of the first chapters lacks it."""
+        """Otherwise it would be missing from a student's tree of the first chapters."""
         described = set()
         for chapter, file in experiment_files().items():
             described |= set(file.get("experiments", {}))
@@ -166,7 +166,7 @@ class KnowledgeTest(unittest.TestCase):
             self.assertGreaterEqual(len(entries), LEAST, f"chapter {chapter}")
 
     def test_all_experiments_are_known_and_every_mistake_that_was_measured_shows_in_one(self):
-        """Which are not measured yet is what FreshKnowledge_all tells."""
+        """FreshKnowledge_all tells which ones are not measured yet."""
         for chapter, entry in KNOWLEDGE_OF.items():
             self.assertEqual(list(entry["experiments"]), list(experiments_of(chapter)), f"chapter {chapter}: tests/mistakes/learn.py learn")
             for name, mistake in entry["mistakes"].items():
@@ -192,7 +192,7 @@ class KnowledgeTest(unittest.TestCase):
 
 
 class FreshKnowledge_all(unittest.TestCase):
-    """What was measured is no older than the shaders. Measuring anew takes an hour on a CPU."""
+    """The measurements are no older than the shaders. Measuring takes an hour on a CPU."""
 
     def test_knowledge_was_measured_with_the_shaders_and_settings_of_the_code(self):
         self.assertEqual(learn.unmeasured(KNOWLEDGE_OF), [], "stale: tests/mistakes/learn.py learn, then confusion")

@@ -1,4 +1,4 @@
-"""The diagrams of the pages, SVG files drawn once: they are legible on white and on black."""
+"""The pages' diagrams, hand-drawn SVG files: legible on white and on black."""
 
 import re
 import unittest
@@ -10,11 +10,11 @@ DIAGRAMS = sorted((PROJECT / "docs/diagrams").glob("*.svg"))
 SVG = "{http://www.w3.org/2000/svg}"
 BACKGROUNDS = ("#ffffff", "#0d1117")
 LEAST_CONTRAST = 3
-CHARACTER_WIDTH = 0.6  # in font sizes, of a wide font on average
+CHARACTER_WIDTH = 0.6  # of a wide font, on average, in font sizes
 
 
 def luminance(colour):
-    """Of #rrggbb, relative to white (Web Content Accessibility Guidelines 2.1)."""
+    """Relative luminance of #rrggbb (Web Content Accessibility Guidelines 2.1)."""
     channels = [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
@@ -26,7 +26,7 @@ def contrast(a, b):
 
 
 def text_width(text):
-    """About the width of a <text> in pixels."""
+    """Approximate width of a <text> in pixels."""
     size = float(text.get("font-size"))
     spans = sum(len(span.text) * float(span.get("font-size", size)) + len(span.tail or "") * size for span in text)
     return CHARACTER_WIDTH * (len(text.text or "") * size + spans)
@@ -55,7 +55,7 @@ class DiagramsTest(unittest.TestCase):
                 for background in BACKGROUNDS:
                     self.assertGreaterEqual(contrast(colour, background), LEAST_CONTRAST, f"{name}: {colour} on {background}")
             for text in root.iter(f"{SVG}text"):
-                self.assertIn(text.get("fill"), colours, name)  # else it is black
+                self.assertIn(text.get("fill"), colours, name)  # otherwise it is black
 
     def test_nothing_is_outside(self):
         for name, root, width, height in self.roots():

@@ -1,4 +1,4 @@
-"""./lab diff: the difference of neighbouring chapters' shaders, with counts of what has changed."""
+"""./lab diff: how the shaders of neighbouring chapters differ, with counts of what changed."""
 
 import os
 import subprocess
@@ -40,7 +40,7 @@ class DiffTest(unittest.TestCase):
                 self.assertEqual([line for mark, line, _ in rows if mark != "+"], before)
 
     def test_a_lesson_is_all_shaders_of_a_folder(self):
-        """A technique is shown in full. Of an estimator that includes another chapter's only its own lines are new."""
+        """A technique is shown in full. Of an estimator that includes another chapter's, only its own lines are new."""
         estimator = ["vec3 path_trace(Ray ray) {", "    return vec3(0.0);", "}"]
         own = ['#include "points.glsl"', '#include "../01_first/path_trace.glsl"']
         chapters = {"01_first": {"path_trace.glsl": estimator}, "02_second": {"path_trace.glsl": own, "points.glsl": ["float x;"]}}
@@ -48,7 +48,7 @@ class DiffTest(unittest.TestCase):
         self.assertEqual(list(shown), ["02_second/path_trace.glsl", "02_second/points.glsl"])
         self.assertEqual(self.changed(shown["02_second/path_trace.glsl"]), [("+", line) for line in own])
         self.assertEqual(shown["02_second/points.glsl"], [("+", "float x;", None)])
-        # The chapter after one that only includes is compared with what was included, also by a folder's name alone.
+        # A chapter that follows one which only includes is compared with the included text, even if named by its folder alone.
         chapters["03_third"] = {"path_trace.glsl": own[:1] + ["", *estimator], "points.glsl": ['#include "02_second/points.glsl"']}
         shown = self.lesson_of(chapters)
         self.assertEqual(self.changed(shown["03_third/path_trace.glsl"]), [("-", own[1]), ("+", "")])

@@ -34,19 +34,19 @@ def text_of(path):
 
 
 def sources(folders, suffixes=SOURCE_SUFFIXES):
-    """The text of all code, where identifiers of the pages are looked up."""
+    """The text of all code, to look up identifiers on the pages."""
     files = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix in suffixes]
     return "\n".join(map(text_of, files))
 
 
 def anchors(page):
-    """Of all headings, as GitHub makes them."""
+    """Anchors of all headings, as GitHub makes them."""
     headings = re.findall(r"^#+ (.*)$", text_of(page), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 def has_piece(text, piece):
-    """Whether a source quotes right: names and calls() anywhere, longer pieces in exactly one place."""
+    """Whether a source contains a quotation: names and calls() anywhere, longer pieces in exactly one place."""
     if re.fullmatch(r"\w+", piece):
         return re.search(rf"\b{piece}\b", text) is not None
     if re.fullmatch(r"\w+\(\)", piece):
@@ -55,25 +55,26 @@ def has_piece(text, piece):
 
 
 def commands(page):
-    """The words of all commands that a page shows, without `./lab` and comments."""
+    """The words of all commands on a page, without `./lab` and comments."""
     text = text_of(page)
     lines = re.findall(r"`\./lab ([^`\n]+)`", text) + re.findall(r"^ {4,}\./lab (.+)$", text, re.MULTILINE)
     return [tuple(shlex.split(line, comments=True)) for line in lines]
 
 
 def program_of(number, page):
-    """The program of a chapter. The pages call a student's copy 20: of the chapter whose folder holds the page, or else of any."""
+    """A chapter's program. The pages call a student's copy 20: then it is the chapter whose folder holds the page, or else
+    any."""
     folder = page.relative_to(ROOT).parts[1] if page.is_relative_to(ROOT / "chapters") else COURSE[0]
     return BINARIES / CHAPTERS.get(int(number), folder)
 
 
 def small_render(words, page):
-    """Program and arguments of `./lab run ...`, changed so that it takes no time."""
+    """Program and arguments of `./lab run ...`, reduced to take almost no time."""
     number, *arguments = words
-    # A reference has a size of its own.
+    # A reference has its own size.
     small = {name: value for name, value in SMALL_RENDER.items() if name not in SIZE or "--reference" not in arguments}
     if "--sanitize" in arguments:
-        small.pop("--backend")  # it has one of its own
+        small.pop("--backend")  # it has its own
     kept, words = [], iter(arguments)
     for word in words:
         if word in small:
@@ -108,7 +109,7 @@ class DocumentationTest(unittest.TestCase):
         text += "\n".join(path.stem for path in (ROOT / "assets").rglob("*"))  # scenes and references
         for page in PAGES:
             for code in re.findall(r"`([^`\n]+)`", text_of(page)):
-                # Names with an underscore or a scope, and calls, are taken for identifiers of ours or of Vulkan's.
+                # Names with an underscore or a scope, and calls, count as identifiers of ours or Vulkan's.
                 for name in re.findall(r"\b[A-Za-z]\w*(?:::\w+)+|\b[a-z]\w*_\w+\b|\b\w+(?=\()", code):
                     last = name.split("::")[-1]
                     if last.startswith("VK_") or last in KNOWN_ELSEWHERE:
@@ -123,7 +124,7 @@ class DocumentationTest(unittest.TestCase):
 
     def test_chapter_pages_are_complete(self):
         suites = set(re.findall(r"^TEST(?:_[PF])?\((\w+),", sources(["tests"], {".cpp"}), re.MULTILINE))
-        for chapter in COURSE:  # what others add may have pages of another kind
+        for chapter in COURSE:  # chapters added by others may have different pages
             text = text_of(ROOT / "chapters" / chapter / "README.md")
             for part in ("\n    ./lab run ", "\n![", "\n<!-- table: ", "\n<!-- code: ", "Symbols: [table](../../docs/slides.md#symbols)"):
                 self.assertIn(part, text, chapter)
@@ -136,7 +137,7 @@ class DocumentationTest(unittest.TestCase):
             self.assertTrue(named and set(named) <= suites, f"{chapter}: tests {named}")
 
     def test_every_exercise_has_a_solution(self):
-        for chapter in COURSE:  # of exercise 1 it is the chapter's shader
+        for chapter in COURSE:  # for exercise 1 it is the chapter's shader
             exercises = re.findall(r"^(\d+)\. \*([\w ]+)\.\*", text_of(ROOT / "chapters" / chapter / "README.md"), re.MULTILINE)
             solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"), re.MULTILINE)
             self.assertEqual(solutions, exercises[1:], chapter)
@@ -188,9 +189,9 @@ class EveryDocumentedRender_all(DocumentedRendersTest):
     pages, fewest = PAGES, 20
 
 
-# Section 3 of our survey of renderers; there is no sampling by solid angle (3.7) that could go wrong.
+# Section 3 of our survey of renderers; we do not sample by solid angle (3.7), so that trap cannot occur.
 NUMERICAL_TRAPS = [f"3.{number}" for number in range(1, 25)]
 TRAPS_THAT_CANNOT_OCCUR = {"3.7"}
 
-# What the pages quote from the slides, the blog and GLSL.
+# Quoted from the slides, the blog and GLSL.
 KNOWN_ELSEWHERE = {"pixel_index", "frame_index", "my_model"}

@@ -1,4 +1,4 @@
-"""What goes wrong around a render: full disks, kills, failing devices, caches and folders that cannot be used."""
+"""What goes wrong around a render: full disks, kills, failing devices, unusable caches and folders."""
 
 import os
 import random
@@ -13,14 +13,14 @@ from program import CHAPTER, FAULT_LAYER, UNOPTIMISED, RenderTest
 
 
 def remove(folder):
-    """Removes a folder in which another process makes files."""
+    """Removes a folder in which another process creates files."""
     while folder.exists():
         shutil.rmtree(folder, ignore_errors=True)
 
 
 class FullDisk(RenderTest):
     def test_the_old_file_survives(self):
-        """On a file system of 64 KiB in memory, where one may be mounted."""
+        """On a file system of 64 KiB in memory, if one can be mounted."""
         namespace = ["unshare", "--map-root-user", "--mount"]
         mount = "mount -t tmpfs -o size=64k tmpfs full"
         (self.folder / "full").mkdir()
@@ -42,7 +42,7 @@ class Kills(RenderTest):
     fewest, most = 20, 400
 
     def test_kills_at_any_moment_leave_a_checkpoint(self):
-        """Each run goes on from what the kill before left, and writes as often as it can, until kills came while it did."""
+        """Each run continues from what the previous kill left, and writes as often as it can, until several kills hit a write."""
         moments = random.Random(7)
         file, samples = self.folder / "killed.exr", 0
         for kills in range(1, self.most + 1):
@@ -65,7 +65,7 @@ class Kills(RenderTest):
         self.assertTrue(half_written, "no kill came while a file was written")
         resumed = self.picture("resumed", f"--samples={samples + 1}", f"--resume={file}", size=self.size)
         whole = self.picture("whole", f"--samples={samples + 1}", size=self.size)
-        self.assert_close(resumed, whole, ulps=kills)  # a resume rounds the mean
+        self.assert_close(resumed, whole, ulps=kills)  # resuming rounds the mean
 
 
 class ManyKills_all(Kills):
@@ -73,7 +73,7 @@ class ManyKills_all(Kills):
 
 
 class FailingDevice(RenderTest):
-    """A layer between program and driver stands for the device."""
+    """A layer between program and driver simulates the device."""
 
     def refuse(self, fault, *arguments, words):
         code, out, err = self.run_program(
@@ -100,7 +100,7 @@ class FailingDevice(RenderTest):
             self.refuse({"FAULT_LOSE_DEVICE_AFTER": str(submissions)}, words="Lost")
 
     def test_a_lost_device_and_a_folder_that_vanished(self):
-        """The exit code says what happened first."""
+        """The exit code reports what happened first."""
         file = self.folder / "folder" / "a.exr"
         command = self.command("--samples=4000000000", "--save-every=0.01", "--output", file, size=(64, 64))
         with self.start(*command, environment={**FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "50"}) as process:
@@ -118,13 +118,13 @@ class FailingDevice(RenderTest):
             self.assert_refused(arguments, "out of device memory", *words, code=3, environment=fault)
 
     def test_what_does_not_fit_is_refused_before_anything_is_allocated(self):
-        """Without any memory: to allocate the scene would be another error."""
+        """Without any memory, allocating the scene would be a different error."""
         arguments = ["instances", "--width=16384", "--height=16384", "--backend=compute"]
         self.assert_refused(arguments, "too large for the device", "11264 MiB", code=3, environment={**FAULT_LAYER, "FAULT_MEMORY_MIB": "0"})
 
 
 class SmallDevice(RenderTest):
-    """A layer between program and driver tells of smaller limits than the driver has."""
+    """A layer between program and driver reports lower limits than the driver has."""
 
     def assert_same_picture(self, limits, *arguments, scene, size):
         whole = self.picture("whole", *arguments, scene=scene, size=size)
@@ -136,7 +136,7 @@ class SmallDevice(RenderTest):
         self.assert_refused(command, *words, code=3, environment={**FAULT_LAYER, **limits})
 
     def test_an_integrated_gpu_works_in_the_memory_of_the_cpu_too(self):
-        """The film alone is larger than what the device calls its own."""
+        """The film alone exceeds the device's own memory."""
         self.assert_same_picture({"FAULT_CARVE_OUT_MIB": "8"}, "--samples=1", scene="cornell_box", size=(768, 768))
 
     def test_memory_that_is_used_up_everywhere(self):
@@ -207,7 +207,7 @@ class Surroundings(RenderTest):
     bare = {"XDG_CACHE_HOME": None, "DISPLAY": None, "WAYLAND_DISPLAY": None, "XDG_RUNTIME_DIR": None}
 
     def test_a_home_that_cannot_be_written_or_is_missing(self):
-        """Nobody, root included, can write into /proc."""
+        """Nobody, not even root, can write to /proc."""
         for home in ("/proc", "/proc/nowhere", "quad.obj", "", None):
             with self.subTest(home=home):
                 self.render(*self.command("--samples=1", "--quiet", "--output=a.exr"), environment={**self.bare, "HOME": home})

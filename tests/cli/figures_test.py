@@ -1,4 +1,4 @@
-"""./lab figures: what it makes, that it goes on where it was, what it refuses."""
+"""./lab figures: what it makes, that it continues where it stopped, what it refuses."""
 
 import re
 import subprocess
@@ -8,7 +8,7 @@ from program import PROJECT, TOOLS, ProgramTest  # first: it finds the tools
 from docs.bug_blocks import GALLERY
 from docs.result_plots import PLOTS
 
-# The command with its renders in a folder of the test's own, and with one small figure of two renders.
+# The command with its renders in the test's own folder, and with a single small figure of two renders.
 COMMAND = """import sys
 sys.path.insert(0, sys.argv.pop(1))
 from pathlib import Path
@@ -61,7 +61,7 @@ class Figures_all(ProgramTest):
         names = {path.name for path in (PROJECT / "chapters").iterdir()} | {f"bugs_{name}" for name in GALLERY} | set(PLOTS)
         pictures = list((PROJECT / "docs/pictures").iterdir())
         for picture in pictures:
-            # Of a series the code has the name without its numbers.
+            # For a series, the code has the name without the numbers.
             self.assertTrue(picture.stem.rstrip("0123456789") in made or picture.stem in names, picture.name)
         self.assertLess(sum(picture.stat().st_size for picture in pictures), MOST_BYTES)
         pages = "".join(page.read_text(encoding="utf-8") for page in [*PROJECT.glob("*.md"), *PROJECT.glob("*/*.md"), *PROJECT.glob("*/*/*.md")])

@@ -1,4 +1,4 @@
-"""docs/first_steps.md: its shaders compile, and show what the page says; its pictures are what they render."""
+"""docs/first_steps.md: its shaders compile and show what the page says; its pictures are what they render."""
 
 import re
 from contextlib import nullcontext
@@ -19,15 +19,15 @@ WITH_AND_WITHOUT_SKY = ("quad.json", "cornell_box")
 SIZE = 32  # of the pictures here
 # In the Cornell box: the floor below the lamp, and most of the left wall.
 FLOOR, WALL = np.s_[24:28, 12:16], np.s_[16:24, 0:4]
-MIDDLE = np.s_[8:24, 8:24]  # of quad.json: nothing but its surface of albedo 1/2 below an even sky
-SEEDS, SURE = 8, 6  # renders for each estimate; standard deviations that make a difference more than noise
+MIDDLE = np.s_[8:24, 8:24]  # of quad.json: only its surface of albedo 1/2 under a uniform sky
+SEEDS, SURE = 8, 6  # renders per estimate; standard deviations that rule out noise
 
 
 class FirstSteps_all(RenderTest):
-    pictures = {}  # what has been rendered, for all tests
+    pictures = {}  # renders so far, shared by all tests
 
     def show(self, step, *arguments, scene="cornell_box"):
-        """What a step, or chapter 1 for None, renders: [height, width, 3]."""
+        """The render of a step, or of chapter 1 for None: [height, width, 3]."""
         key = (step, *arguments, scene)
         if key not in self.pictures:
             self.pictures[key] = self.rendered(step, *arguments, scene=scene)
@@ -41,15 +41,15 @@ class FirstSteps_all(RenderTest):
         return read_rgb(file)
 
     def runs(self, step, value, *arguments, scene="cornell_box"):
-        """A number of the picture in each of SEEDS renders. Steps with the same seed have the same random numbers."""
+        """A number from the picture in each of SEEDS renders. Steps with the same seed have the same random numbers."""
         return np.array([value(self.show(step, f"--seed={seed}", *arguments, scene=scene)) for seed in range(1, SEEDS + 1)])
 
     def deviation(self, values):
-        """Of their mean."""
+        """Standard deviation of their mean."""
         return np.std(values, ddof=1) / np.sqrt(SEEDS)
 
     def assert_more(self, more, less):
-        """By more than noise; both are runs()."""
+        """The first is larger by more than noise; both are runs()."""
         self.assertGreater(np.mean(more - less), SURE * self.deviation(more - less))
 
     def assert_same_mean(self, first, second):
@@ -77,7 +77,7 @@ class FirstSteps_all(RenderTest):
         x, y = np.meshgrid(place, -place)
         direction = np.stack([x, y, -np.ones_like(x)], axis=2)
         direction /= np.linalg.norm(direction, axis=2, keepdims=True)
-        # A sample lies anywhere in its pixel.
+        # A sample may lie anywhere in its pixel.
         self.assertLess(abs(self.show("2", "--samples=1") - (0.5 + 0.5 * direction)).max(), half / SIZE)
 
     def test_3_shows_the_normals(self):
@@ -161,18 +161,18 @@ class FirstSteps_all(RenderTest):
 
 
 class FirstStepsPictures_all(ProgramTest):
-    """Tiles of 256 samples are noisy and are rendered smaller here: means of large squares are compared. Other tiles are
-    rendered as they are. There the squares only have to hide what JPEG does to noise."""
+    """Tiles of 256 samples are noisy and rendered smaller here, so means of large squares are compared. Other tiles are rendered
+    at full size; there the squares only have to hide what JPEG does to noise."""
 
     def tiles(self, picture, count):
-        """Of a picture, as figure_plots.sheet() arranges them."""
+        """The tiles of a picture, as figure_plots.sheet() arranges them."""
         with Image.open(picture) as image:
             size = image.height - LABEL - GAP
             return [np.array(image.crop((x, LABEL, x + size, LABEL + size))) / 255
                     for x in range(GAP, GAP + count * (size + GAP), size + GAP)]
 
     def difference(self, first, second, squares):
-        """Of the means of squares x squares parts of two pictures, on average."""
+        """Mean difference of the means of squares x squares parts of two pictures."""
         first, second = (image.reshape(squares, len(image) // squares, squares, -1, 3).mean(axis=(1, 3)) for image in (first, second))
         return np.abs(first - second).mean()
 

@@ -1,4 +1,4 @@
-"""docs/grading: the scripts for autograders, in a folder that is laid out like theirs."""
+"""docs/grading: the autograder scripts, in a folder laid out like the autograder's."""
 
 import json
 import os
@@ -14,9 +14,9 @@ from project import CHAPTERS
 
 GRADING = PROJECT / "docs/grading"
 SUBMITTED = "direct_light.glsl"  # what chapter 3's exercise asks for
-# What Gradescope's documentation says of results.json: names and types of a test.
+# Gradescope's documentation of results.json: names and types in a test.
 TEST_KEYS = {"name": str, "score": (int, float), "max_score": (int, float), "status": str, "output": str, "visibility": str}
-# The check of a chapter that is built already.
+# The check of a chapter that is already built.
 LAB = """#!/bin/sh
 shift
 exec '{python}' '{tools}' check "$@" --runs 5 --samples 1 --backend compute
@@ -25,7 +25,7 @@ exec '{python}' '{tools}' check "$@" --runs 5 --samples 1 --backend compute
 
 class GradingTest(ProgramTest):
     def autograde(self, shader):
-        """What the autograder says of a submission."""
+        """The autograder's result for a submission."""
         for folder in ("source/lab", "submission"):
             (self.folder / folder).mkdir(parents=True, exist_ok=True)
         script = self.folder / "source/run_autograder"

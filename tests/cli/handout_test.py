@@ -1,4 +1,4 @@
-"""./lab handout: each chapter's tree works, fails its check before the solution is filled in, and gives nothing away."""
+"""./lab handout: each chapter's tree works, fails its check until the solution is filled in, and gives nothing away."""
 
 import json
 import os
@@ -12,7 +12,7 @@ from program import BINARIES, PROJECT, TOOLS, ProgramTest
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
 EXERCISES = {name: json.loads((PROJECT / "chapters" / name / "exercise.json").read_text(encoding="utf-8")) for name in CHAPTERS}
-# What other pages could show of chapter 3's solution, and what is for teachers alone.
+# What other pages could reveal of chapter 3's solution, and what is for teachers only.
 QUOTATION = """
 <!-- code: chapters/03_next_event_estimation/path_trace.glsl | V: a shadow ray | * y.emission; -->
 ```glsl
@@ -77,7 +77,7 @@ class HandoutTest(ProgramTest):
             self.assertIn("\n## Symbols\n", slides)
             self.assertIn("omega", slides)
             self.assertGreater(len(list((tree / "docs/diagrams").glob("*.svg"))), 5)
-            # From step 5 on the page shows what exercise 1 of chapter 1 asks for.
+            # From step 5 on, the page shows the solution of exercise 1 of chapter 1.
             self.assertEqual(re.findall(r"^## (\d)", steps, re.MULTILINE), list("1234" if number == 1 else "12345678"))
 
     def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
@@ -125,7 +125,7 @@ Another is code of chapter 7.
         includes = [(file, name) for file in shaders
                     for name in re.findall(r'^#include "(.*)"', file.read_text(encoding="utf-8"), re.MULTILINE)]
         self.assertGreater(len(includes), 50)
-        given = {"path_trace.glsl", "observed.glsl", "observed_sample_loop.glsl"}  # by the programs
+        given = {"path_trace.glsl", "observed.glsl", "observed_sample_loop.glsl"}  # supplied by the programs
         self.assertEqual([(file, name) for file, name in includes if name not in given and
                           not any((folder / name).exists() for folder in (file.parent, tree / "shaders", tree / "chapters", tree))], [])
 

@@ -1,4 +1,4 @@
-"""The pictures that the chapters write, as tests compare them."""
+"""The chapters' pictures, read for comparison in tests."""
 
 import tools_path  # noqa: F401  (first: it finds the others)
 import numpy as np
@@ -7,7 +7,7 @@ from references import exr
 
 
 class Exr(exr.Exr):
-    """An OpenEXR file. Our own reader knows nothing of the library that wrote it."""
+    """An OpenEXR file. Our reader is independent of the library that wrote it."""
 
     def __init__(self, path):
         super().__init__(path)
@@ -19,7 +19,7 @@ class Exr(exr.Exr):
         return self.attributes[name]
 
     def pixels(self):
-        """All numbers of R, then of G, then of B."""
+        """All values of R, then of G, then of B."""
         return self.channels["R"] + self.channels["G"] + self.channels["B"]
 
     def mean(self):
@@ -28,19 +28,19 @@ class Exr(exr.Exr):
 
 
 def read_png(path):
-    """Width, height and the pixels of a picture, as one list of tuples (r, g, b)."""
+    """Width, height and pixels of a picture, as one list of tuples (r, g, b)."""
     with Image.open(path) as image:
         return *image.size, list(image.getdata())
 
 
 def largest_ulp_difference(first, second):
-    """How many floats lie between the most different pair of two lists of floats."""
+    """The largest difference between two lists of floats, counted in ulps."""
     bits = [np.array(floats, np.float32).view(np.int32).astype(np.int64) for floats in (first, second)]
     ordered = [np.where(n >= 0, n, -(n & 0x7FFFFFFF)) for n in bits]
     return int(np.abs(ordered[0] - ordered[1]).max())
 
 
 def relative_mse(image, reference):
-    """The design's rel_mse without a correction for the reference's own variance."""
+    """The design's rel_mse, without correcting for the reference's own variance."""
     x, r = (np.array(file.pixels()) for file in (image, reference))
     return float(((x - r) ** 2 / (r**2 + 0.01 * r.mean() ** 2)).mean())

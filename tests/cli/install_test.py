@@ -1,4 +1,4 @@
-"""./lab install and the container: what they would install. Whether it works, tests/fresh_machine tries."""
+"""./lab install and the container: what they would install. tests/fresh_machine tries whether it works."""
 
 import re
 import subprocess
@@ -16,7 +16,7 @@ def lab(*arguments):
 
 class InstallTest(unittest.TestCase):
     def test_lists_every_package_that_the_commands_ask_for(self):
-        """All lists at the top of lab but those of ./lab fuzz and ./lab package."""
+        """All lists at the top of lab except those of ./lab fuzz and ./lab package."""
         lists = dict(re.findall(r"^packages_to_(\w+)='\n(.*?)'$", LAB, re.MULTILINE | re.DOTALL))
         del lists["fuzz"], lists["package"]
         self.assertEqual(set(lists), {"run", "script", "test", "report", "book"})
@@ -35,7 +35,7 @@ class InstallTest(unittest.TestCase):
 
 
 class BareMachineTest(ProgramTest):
-    """Without Python, and with apt that has nothing installed and installs nothing."""
+    """Without Python, and with an apt that has nothing installed and installs nothing."""
 
     def test_commands_in_python_install_it(self):
         commands = self.folder / "bin"

@@ -1,4 +1,4 @@
-"""A sample that is infinite or not a number: the program counts, shows and reports it."""
+"""An infinite or NaN sample: the program counts, displays and reports it."""
 
 import json
 import shutil
@@ -8,7 +8,7 @@ from program import CHAPTER, MERGE, PROJECT, RenderTest
 
 
 class Poison(RenderTest):
-    """A copy of the program's shaders in which one sample of one pixel is not a number."""
+    """A copy of the program's shaders in which one sample of one pixel is NaN."""
 
     width, height, samples = 24, 20, 9
     pixel, sample = 7 * 24 + 11, 4
@@ -27,7 +27,7 @@ class Poison(RenderTest):
         vec3 radiance = path_trace(ray, seed);
         finish_sample(is_poisoned ? vec3(0.5, uintBitsToFloat(0x7fc00000u), 0.5) : radiance);"""
         shader.write_text(text.replace(call, poisoned), encoding="utf-8")
-        # Programs find the shaders above themselves.
+        # Programs look for the shaders in parent folders.
         self.poisoned = tree / "bin" / CHAPTER.name
         self.poisoned.parent.mkdir()
         shutil.copy(CHAPTER, self.poisoned)

@@ -1,10 +1,10 @@
-"""How ./lab builds: in a project of its own, whose programs take no time to compile."""
+"""How ./lab builds: in a mock project, whose programs take no time to compile."""
 
 import shutil
 
 from program import PROJECT, ProgramTest
 
-# A build that takes a second and fails while another one is under way.
+# A build that takes a second and fails if another one is in progress.
 CMAKE = """cmake_minimum_required(VERSION 3.25)
 project(path_tracing_lab LANGUAGES NONE)
 add_custom_target(01_first COMMAND mkdir ${CMAKE_BINARY_DIR}/busy && sleep 1

@@ -15,9 +15,9 @@ SWIFTSHADER = {"VK_DRIVER_FILES": DRIVER, "VK_ICD_FILENAMES": DRIVER}
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
 SCENES = sorted(path.stem for path in (PROJECT / "assets/scenes").glob("*.json"))
 
-# A path that takes another way nearly always differs by more than a tenth. Few may; most of them meet glass or textures.
+# A path that goes another way nearly always differs by more than a tenth. Few may; most of them hit glass or textures.
 OTHER_WAY, MOST_OTHER_WAYS = 0.1, 0.005
-# What the means of all others may differ by: as much as its sines and cosines are wrong.
+# Allowed difference of the means of all others: the error of its sines and cosines.
 SINE_ERROR = 2e-4
 
 
@@ -28,7 +28,7 @@ def setUpModule():
 
 class SwiftShader_all(RenderTest):
     def paths(self, device, chapter, scene, environment=None):
-        """The radiance of a path in each pixel."""
+        """The radiance of one path in each pixel."""
         program = BINARIES / chapter
         picture = self.picture(device, "--samples=1", f"--device={device}", scene=scene, size=(96, 96), program=program,
                                environment=environment)
@@ -44,12 +44,12 @@ class SwiftShader_all(RenderTest):
                 differences = actual - expected
                 limits = OTHER_WAY * np.maximum(expected, actual) + 1e-6 * expected.mean()
                 self.assertLess(np.any(abs(differences) > limits, axis=0).mean(), MOST_OTHER_WAYS)
-                # A path that takes another way is as likely to gain as to lose: five standard deviations of the sum.
+                # A path that goes another way is as likely to gain as to lose: allow five standard deviations of the sum.
                 deviation = np.sqrt((differences.sum(axis=0) ** 2).sum())
                 self.assertLess(abs(differences.sum()), 5 * deviation + SINE_ERROR * expected.sum())
 
     def test_shaders_and_hard_cases_on_it(self):
-        """Those of its backend: others are skipped. What takes long is left to the first driver."""
+        """Only its backend's tests: others are skipped. Slow ones are left to the first driver."""
         for program, least in (("shaders_tests", 100), ("parity_tests", 10), ("hard_cases_tests", 50)):
             with self.subTest(program=program):
                 code, out, _ = self.run_program("--gtest_filter=-*_all:*_all/*", program=BINARIES / program,

@@ -1,4 +1,4 @@
-"""./lab package linux: the archive runs in another folder, without a compiler. windows_test tries that for Windows."""
+"""./lab package linux: the archive runs in another folder, without a compiler. windows_test does the same for Windows."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Runs the programs under test in a folder of their own."""
+"""Runs the programs under test in their own folder."""
 
 import json
 import os
@@ -22,10 +22,10 @@ BINARIES = Path(os.environ.get("LAB_BINARIES", PROJECT / "build" / "bin"))
 CHAPTER = BINARIES / "01_uniform_sampling"
 MERGE = BINARIES / "merge_images"
 FAULT_LAYER = {"VK_LAYER_PATH": str(BINARIES.parent / "layers"), "VK_INSTANCE_LAYERS": "VK_LAYER_LAB_fault"}
-# Mesa's driver for CPUs optimises a shader for longer than a tiny picture takes to render.
+# Mesa's driver for CPUs takes longer to optimise a shader than to render a tiny picture.
 UNOPTIMISED = {"GALLIVM_PERF": "nopt"}
 
-# A quad that faces +Z under a sky, small enough to be rendered in no time.
+# A quad that faces +Z under a sky, small enough to render instantly.
 QUAD_OBJ = """mtllib quad.mtl
 v -1 -1 0
 v 1 -1 0
@@ -42,17 +42,17 @@ QUAD_JSON = """{
 }
 """
 
-# What sums in another order may differ by.
+# Allowed difference of sums in a different order.
 MERGE_ULPS = 2
 
-# Bad input must neither hang nor allocate wildly.
+# Bad input must neither hang nor allocate excessively.
 TIMEOUT_SECONDS = 120
 BAD_INPUT_SECONDS = 20
 BAD_INPUT_MEMORY = 8 << 30
 
 
 def open_terminal():
-    """A terminal for a program: our end and the program's. Containers and chroots may have none to give."""
+    """A terminal for a program: our end and the program's. Containers and chroots may not provide any."""
     try:
         return pty.openpty()
     except OSError as error:
@@ -60,7 +60,7 @@ def open_terminal():
 
 
 class ProgramTest(unittest.TestCase):
-    """Each test has an empty folder as working directory, with the scene quad.json in it."""
+    """Each test has an empty working directory that contains the scene quad.json."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -71,27 +71,27 @@ class ProgramTest(unittest.TestCase):
         self.write("quad.json", QUAD_JSON)
 
     def write(self, name, contents):
-        """Writes a file of the test's folder; returns its path."""
+        """Writes a file in the test's folder; returns its path."""
         path = self.folder / name
         path.parent.mkdir(exist_ok=True)
         path.write_bytes(contents if isinstance(contents, bytes) else contents.encode())
         return path
 
     def record(self, name, value):
-        """Makes what a test has measured part of docs/numerics.md: a name in snake_case and a text with its unit."""
+        """Adds a test's measurement to docs/numerics.md: a name in snake_case and a text with its unit."""
         if file := os.environ.get("LAB_TEST_RECORD"):
             with open(file, "a", encoding="utf-8") as stream:
                 stream.write(json.dumps({name: value}) + "\n")
 
     def start(self, *arguments, environment=None, prepare=None, program=CHAPTER):
-        """Starts a program; variables of the environment that are None are taken away."""
+        """Starts a program; environment variables that are None are removed."""
         variables = {**os.environ, **(environment or {})}
         variables = {name: value for name, value in variables.items() if value is not None}
         return subprocess.Popen([program, *map(str, arguments)], cwd=self.folder, env=variables, stdin=subprocess.DEVNULL,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, restore_signals=False, text=True)
 
     def run_program(self, *arguments, timeout=TIMEOUT_SECONDS, **options):
-        """Runs to the end; returns exit code, standard output, standard error."""
+        """Runs a program to the end; returns exit code, standard output, standard error."""
         with self.start(*arguments, **options) as process:
             try:
                 out, err = process.communicate(timeout=timeout)
@@ -113,7 +113,7 @@ class ProgramTest(unittest.TestCase):
         return self.run_program("-B", TOOLS, *arguments, program=sys.executable, **options)
 
     def run_here(self, main, *arguments):
-        """Runs the main() of a command in this process; returns the same as run_program. Its errors reach the test."""
+        """Runs a command's main() in this process; returns the same as run_program. Its exceptions reach the test."""
         out, err, code = StringIO(), StringIO(), 0
         with mock.patch("sys.argv", ["lab", *map(str, arguments)]), redirect_stdout(out), redirect_stderr(err):
             try:
@@ -126,7 +126,7 @@ class ProgramTest(unittest.TestCase):
         self.assert_refused(["-B", TOOLS, *arguments], *words, program=sys.executable, **options)
 
     def assert_refused(self, arguments, *words, code=1, environment=None, prepare=None, program=CHAPTER):
-        """The command ends soon with this exit code and one line that has all the words, and writes no picture."""
+        """The command ends soon with this exit code and a single line that contains all the words, and writes no picture."""
 
         def limit_memory():
             resource.setrlimit(resource.RLIMIT_AS, (BAD_INPUT_MEMORY, BAD_INPUT_MEMORY))
@@ -166,7 +166,7 @@ class RenderTest(ProgramTest):
         return Exr(file)
 
     def command(self, *arguments, scene="cornell_box", size=(24, 20)):
-        """The arguments of a render of this size."""
+        """The arguments for a render of this size."""
         return [scene, f"--width={size[0]}", f"--height={size[1]}", "--backend=compute", *arguments]
 
     def assert_close(self, first, second, ulps=MERGE_ULPS):

@@ -1,4 +1,4 @@
-"""What makes a release: one version, and workflows whose files are valid and whose commands exist."""
+"""What makes a release: a single version, and workflows whose files are valid and whose commands exist."""
 
 import json
 import re
@@ -15,10 +15,10 @@ from package import make
 from project import CHAPTERS
 
 WORKFLOWS = sorted((PROJECT / ".github/workflows").glob("*.yml"))
-# https://docs.github.com/actions/reference/workflow-syntax: what our files use of it.
+# https://docs.github.com/actions/reference/workflow-syntax: the part that our files use.
 STEP = {"run", "uses", "with", "env", "id", "name"}
 JOB = {"runs-on", "container", "timeout-minutes", "steps", "strategy", "environment", "needs", "permissions"}
-WORKFLOW = {"name", True, "jobs", "permissions", "concurrency"}  # YAML reads "on" as true
+WORKFLOW = {"name", True, "jobs", "permissions", "concurrency"}  # YAML parses "on" as true
 
 
 class VersionTest(unittest.TestCase):

@@ -1,4 +1,4 @@
-"""Pictures: the same command gives the same bits, parts add up to the whole, and every kind of file is right."""
+"""Pictures: the same command gives the same bits, parts add up to the whole, and every file format is correct."""
 
 import re
 
@@ -35,7 +35,7 @@ class Determinism(RenderTest):
         self.assertLess(max(means) - min(means), 0.2 * means[0])
 
     def test_more_samples_begin_with_the_same_ones(self):
-        """Sample i depends on pixel, seed and i alone: 3 samples and the 1 that follows are the first 4."""
+        """Sample i depends only on pixel, seed and i: 3 samples plus the following one are the first 4."""
         three, last, four = (
             self.picture("a", "--samples=3"),
             self.picture("b", "--samples=1", "--first-sample=3"),
@@ -75,7 +75,7 @@ class SampleRanges(RenderTest):
         self.assert_same_error(whole, merged)
 
     def assert_same_error(self, whole, merged):
-        """A part that begins at an odd sample of the whole has the halves the other way round."""
+        """If a part starts at an odd sample of the whole, its halves are swapped."""
         for name in ("difference.R", "difference.G", "difference.B"):
             for a, b in zip(whole.channels[name], merged.channels[name]):
                 self.assertAlmostEqual(a, b, delta=1e-5 * max(whole.channels["G"]))
@@ -125,11 +125,11 @@ class Sky(RenderTest):
         picture = self.picture("lit", *options, *self.away, "--background=0.25,0.5,3")
         for name, radiance in zip("RGB", (0.25, 0.5, 3)):
             self.assertEqual(set(picture.channels[name]), {radiance})
-        # It lights surfaces as well.
+        # It also lights surfaces.
         self.assertGreater(self.picture("box", *options, "--background=1,1,1").mean(), self.picture("no_sky", *options).mean())
 
     def test_a_bare_mesh_is_a_scene(self):
-        """Its bounding box sets the camera."""
+        """Its bounding box determines the camera."""
         dark = self.picture("dark", "--samples=4", "--background=0,0,0", scene="quad.obj")
         self.assertEqual(max(dark.pixels()), 0)
         picture = self.picture("lit", "--samples=64", "--background=1,1,1", scene="quad.obj")
@@ -165,7 +165,7 @@ class Views(RenderTest):
             return len(set(zip(*(picture.channels[name] for name in "RGB"))))
 
         self.assertGreater(colours("triangles"), 15)
-        self.assertEqual(colours("instances"), 2)  # the box, and what is beside it
+        self.assertEqual(colours("instances"), 2)  # the box, and what surrounds it
 
     def test_traversal_steps(self):
         picture = self.picture("view", "--samples=1", "--view=bvh-steps", scene="torus")

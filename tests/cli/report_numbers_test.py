@@ -1,4 +1,4 @@
-"""The numbers of ./lab report, from records whose truth is known."""
+"""The numbers of ./lab report, from records whose true values are known."""
 
 import math
 import random
@@ -16,8 +16,8 @@ REFERENCE = {"mean": [0.5, 0.25, 0.125], "variance": [1e-10] * 3, "freedom": 63}
 
 def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent=-1.0, bias=0.0, deviation=0.2,
                   evenness=0.5):
-    """Rows at 1, 2, 4, …: error × samples^exponent with noise, and image means with a deviation for one sample, which falls with
-    samples^-evenness."""
+    """Rows at 1, 2, 4, …: error × samples^exponent with noise, and image means with the given deviation for one sample, which
+    falls like samples^-evenness."""
     dice = random.Random(dice_seed)
     rows, done, sums = [], 0, [0.0] * 3
     while done < samples:
@@ -71,16 +71,16 @@ class ReportNumbersTest(unittest.TestCase):
         scene = summary(synthetic_case("a", error=0.8, seconds=0.01, noise=0.05),
                         synthetic_case("Mitsuba", error=0.8, seconds=0.03, noise=0.05, first_dice=100))
         self.assert_covers(scene["gains"][0]["gain"], 3)
-        self.assertEqual([gain["case"] for gain in scene["gains"]], ["a"])  # none of the peer over itself
+        self.assertEqual([gain["case"] for gain in scene["gains"]], ["a"])  # no gain of the peer over itself
         self.assert_covers(scene["cases"][0]["seconds_to_target"], 0.3 + 0.8 / 1e-4 * 0.01)
         self.assertAlmostEqual(scene["cases"][0]["start_up_seconds"][0], 0.3)
 
     def assert_share(self, found, trials, probability):
-        """As many as a probability says, up to chance."""
+        """As many as the probability implies, up to chance."""
         self.assertLess(abs(found / trials - probability), 4 * math.sqrt(probability * (1 - probability) / trials))
 
     def covered(self, ratio, shared, trials=2000):
-        """How many intervals of a quotient hold the truth, 2, where the two series have so much of their noise in common."""
+        """How many intervals of a quotient contain the true value, 2, if the two series share this much of their noise."""
         found = 0
         for trial in range(trials):
             dice = np.random.default_rng(trial)
@@ -100,14 +100,14 @@ class ReportNumbersTest(unittest.TestCase):
             self.assert_share(*self.covered(numbers.paired_ratio, shared), 0.95)
 
     def test_efficiencies_pair_the_runs_with_the_same_seed(self):
-        """Of equal runs but for a factor the quotient is known exactly, however much they scatter."""
+        """For runs that are equal up to a factor the quotient is known exactly, however much they vary."""
         first, second = (synthetic_case(name, error=error, noise=0.5) for name, error in (("a", 4.0), ("b", 2.0)))
         second["runs"].reverse()
         for end in summary(first, second)["cases"][1]["efficiency"]:
             self.assertAlmostEqual(end, 2.0)
 
     def test_intervals_hold_the_noise_of_the_reference(self):
-        """Runs that all miss the truth alike, by what the reference says that it may add."""
+        """Runs that all miss the true value alike, by as much as the reference says that it may contribute."""
         trials, found = 400, {"error": 0, "efficiency": 0, "gain": 0, "slope": 0}
         for trial in range(trials):
             shift = 0.001 * random.Random(-trial).gauss(0, 1)
@@ -127,12 +127,12 @@ class ReportNumbersTest(unittest.TestCase):
             self.assert_share(found[name], trials, 0.95)
 
     def test_the_noise_of_the_reference_is_what_it_says(self):
-        """Many references of the same scene: how much rel_mse of one image scatters."""
+        """Many references of the same scene: how much rel_mse of one image varies."""
         dice, batches = np.random.default_rng(1), 64
         truth = dice.uniform(0.1, 1, (16, 16, 1)) * np.ones(3)
         results, stated = [], []
         for _ in range(1000):
-            samples = truth + 0.2 * truth * dice.normal(size=(batches, 16, 16, 1))  # channels go together
+            samples = truth + 0.2 * truth * dice.normal(size=(batches, 16, 16, 1))  # channels are correlated
             reference = Reference(samples.mean(axis=0), samples.var(axis=0, ddof=1) / batches, {"batches": str(batches)})
             weights = 1 / (truth**2 + 0.01 * truth.mean() ** 2)
             results.append((weights * ((truth - reference.mean) ** 2 - reference.variance)).mean())
@@ -147,7 +147,7 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertAlmostEqual(branching["paths_per_second"], 4 * plain["paths_per_second"])
         self.assertAlmostEqual(large["samples_per_second"], 64 * plain["samples_per_second"])
         self.assertAlmostEqual(plain["error_of_one_sample"], 1)
-        self.assertAlmostEqual(large["error_of_one_sample"], 64)  # 64 samples in a pixel of the reference have that of one here
+        self.assertAlmostEqual(large["error_of_one_sample"], 64)  # 64 samples in a pixel of the reference err as one here
 
     def test_a_planted_bias_is_found_and_stated(self):
         for channel in summary(synthetic_case("a", bias=-0.14))["cases"][0]["bias"]:
@@ -163,7 +163,7 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertLessEqual(alarms, 5)  # 1 % is expected
 
     def test_points_that_are_spread_evenly_have_the_error_of_their_scrambles(self):
-        """How far the means of reports scatter, and what each of them says of it."""
+        """How much the means of reports vary, and the error that each of them states."""
         for program, evenness in (("", 0.5), (chapter_named("low_discrepancy_points"), 0.75)):
             with self.subTest(evenness=evenness):
                 values, variances = [], []
@@ -177,15 +177,15 @@ class ReportNumbersTest(unittest.TestCase):
                 self.assertAlmostEqual(np.mean(variances) / np.var(values), 1, delta=0.2)
 
     def share_called_biased(self, runs, bias, part, level, trials=40000):
-        """Of many tests at once, each of a render of its own and a reference of its own with `part` of the render's noise; what is
-        said to be found, too, as standard errors of the mean."""
+        """Share of many tests that find a bias, each on its own render and its own reference with `part` of the render's noise;
+        also the detectable bias as stated, in standard errors of the mean."""
         dice, deviation, freedom = np.random.default_rng(runs), 0.1, 63
         error = deviation / math.sqrt(runs)
         reference = {"mean": 1 + part * error * dice.normal(size=trials), "freedom": freedom,
                      "variance": (part * error) ** 2 * dice.chisquare(freedom, trials) / freedom}
         means = 1 + bias * error + deviation * dice.normal(size=(runs, trials))
         tests = numbers.biases([{"rows": [{"samples": 1, "mean": mean}]} for mean in means], reference, numbers.FALSE_ALARMS / level)
-        # Noise as it really is: means of two values that lie as far apart as it says.
+        # Noise of exactly the stated size: means of two values at the corresponding distance.
         known = [{"rows": [{"samples": 1, "mean": [1 + deviation * math.sqrt((runs - 1) / runs) * (-1) ** run]}]} for run in range(runs)]
         sure = {"mean": [1.0], "variance": [(part * error) ** 2], "freedom": freedom}
         stated = numbers.biases(known, sure, numbers.FALSE_ALARMS / level)[0]["detectable"] / error

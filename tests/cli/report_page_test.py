@@ -1,4 +1,4 @@
-"""./lab report from the command to the page: what it writes, how it goes on, what it refuses."""
+"""./lab report from command to page: what it writes, how it continues, what it refuses."""
 
 import json
 import re
@@ -11,7 +11,7 @@ from project import CHAPTERS
 from report import measurement, plots
 
 REFERENCE = PROJECT / "assets/references/cornell_box_1.exr"
-# The command, with a folder of the test's own where references are looked for.
+# The command, with the test's own folder for references.
 COMMAND = """import sys
 sys.path.insert(0, sys.argv.pop(1))
 from pathlib import Path
@@ -20,19 +20,19 @@ from references import images
 images.FOLDERS.append(Path(sys.argv.pop(1)))
 from report import make
 project.run_tool(make)"""
-# --record with the last two cases alone, which have no reference.
+# --record with only the last two cases, which have no reference.
 RECORD = """import sys
 sys.path.insert(0, sys.argv.pop(1))
 import project
 from report import make, studies
 make.study_cases = lambda: [case for case in studies.study_cases() if case["case"].startswith("splitting factor") and case["scene"] == "cornell_box_6"]
 project.run_tool(make)"""
-# A chapter that loses its device at seed 2 as long as the file `broken` is there.
+# A chapter that loses its device at seed 2 as long as the file `broken` exists.
 LOSES_DEVICE = """#!/bin/sh
 case " $* " in *" --seed 2 "*) if [ -e '{broken}' ]; then echo 'error: the device is gone' >&2; exit 3; fi ;; esac
 exec '{program}' "$@"
 """
-# Stands for Mitsuba on a CPU: takes its arguments, and renders by chapter 3.
+# Replaces Mitsuba on a CPU: takes its arguments, and renders by chapter 3.
 MITSUBA = """#!{python}
 import subprocess, sys
 variant, scene, arguments = sys.argv[4], sys.argv[5], sys.argv[6:]
@@ -49,7 +49,7 @@ SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
 
 
 class Reports:
-    """How tests make a report."""
+    """Helpers that make a report."""
 
     def start_report(self, *arguments, environment=None):
         return self.start("-B", "-c", COMMAND, TOOLS, self.folder, *arguments, program=sys.executable, environment=environment)
@@ -74,13 +74,13 @@ class Reports:
 
 class ReportCommandTest(Reports, ProgramTest):
     def changed_reference(self, name, old, new):
-        """A copy of a reference in which bytes of the same number are replaced."""
+        """A copy of a reference in which bytes are replaced by equally many others."""
         contents = REFERENCE.read_bytes()
         self.assertEqual(contents.count(old), 1)
         self.write(name, contents.replace(old, new))
 
     def test_device_loss_keeps_what_was_measured_and_the_page_is_whole(self):
-        """Two chapters, of which the second loses the device in the middle; then the command goes on."""
+        """Two chapters, the second of which loses the device halfway; then the command continues."""
         arguments = ["cornell_box_1", "1", "3", "--repetitions=2", *SMALL]
         binaries = self.folder / "binaries"
         binaries.mkdir()
@@ -215,7 +215,7 @@ class LongReports_all(Reports, ProgramTest):
         self.assertEqual(len(list((self.folder / "report/pictures").iterdir())), 2 * 5)
 
     def test_large_pictures_are_compared_with_small_references(self):
-        """As far from the reference as small ones with as many samples in all."""
+        """As far from the reference as small ones with the same total number of samples."""
         pairs, settings, found = [(PROJECT / "assets/scenes/cornell_box.json", REFERENCE)], {"backend": "compute", "device": None}, []
         for is_large, samples in ((False, 64), (True, 1)):
             (case,) = measurement.report_cases(pairs, [3], is_large=is_large)

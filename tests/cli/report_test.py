@@ -40,12 +40,12 @@ class Report(RenderTest):
             numbers = [row[name] for row in report["rows"]]
             self.assertEqual(numbers, sorted(numbers))
             self.assertGreater(numbers[0], 0)
-        # At least one ray a path, and at most one more than the default maximal path length 8.
+        # At least one ray per path, and at most one more than the default maximal path length 8.
         paths = 24 * 20 * 24
         self.assertTrue(paths <= report["rows"][-1]["rays"] <= 9 * paths)
 
     def test_seconds_do_not_contain_the_work_of_measuring(self):
-        """There is little to render and much to measure, above all for a device that renders fast."""
+        """There is little to render and much to measure, especially on a device that renders fast."""
         arguments, size = ["--samples=4", "--max-path-length=0"], (1000, 1000)
         plain = float(self.picture("plain", *arguments, size=size).text("seconds"))
         measured = float(self.picture("measured", *arguments, "--report=report.json", size=size).text("seconds"))
@@ -83,36 +83,36 @@ class Report(RenderTest):
         self.assertEqual(f"{100 * row['rel_rmse']:.3g}", re.search(r"^error +([\d.]+) %", out, re.MULTILINE)[1])
         deviation = float(re.search(r"^mean radiance .* ± ([\d.e-]+) ", out, re.MULTILINE)[1])
         self.assertAlmostEqual(deviation / math.sqrt(row["mse"] / (24 * 20)), 1, delta=0.01)
-        # Without a report, too, and neither slows down who does not want to know.
+        # The same without a report; and neither slows down users who do not ask for it.
         again = self.render(*self.command("--samples=32"), "--output=b.exr")
         lines = [line for line in out.splitlines() if line.startswith(("mean", "error"))]
         self.assertEqual([line for line in again.splitlines() if line.startswith(("mean", "error"))], lines)
-        # An error against a reference holds a bias, too, and is no standard error.
+        # An error against a reference includes bias, so it is not a standard error.
         again = self.render(*self.command("--samples=32"), "--output=b.exr", "--reference=a.exr")
         self.assertNotRegex(again, "±")
 
     def test_every_picture_tells_its_error(self):
-        """At any number of samples, from any first sample, resumed, and with points that depend on each other."""
+        """With any number of samples, from any first sample, when resumed, and with points that are not independent."""
         for chapter in ("05_russian_roulette", "09_low_discrepancy_points"):
             program = BINARIES / chapter
             for name, arguments in (("a", ["--samples=100"]), ("b", ["--samples=201", "--resume=a.exr"]), ("c", ["--samples=7", "--first-sample=3"])):
                 out = self.render(*self.command(*arguments), f"--output={name}.exr", program=program)
                 self.assertRegex(out, "(?m)^error .*estimated", f"{chapter}, {arguments}")
-                if "--samples=100" in arguments:  # with an even number the file holds the standard errors
+                if "--samples=100" in arguments:  # for an even number the file contains the standard errors
                     deviation = float(re.search(r"± ([\d.e-]+) ", out)[1])
                     channels = Exr(self.folder / "a.exr").channels
                     squares = [x * x for name in "RGB" for x in channels[f"difference.{name}"]]
                     self.assertAlmostEqual(math.sqrt(statistics.mean(squares) / (24 * 20)) / deviation, 1, delta=0.06)
 
     def test_the_mean_is_as_exact_as_its_error_says(self):
-        """Over many renders of different seeds, each with the ± that it prints."""
+        """Over many renders with different seeds, each with the ± that it prints."""
         means, variances = [], []
         for seed in range(24):
             out = self.render(*self.command("--samples=16", f"--seed={seed}"), "--output=a.exr")
             *mean, deviation = map(float, re.search(r"^mean radiance +(\S+) (\S+) (\S+) ± (\S+)", out, re.MULTILINE).groups())
             means.append(mean)
             variances.append(deviation**2)
-        spread = sum(statistics.variance(channel) for channel in zip(*means)) / 3  # channels as one: their root mean square
+        spread = sum(statistics.variance(channel) for channel in zip(*means)) / 3  # all channels together: their root mean square
         self.assertTrue(0.5 < spread / statistics.mean(variances) < 2, f"{spread}, {statistics.mean(variances)}")
 
     def test_a_reference_of_another_size_is_refused(self):

@@ -1,4 +1,4 @@
-"""What the pages get from records and sources: tables that compare with peers, whose truth is known, and blocks of code."""
+"""What pages get from records and sources: tables that compare with peers, with known true values, and blocks of code."""
 
 import re
 import tempfile
@@ -17,7 +17,7 @@ SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CU
 
 
 def scene_of_peers(name, width, speeds):
-    """A scene of a report, with exact gains. Where a case has no speed, its error was lost in noise."""
+    """A scene of a report, with exact gains. If a case has no speed, its error was lost in noise."""
     gains = [{"case": case, "peer": peer, "gain": [speeds[case] / speeds[peer] if speeds[case] else None, None, None]}
              for case in speeds for peer in speeds if peer != case and peer.startswith("Mitsuba")]
     cases = [{"case": case, "is_peer": case.startswith("Mitsuba"), "backend": "compute", "samples_per_second": 2e9,
@@ -87,7 +87,7 @@ class NoRayTracingCoresTest(unittest.TestCase):
     def test_is_said_wherever_times_on_such_a_device_are_compared(self):
         for page in tables.PAGES:
             text = page.read_text(encoding="utf-8")
-            if "NVIDIA H200" in text and page.name != "numerics.md":  # which has errors, no times
+            if "NVIDIA H200" in text and page.name != "numerics.md":  # which lists errors, not times
                 self.assertTrue(tables.NO_RAY_TRACING_CORES in text, page)
 
     def test_plots_say_it(self):
@@ -97,7 +97,7 @@ class NoRayTracingCoresTest(unittest.TestCase):
 
 
 def luminance(colour):
-    """Of #rrggbb, relative to white (Web Content Accessibility Guidelines 2.1)."""
+    """Relative luminance of #rrggbb (Web Content Accessibility Guidelines 2.1)."""
     channels = [int(colour[i:i + 2], 16) / 255 for i in (1, 3, 5)]
     return sum(weight * (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4) for weight, c in zip((0.2126, 0.7152, 0.0722), channels))
 

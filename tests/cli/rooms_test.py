@@ -1,4 +1,4 @@
-"""The rooms in common/README.md: no source includes a room above its own, and the picture shows what is included."""
+"""The rooms in common/README.md: no source includes a room above its own, and the picture shows all includes."""
 
 import tempfile
 import unittest
@@ -17,7 +17,7 @@ FILES = {
 
 class RoomsTest(unittest.TestCase):
     def upward(self, changed):
-        """What goes upwards in a small tree with these files."""
+        """Upward includes in a small tree with these files."""
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name).resolve()
             for file, text in {**FILES, **changed}.items():

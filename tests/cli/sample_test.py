@@ -1,4 +1,4 @@
-"""./lab sample: points of the shaders' samplers, their density and what they integrate."""
+"""./lab sample: points from the shaders' samplers, their density and the integrals they estimate."""
 
 import re
 import shutil
@@ -14,12 +14,12 @@ NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-
 
 class SampleTest(ProgramTest):
     def text(self, *arguments, **options):
-        """What is printed; nothing is drawn."""
+        """The printed text; nothing is drawn."""
         with mock.patch.multiple(sample_plots, save_overview=mock.DEFAULT, save_point_sets=mock.DEFAULT):
             return self.sample(*arguments, **options)
 
     def sample(self, *arguments, binaries=BINARIES):
-        """Standard output of the command, which runs in this process. Its picture is picture.png."""
+        """Standard output of the command, run in this process. Its picture is picture.png."""
         with mock.patch.object(sample, "PROGRAM", binaries / "sample_points"), mock.patch.dict("os.environ", UNOPTIMISED):
             code, out, err = self.run_here(sample.main, *arguments, f"--output={self.folder / 'picture.png'}")
         self.assertEqual(code, 0, err)
@@ -50,14 +50,14 @@ class SampleTest(ProgramTest):
         self.assertRegex(out, r"(?m)^ +4096 +3\.141593 +± 0\.000000 +[+-]0\.000000$")
 
     def test_a_grid_is_worse_in_more_dimensions(self):
-        """Corners of a grid err by about 1/(2n) with n points along each axis, so that 2^12 of them err by 2^(-12/k) / 2."""
+        """Corners of a grid err by about 1/(2n) with n points along each axis, so 2^12 of them err by 2^(-12/k) / 2."""
         for dimensions in (2, 4):
             out = self.text("kd", f"--dimensions={dimensions}")
             error = float(re.findall(r"^ +4096 +([\d.]+) +[\d.]+$", out, re.MULTILINE)[0])
             self.assertAlmostEqual(error * 2 ** (1 + 12 / dimensions), 1, delta=0.1)
 
     def slopes(self, **options):
-        """Of the two integrals: slopes with points of a grid, random ones, Sobol's and scrambled ones."""
+        """For the two integrals: slopes with grid points, random ones, Sobol's and scrambled ones."""
         out = self.text("points", **options)
         return [list(map(float, line.split()[1:])) for line in out.splitlines() if line.split()[:1] == ["slope"]]
 
@@ -69,12 +69,12 @@ class SampleTest(ProgramTest):
         self.assertLess(smooth[3], -1.3)
 
     def test_a_mistake_in_the_points_shows(self):
-        """With two equal numbers in a pair it is another integral that is found."""
+        """If both numbers of a pair are equal, the estimate converges to a different integral."""
         _, smooth = self.slopes(binaries=self.tree_with("one-dimension-for-both"))
         self.assertGreater(smooth[3], -0.5)
 
     def tree_with(self, name):
-        """Binaries that read shaders with a mistake of mistakes.json in them."""
+        """Binaries that read shaders with a mistake from mistakes.json."""
         tree = self.folder / "tree"
         mistake.make(mistake.load()[name], tree)
         for name in ("tools/lesson", "bin"):

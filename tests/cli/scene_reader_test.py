@@ -1,4 +1,4 @@
-"""The reader of scenes in Python, by which other renderers get them: what models from elsewhere lack, it draws as the chapters do."""
+"""The Python reader that passes scenes to other renderers: it draws what models from elsewhere lack as the chapters do."""
 
 import contextlib
 import io
@@ -9,7 +9,7 @@ from references.scenes import read_scene
 
 class SceneReaderTest(ProgramTest):
     def read(self, obj):
-        """Surfaces of a mesh, and what is said of it."""
+        """Surfaces of a mesh, and messages about it."""
         said = io.StringIO()
         with contextlib.redirect_stderr(said):
             surfaces = read_scene(self.write("model.obj", obj)).surfaces
@@ -28,7 +28,7 @@ class SceneReaderTest(ProgramTest):
         self.assertEqual((surface.material.diffuse.tolist(), said), ([0.25] * 3, ""))
 
     def test_a_material_file_that_is_named_twice_is_read_once(self):
-        """As the chapters do: their hash of a scene is that of all that they read."""
+        """As in the chapters: their hash of a scene covers everything they read."""
         model = self.write("model.obj", "mtllib quad.mtl\n" + QUAD_OBJ)
         value = 0xCBF29CE484222325
         for byte in model.read_bytes() + (self.folder / "quad.mtl").read_bytes():

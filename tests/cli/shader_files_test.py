@@ -1,4 +1,4 @@
-"""Shaders as people hand them in: written on other systems, and with includes that lead somewhere else."""
+"""Shaders as people hand them in: written on other systems, and with includes that lead elsewhere."""
 
 import os
 import re
@@ -10,7 +10,7 @@ from image_files import Exr
 
 CHAPTER = "01_uniform_sampling"
 GREY = "vec3 path_trace(Ray ray, inout uvec2 seed) { return get_grey(); }\n"
-# What stands in chapter 1 -> what is written instead, lines further down where it is found, and what is said.
+# Text of chapter 1 -> its replacement, how many lines further down the error is reported, and the message.
 MISTAKES = {
     "vec3 path_trace(": ("vec3 pathtrace(", None, "'path_trace'", r"the shader has to define vec3 path_trace\(Ray"),
     "vec3 throughput = vec3(1.0);": ("vec3 throughput = vec3(1.0)", 1, "'' : +syntax error", "is a semicolon missing"),
@@ -24,7 +24,7 @@ HELPER = "vec3 get_grey() { return vec3(0.5); }\n"
 
 
 class ShaderFiles(ProgramTest):
-    """Chapter 1 with another shader, in a tree of its own as ./lab check makes it."""
+    """Chapter 1 with another shader, in its own tree, like those that ./lab check makes."""
 
     def setUp(self):
         super().setUp()
@@ -32,7 +32,7 @@ class ShaderFiles(ProgramTest):
         self.program, self.shader = make_tree(CHAPTER, file, self.folder / "tree")
 
     def beside(self, name, contents):
-        """Writes a file beside the shader."""
+        """Writes a file next to the shader."""
         return self.write(Path("tree/chapters") / CHAPTER / name, contents)
 
     def assert_renders(self, shader):
@@ -60,7 +60,7 @@ class ShaderFiles(ProgramTest):
                 self.assert_shader_refused(text, r"path_trace\.glsl:2: a character that is not ASCII, ")
 
     def test_the_commonest_mistakes_come_with_advice(self):
-        """One line each, since the rest of what the compiler says follows from it."""
+        """One line each, since the rest of the compiler's output follows from it."""
         own = (PROJECT / "chapters" / CHAPTER / "path_trace.glsl").read_text(encoding="utf-8")
         line = {text: number for number, full in enumerate(own.split("\n"), 1) for text in MISTAKES if text in full}
         for right, (wrong, below, word, advice) in MISTAKES.items():

@@ -17,17 +17,17 @@ from PIL import ImageGrab
 from program import ProgramTest
 
 NEEDED = ["Xvfb", "weston", "xdotool"]
-# What the window shows is neither as blue as the desktop nor as red as a square in the middle of the picture.
+# The window's colours are neither as blue as the desktop nor as red as a square in the middle of the picture.
 SETTINGS = "[core]\nidle-time=0\n[shell]\nbackground-color=0xff0000ff\npanel-position=none\nlocking=false\n"
 RED_SQUARE = "newmtl white\nKd 0 0 0\nKe 1 0 0\n"
 COMMAND = ["quad.json", "--background=0,0,0", "--width=64", "--height=64", "--backend=compute", "--window", "--output=a.exr"]
-TITLE_BAR = 24  # its height in the desktop's units, and the width of a button in it
+TITLE_BAR = 24  # height in the desktop's units, and width of a button in it
 
 
 def setUpModule():
     if missing := [name for name in NEEDED if not shutil.which(name)]:
         raise unittest.SkipTest(f"{missing[0]} is missing: apt-get install weston xdotool")
-    # Before version 3.4 GLFW is compiled for one window system, which is X11 in Debian.
+    # Before version 3.4 GLFW is compiled for a single window system, X11 in Debian.
     if not hasattr(ctypes.CDLL(ctypes.util.find_library("glfw")), "glfwPlatformSupported"):
         raise unittest.SkipTest("this GLFW knows no Wayland")
 
@@ -69,7 +69,7 @@ class Wayland_all(ProgramTest):
             time.sleep(0.1)
 
     def box(self, is_shown):
-        """Left, top, right and bottom of the pixels whose colours are such; None if there are none."""
+        """Left, top, right and bottom of the pixels whose colours match; None if there are none."""
         pixels = np.asarray(ImageGrab.grab(xdisplay=self.x11["DISPLAY"]))
         rows, columns = np.nonzero(is_shown(*np.moveaxis(pixels, -1, 0)))
         return np.array([columns.min(), rows.min(), columns.max(), rows.max()]) if rows.size else None
@@ -85,7 +85,7 @@ class Wayland_all(ProgramTest):
         return np.array([right - left + 1, bottom - top + 1])
 
     def do(self, *words):
-        """Input for the window, in xdotool's words."""
+        """Input for the window, in xdotool's language."""
         variables = {name: value for name, value in self.x11.items() if value is not None}
         subprocess.run(["xdotool", *map(str, words)], env=os.environ | variables, check=True)
 
@@ -94,13 +94,13 @@ class Wayland_all(ProgramTest):
                 "mousemove", *end, "sleep", 0.3, "mouseup", 1)
 
     def drag_window(self, corner, grip, way):
-        """Drags it by a grip so far from the corner at this index of window(). A slow one does not follow all the way."""
+        """Drags it by a grip this far from the corner at this index of window(). A slow window does not follow all the way."""
         before = self.window()[corner:corner + 2]
 
         def drag_once_more():
             begin = self.window()[corner:corner + 2] + grip
             self.drag(begin, begin + way)
-            self.do("mousemove", *self.window()[:2] + 100)  # off the desktop, so that the window is alone there
+            self.do("mousemove", *self.window()[:2] + 100)  # off the desktop, so that only the window is on it
             return ((self.window()[corner:corner + 2] - before) / way > 0.3).all()
 
         self.wait_until(f"dragged by {way}", drag_once_more)
@@ -114,7 +114,7 @@ class Wayland_all(ProgramTest):
     def use_window(self, scale):
         self.start_desktop("--backend=x11", "--width=1200", "--height=900", f"--scale={scale}")
         process = self.open_window(self.wayland)
-        self.do("mousemove", 600 * scale, 450 * scale)  # off the desktop, so that the window is alone there
+        self.do("mousemove", 600 * scale, 450 * scale)  # off the desktop, so that only the window is on it
         self.wait_until("a window with a title", lambda: list(self.size()) == [900 * scale, (700 + TITLE_BAR) * scale])
 
         before = self.square()
@@ -145,7 +145,7 @@ class Wayland_all(ProgramTest):
         self.assertGreater(Exr(self.folder / "a.exr").mean()[0], 0)
 
     def test_without_a_seat(self):
-        """GLFW 3.4 dies of that, but X11 may be there."""
+        """GLFW 3.4 crashes without a seat, but X11 may be available."""
         self.start_desktop("--backend=headless")
         self.assert_refused(COMMAND, "no window", "--headless", environment=self.wayland)
         self.open_window(self.x11 | {"WAYLAND_DISPLAY": "desktop"})

@@ -1,4 +1,4 @@
-"""When a chapter opens a window, and that it leaves displays alone otherwise. tests/viewer looks inside the window."""
+"""When a chapter opens a window, and that it otherwise leaves displays alone. tests/viewer looks inside the window."""
 
 import os
 import shutil
@@ -20,7 +20,7 @@ RENDER = ["quad.json", "--width=8", "--height=8", "--samples=1"]
 
 
 class PoorCompositor(socketserver.BaseRequestHandler):
-    """A Wayland compositor that has no seat: in fact it has nothing, and only tells when it is done with telling that."""
+    """A Wayland compositor without a seat: it offers nothing at all, and only reports when it has finished saying so."""
 
     def handle(self):
         while header := self.request.recv(8):
@@ -32,7 +32,7 @@ class PoorCompositor(socketserver.BaseRequestHandler):
 
 class Windows(ProgramTest):
     def run_at_terminal(self, *arguments, environment):
-        """Exit code and output of a run whose standard output is a terminal, as for someone who types the command."""
+        """Exit code and output of a run whose standard output is a terminal, as for someone typing the command."""
         ours, theirs = open_terminal()
         variables = {**os.environ, **environment}
         process = subprocess.Popen([CHAPTER, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=theirs,
@@ -71,13 +71,13 @@ class Windows(ProgramTest):
         self.assert_refused([*RENDER, "--window"], "no window", "--headless", environment=SOME_DISPLAY)
 
     def test_a_window_needs_wayland_to_be_there(self):
-        """The variables of a session stay where its compositor is out of reach."""
+        """A session's variables persist where its compositor is out of reach."""
         for folder in (None, self.folder):
             environment = {"DISPLAY": None, "WAYLAND_DISPLAY": "nothing-0", "XDG_RUNTIME_DIR": folder}
             self.assert_refused([*RENDER, "--window"], "no display", "--headless", environment=environment)
 
     def test_a_compositor_without_a_seat_is_no_obstacle(self):
-        """GLFW 3.4 dies on it."""
+        """GLFW 3.4 crashes on it."""
         environment = {"DISPLAY": None, "WAYLAND_DISPLAY": "poor-0", "XDG_RUNTIME_DIR": str(self.folder)}
         server = socketserver.ThreadingUnixStreamServer(str(self.folder / "poor-0"), PoorCompositor)
         self.addCleanup(server.server_close)
@@ -103,13 +103,13 @@ class Windows(ProgramTest):
         self.assertRegex(err, r"\Aerror: [^\n]*the outputs hold \d+ samples a pixel; --resume continues\n\Z")
         left = Exr(self.folder / "a.exr")
         self.assertIn(left.text("samples"), err)
-        # What the samples have cost counts when the render goes on.
+        # The cost of the samples so far counts when the render continues.
         self.assertGreater(float(left.text("seconds")), 0)
         self.assertGreaterEqual(int(left.text("rays")), 32 * 32 * int(left.text("samples")))
 
     @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
     def test_a_lost_device_and_a_folder_that_vanished(self):
-        """The exit code says what happened first."""
+        """The exit code reports what happened first."""
         folder = self.folder / "folder"
         command = [CHAPTER, "cornell_box", "--width=32", "--height=32", "--backend=compute", "--window", "--output=folder/a.exr"]
         environment = {**NO_DISPLAY, **FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "300"}

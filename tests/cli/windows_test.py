@@ -21,12 +21,12 @@ from program import CHAPTER, PROJECT, TOOLS, RenderTest
 PROGRAMS = PROJECT / "build/windows/programs/bin"
 PACKAGE = PROJECT / "output/path_tracing_lab-windows.zip"
 NEEDED = ["x86_64-w64-mingw32-g++-posix", "wine", "Xvfb"]
-# What refuses bad input says the same on both systems.
+# Programs refuse bad input in the same words on both systems.
 SAME_TESTS = ["command_line_test.Information", "command_line_test.WrongArguments", "command_line_test.MergeArguments",
               "bad_input_test", "rendering_test.Views", "rendering_test.PictureFiles"]
 BACKENDS = ["compute", "query", "pipeline"]
 SMALL = ["--width=64", "--height=48", "--samples=4"]
-wine = {}  # environment of the programs, once setUpModule() has prepared it
+wine = {}  # the programs' environment, once setUpModule() has prepared it
 
 
 def setUpModule():
@@ -49,7 +49,7 @@ def setUpModule():
     (folder / "prefix").mkdir()
     unittest.addModuleCleanup(subprocess.run, ["wineserver", "-k"], env=os.environ | wine)
     # Wine's own programs must not be started by one of ours: they would hold a pipe that a test reads to its end. The desktop
-    # stays as long as a window is on it.
+    # exists as long as it has a window.
     for command in (["wineserver", "-p"], ["wine", "wineboot", "-i"], ["wine", "start", "/min", "notepad"]):
         subprocess.run(command, env=os.environ | wine, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
@@ -61,7 +61,7 @@ class WindowsPrograms_all(RenderTest):
         return super().start(*arguments, environment=wine | (environment or {}), program=program, **options)
 
     def unpack(self, name):
-        """The archive in a folder of this name."""
+        """The archive, unpacked into a folder of this name."""
         with zipfile.ZipFile(PACKAGE) as archive:
             archive.extractall(self.folder / name)
         return self.folder / name / "path_tracing_lab-windows"
@@ -123,7 +123,7 @@ class WindowsPrograms_all(RenderTest):
                             environment={"WINEDLLOVERRIDES": wine["WINEDLLOVERRIDES"] + ";vulkan-1="})
 
     def test_pictures_find_a_place(self):
-        """Where `output` cannot be a folder, they go to the user's."""
+        """If `output` cannot be a folder, they go to the user's."""
         self.write("output", "")
         code, out, err = self.run_program("quad.json", *SMALL)
         self.assertEqual(code, 0, err)
@@ -131,7 +131,7 @@ class WindowsPrograms_all(RenderTest):
         self.assertIn("path_tracing_lab", out)
 
     def test_two_at_a_time(self):
-        """Both write the same files, again and again."""
+        """Both write the same files over and over."""
         command = ["quad.json", *SMALL[:2], "--samples=3000", "--save-every=0.01", "--output=a.exr"]
         processes = [self.start(*command) for _ in range(2)]
         for process in processes:
@@ -181,7 +181,7 @@ class WindowsPrograms_all(RenderTest):
         self.assertIn("01_uniform_sampling.exr", out)
 
     def wait_for_colour(self, is_right, message):
-        """Until the mean colour of a part of the screen in which the window shows the scene is right."""
+        """Waits until the mean colour of the part of the screen where the window shows the scene is right."""
         end = time.monotonic() + 60
         while not is_right(*(colour := self.colour_of_scene())):
             self.assertLess(time.monotonic(), end, f"{message}: {colour}")

@@ -1,5 +1,5 @@
-// On scenes without dielectrics all chapters have the same expected image. Chapters 6, 7 and 10 are another
-// one here, path by path, as RepeatedChapter shows.
+// All chapters have the same expected image on scenes without dielectrics. Chapters 6, 7 and 10 follow the same paths as another
+// one here, as RepeatedChapter shows.
 #include <algorithm>
 #include <array>
 
@@ -16,11 +16,11 @@ struct Subject {
     Estimator estimator;
     uint32_t splitting_factor;
     uint32_t roulette_start = 1;
-    uint32_t samples_divisor = 1;  // where a sample has so many paths that fewer have the same error
+    uint32_t samples_divisor = 1;  // for samples of so many paths that fewer give the same error
 };
 
-// Two estimators that are compared with each other: no image is part of two pairs, so that the pairs'
-// p-values are independent. The splitting factors differ from length to length.
+// Two estimators to be compared. No image belongs to two pairs, so that the pairs' p-values are independent. The splitting
+// factors vary with the path length.
 using Pair = std::array<Subject, 2>;
 Subject subject(const std::string& name, uint32_t splitting_factor = 1) {
     return {name + (splitting_factor > 1 ? ", s = " + std::to_string(splitting_factor) : ""),
@@ -33,7 +33,7 @@ std::vector<Pair> light_sampling_pairs(uint32_t length) {
     };
     const uint32_t s = length == 1 ? 1 : length == 2 ? 5 : 3;
     std::vector<Pair> pairs;
-    // At length 1 there is but one hit to split at.
+    // At length 1 there is only one hit to split at.
     if (length > 1)
         pairs.push_back({at_every_hit("splitting", length == 2 ? 3 : 2, no_roulette),
                          at_every_hit("russian_roulette", length == 2 ? 2 : 3, 1)});
@@ -50,14 +50,14 @@ constexpr uint32_t size = 48, batch_count = 32;
 
 struct AgreementCase {
     std::string scene;
-    uint32_t samples;                  // of a batch
-    uint32_t bounce_samples;           // of a batch of chapters 1 and 2, which find lights by bounces
-    AgreementLimits of_bounces;        // in comparisons with chapters 1 or 2
-    AgreementLimits of_light_samples;  // in all others
+    uint32_t samples;                  // per batch
+    uint32_t bounce_samples;           // per batch of chapters 1 and 2, which find lights by bounces only
+    AgreementLimits of_bounces;        // for comparisons with chapters 1 or 2
+    AgreementLimits of_light_samples;  // for all others
 };
 
-// The lower part of the scene, where no light is seen: it would add nothing but noise. Small suns are dimmed,
-// since bounces meet them so rarely that no error of the rest would be found.
+// The lower part of the scene, where no light is visible: it would only add noise. Small suns are dimmed, since bounces hit them
+// so rarely that errors elsewhere would go unnoticed.
 Scene load_test_scene(const std::string& name) {
     Scene scene = load_shipped_scene(name + ".json");
     scene.camera.target.y = 0.4f;
@@ -79,8 +79,8 @@ Batches render_subject(const Scene& scene, const Subject& subject, uint32_t leng
     return render_batches(scene, settings, batch_count);
 }
 
-// Left to --all: ReferenceImage compares the chapters with an independent renderer, more exactly than they
-// can be compared with each other.
+// Only with --all: ReferenceImage compares the chapters with an independent renderer, more accurately than they can be compared
+// with each other.
 class ChapterAgreement : public testing::TestWithParam<AgreementCase> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, ChapterAgreement,
                          testing::Values(AgreementCase{"cornell_box", 6, 56, {0.06, 0.75}, {0.02, 0.18}},

@@ -1,4 +1,4 @@
-// The same samples give the same image, however a render is cut into pieces.
+// The same samples give the same image, no matter how a render is cut into dispatches.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace lab {
 namespace {
 
-// A box with a lamp, so that pixels differ. The image size is no multiple of the block size.
+// A box with a lamp, so that pixels differ. The image size is not a multiple of the block size.
 Scene lit_box() {
     Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}));
     scene.materials.push_back(diffuse_material(vec3(0.2f), {5, 6, 7}));
@@ -37,7 +37,7 @@ bool are_identical(const FilmImage& a, const FilmImage& b) {
            std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(FilmPixel)) == 0;
 }
 
-// Positive floats are numbered by their bits.
+// Positive floats are ordered like their bits, so a difference of bits counts ulps.
 void expect_within_2_ulp(const Image& a, const Image& b) {
     ASSERT_EQ(a.pixels.size(), b.pixels.size());
     for (size_t i = 0; i < a.pixels.size(); ++i)
@@ -51,13 +51,13 @@ std::filesystem::path temporary_file(const std::string& name) {
 
 TEST_P(Determinism, DispatchesOfAnyLengthGiveTheSameImage) {
     RenderSettings cut = settings(), whole = settings();
-    cut.dispatch_seconds = 1e-9;  // every dispatch has one block and one sample a pixel
+    cut.dispatch_seconds = 1e-9;  // one block and one sample per pixel in every dispatch
     whole.dispatch_seconds = 10;
     EXPECT_TRUE(are_identical(render(scene, cut), render(scene, whole)));
 }
 
-// Pixels that several threads share, with more samples than are kept until they are added, and pixels that
-// have a thread each.
+// Both for pixels shared by several threads, with more samples than the buffer holds until they are added, and for pixels with a
+// thread each.
 TEST(Submissions, OfManySamplesGiveTheSameImage) {
     for (const auto& [size, samples] : {std::pair{uvec2(64, 64), 2000u}, std::pair{uvec2(768, 768), 8u}}) {
         RenderSettings whole{.width = size.x, .height = size.y, .samples = samples};
@@ -69,8 +69,8 @@ TEST(Submissions, OfManySamplesGiveTheSameImage) {
     }
 }
 
-// A film that shaders see in parts, as large ones are on devices that bind little memory: of images whose
-// pixels several threads share and of one with a thread for each. The last part is smaller than the others.
+// A film that shaders see in parts, as with large films on devices that bind little memory: for images whose pixels several
+// threads share, and for one with a thread per pixel. The last part is smaller than the others.
 TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
     for (const Backend backend : all_backends) {
         if (!test_device().description().supports(backend)) continue;
@@ -85,7 +85,7 @@ TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
     }
 }
 
-// With a renderer made for a large image: it keeps one thread per pixel when it restarts with a small one.
+// With a renderer made for a large image: restarted with a small one, it still uses one thread per pixel.
 FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSettings& settings) {
     const GpuScene gpu_scene = make_gpu_scene(scene, settings);
     const auto acceleration_structure = build_acceleration_structure(settings.backend, test_device(), gpu_scene);
@@ -100,7 +100,7 @@ FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSe
 }
 
 TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
-    // Dispatches of several samples against dispatches of a single one, however fast the device is.
+    // Dispatches of several samples against dispatches of a single one, whatever the device's speed.
     RenderSettings shared = settings(), alone = settings();
     shared.dispatch_seconds = 10;
     alone.dispatch_seconds = 1e-9;
@@ -108,7 +108,7 @@ TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
 }
 
 TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
-    // With a film that shaders see in parts: the checkpoint has the samples of all parts.
+    // With a film that shaders see in parts: the checkpoint contains the samples of all parts.
     const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
     const GpuScene gpu_scene(test_device(), scene);
     const auto acceleration_structure = build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
@@ -116,7 +116,7 @@ TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
         return Renderer(test_device(), *acceleration_structure, settings().estimator, make_parameters(scene, settings()), {},
                         two_rows_of_blocks);
     };
-    // Interrupted in the middle of a pass, when some pixels have one sample more than others.
+    // Interrupted in mid-pass, when some pixels have one sample more than others.
     Renderer interrupted = make_renderer();
     interrupted.set_dispatch_seconds(1e-9);
     for (int dispatch = 0; dispatch < 100; ++dispatch) interrupted.advance(settings().samples);
@@ -149,10 +149,10 @@ TEST_P(Determinism, PathLengthsAddUpToTheImage) {
             ASSERT_NEAR(sums[i][channel], whole.pixels[i].sum[channel], 1e-6 * sums[i][channel]);
 }
 
-// Chapter 10 orders the work of threads in another way, and nothing else.
+// Chapter 10 schedules the work of threads differently, and changes nothing else.
 class PathRegeneration : public OnEachBackend {
   protected:
-    // Of the chapter before it and of its own.
+    // Renders with the chapter before it and with its own.
     template <typename Render>
     std::array<FilmImage, 2> render_both(RenderSettings settings, const Render& render_one) const {
         settings.backend = GetParam();
@@ -165,8 +165,8 @@ class PathRegeneration : public OnEachBackend {
         return films;
     }
 
-    // To the bit, but for the pipelines of GPUs: the driver of an NVIDIA H200 compiles copies of a loop that
-    // round differently, and 5 % of the pixels differed by up to 3e-6.
+    // To the bit, except on GPU pipelines: the driver of an NVIDIA H200 compiles copies of a loop that round differently, and 5 %
+    // of the pixels differed by up to 3e-6.
     static void expect_same(const FilmImage& a, const FilmImage& b, const std::string& name) {
         const bool is_cpu = test_device().physical().getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
         if (GetParam() != Backend::pipeline || is_cpu) {
@@ -190,7 +190,7 @@ TEST_P(PathRegeneration, GivesTheImageOfChapterNine) {
         const auto whole =
             render_both(settings, [&](const RenderSettings& s) { return render_with_a_thread_for_each_pixel(scene, s); });
         expect_same(whole[0], whole[1], name);
-        // Dispatches of one block and one sample leave nothing to regenerate.
+        // With dispatches of one block and one sample there is nothing to regenerate.
         settings.dispatch_seconds = 1e-9;
         const auto cut = render_both(settings, [&](const RenderSettings& s) { return render(scene, s); });
         for (const FilmImage& film : cut) expect_same(whole[0], film, name);

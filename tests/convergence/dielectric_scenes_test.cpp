@@ -1,4 +1,4 @@
-// Chapter 6 in lit scenes, against other ways to compute the same image; and scenes that are hard on it.
+// Chapter 6 in lit scenes, against other ways to compute the same image, and in scenes that are numerically hard.
 #include "support/dielectric_scenes.h"
 
 #include <cmath>
@@ -17,7 +17,7 @@ RenderSettings room_settings(uint32_t samples, uint32_t seed) {
     return {.width = 48,
             .height = 48,
             .samples = samples,
-            .max_path_length = 1000,  // as good as unlimited: roulette ends paths long before
+            .max_path_length = 1000,  // practically unlimited: roulette ends paths much earlier
             .seed = seed,
             .roulette_start = 3,
             .estimator = chapter_estimator(chapter_named("dielectrics"))};
@@ -67,15 +67,15 @@ TEST(DielectricScene, EmissiveGlassAddsItsEmissionOnce) {
     }
 }
 
-// Scenes in which surfaces touch, coincide or enclose the camera: render() expects all samples to be finite,
-// and the image may be no brighter than its lamp is through glass.
+// Scenes in which surfaces touch, coincide or enclose the camera: render() expects all samples to be finite, and the image may be
+// no brighter than its lamp seen through glass.
 TEST(DielectricScene, TouchingSurfacesStayFinite) {
     const Material glass = dielectric_material(1.5f, {0.1f, 0.2f, 0.3f});
     const Material lamp = diffuse_material(vec3(0.5f), vec3(1));
     const Quad lamp_quad{{-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}, 0};
     const struct {
         const char* name;
-        vec3 low, high;  // of a box of glass
+        vec3 low, high;  // of a glass box
         vec3 camera;
     } cases[] = {
         {"a face in the plane of the lamp", {-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}, {0, 0.5f, 3}},

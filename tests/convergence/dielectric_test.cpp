@@ -1,4 +1,4 @@
-// Chapter 6 where the radiance behind and within dielectrics is known exactly.
+// Chapter 6 where the radiance behind and inside dielectrics is known exactly.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,10 +10,10 @@
 namespace lab {
 namespace {
 
-// Far beyond what a path needs to leave these scenes.
+// Many more bounces than a path needs to leave these scenes.
 constexpr uint32_t unlimited = 1000;
 
-// Roulette only ends paths whose throughput is 0.
+// With this cap roulette ends only paths of throughput 0.
 RenderSettings make_settings(uint32_t samples, uint32_t seed) {
     return {.samples = samples,
             .max_path_length = unlimited,
@@ -22,7 +22,7 @@ RenderSettings make_settings(uint32_t samples, uint32_t seed) {
             .estimator = chapter_estimator(chapter_named("dielectrics"))};
 }
 
-// Each channel of all pixels has this mean, and a relative bias would have been found.
+// Expects each channel of all pixels to have this mean; a larger relative bias would have been found.
 void expect_radiance(const std::string& what, const FilmImage& film, const glm::dvec3& expected, double largest_relative_bias,
                      size_t comparisons) {
     for (int channel = 0; channel < 3; ++channel)
@@ -30,8 +30,8 @@ void expect_radiance(const std::string& what, const FilmImage& film, const glm::
                     expected[channel], largest_relative_bias, comparisons);
 }
 
-// The mean of Fresnel's two reflectances. (Estimators that follow polarisation would find slightly more light
-// behind an oblique pane: what has passed one interface is polarised, and then reflected less by the next.)
+// The mean of Fresnel's two reflectances. (Estimators that track polarisation would find slightly more light behind an oblique
+// pane: the first interface polarises the light, and the second reflects less of that.)
 double fresnel_reflectance(double cos_theta, double eta) {
     const double cos_theta_t = std::sqrt(1 - (1 - cos_theta * cos_theta) / (eta * eta));
     const double r_s = (cos_theta - eta * cos_theta_t) / (cos_theta + eta * cos_theta_t);
@@ -39,8 +39,8 @@ double fresnel_reflectance(double cos_theta, double eta) {
     return 0.5 * (r_s * r_s + r_p * r_p);
 }
 
-// A pane between z = 0 and z = -thickness that is seen from +Z in the given angle to its normal, and a black
-// wall of emission 1 behind it, or behind the camera.
+// A pane between z = 0 and z = -thickness, seen from +Z at the given angle to its normal, and a black wall of emission 1 behind
+// it or behind the camera.
 enum class Lamp { behind_pane, behind_camera };
 Scene make_pane(const Material& glass, float thickness, float degrees, Lamp lamp) {
     constexpr float size = 20;
@@ -56,8 +56,8 @@ Scene make_pane(const Material& glass, float thickness, float degrees, Lamp lamp
     return scene;
 }
 
-// Geometric series over the reflections between the two surfaces: a path crosses the pane once for each, and
-// the share t of the light is left then.
+// Geometric series over the reflections between the two surfaces: with each, a path crosses the pane once and retains the
+// fraction t of its light.
 TEST(Dielectric, PaneTransmitsAndReflectsTheGeometricSeries) {
     constexpr float index = 1.5f, thickness = 0.5f;
     uint32_t seed = 1;
@@ -81,15 +81,15 @@ TEST(Dielectric, PaneTransmitsAndReflectsTheGeometricSeries) {
         }
 }
 
-// Without reflection nothing is left to chance, so Beer's law has to hold but for roundings, which include
-// that rays start a little off the surface. Lengths are those of the world, not of the scaled mesh.
+// Without reflection nothing is random, so Beer's law must hold up to rounding, which includes that rays start a little off the
+// surface. Lengths are in world space, not in the space of the scaled mesh.
 void expect_beers_law(float thickness, float degrees, float scale, Backend backend) {
     const glm::dvec3 absorption(0.2, 1, 2.5);
     Scene scene = make_pane(dielectric_material(1, vec3(absorption)), thickness, degrees, Lamp::behind_pane);
     set_transform(scene, mat4x3(scale, 0, 0, 0, scale, 0, 0, 0, scale, 0, 0, 0));
     RenderSettings settings = make_settings(2, 1);
     settings.roulette_start = unlimited;
-    settings.max_path_length = 2;  // just enough: a bounce at each side of the pane
+    settings.max_path_length = 2;  // exactly enough: a bounce at each side of the pane
     settings.backend = backend;
     const FilmImage film = render(scene, settings);
     const double length = double{thickness} * scale / std::cos(glm::radians(double{degrees}));
@@ -112,9 +112,8 @@ INSTANTIATE_TEST_SUITE_P(Backends, DielectricOnEachBackend, testing::ValuesIn(al
 
 TEST_P(DielectricOnEachBackend, AbsorbsByBeersLaw) { expect_beers_law(0.5f, 30, 3, GetParam()); }
 
-// All light that a body without absorption receives leaves it again, and radiance is the same outside as if
-// it were not there: under a uniform sky it cannot be seen. Factors η² that are missing, or not undone where
-// the path leaves, would show.
+// A body without absorption re-emits all light it receives, and outside it radiance is as if it were not there: under a uniform
+// sky it is invisible. A factor η² that is missing, or not undone where the path leaves, would show.
 TEST(Dielectric, BodyUnderAUniformSkyIsInvisible) {
     for (const float index : {1.5f, 2.4f, 0.75f}) {
         Scene scene = make_sphere(dielectric_material(index), Facing::outwards);
@@ -127,8 +126,8 @@ TEST(Dielectric, BodyUnderAUniformSkyIsInvisible) {
     }
 }
 
-// Directions that are on opposite sides of the triangle and of its interpolated normal carry nothing, so a
-// smooth body loses some light at its silhouette and never gains any.
+// Directions on different sides of the triangle and its interpolated normal carry no light, so a smooth body loses some light at
+// its silhouette and never gains any.
 TEST(Dielectric, SmoothBodyLosesLittle) {
     for (const float index : {1.5f, 0.75f}) {
         Scene scene = make_sphere(dielectric_material(index), Facing::outwards);
@@ -143,7 +142,7 @@ TEST(Dielectric, SmoothBodyLosesLittle) {
     }
 }
 
-// Within glass of index n everything is n² times as bright, in all directions in which light enters.
+// Inside glass of index n everything is n² times as bright, in all directions from which light can enter.
 TEST(Dielectric, RadianceWithinIsTheIndexSquaredTimesThatOutside) {
     constexpr float index = 1.5f;
     Scene scene = make_scene({dielectric_material(index)}, box_sides(vec3(-1), vec3(1), 0, Facing::outwards));
@@ -151,16 +150,15 @@ TEST(Dielectric, RadianceWithinIsTheIndexSquaredTimesThatOutside) {
     scene.camera = {.position = {0.1f, 0.2f, 0}, .target = {0, 0, -1}, .up = {0, 1, 0}, .vertical_fov = 40};
     expect_radiance("towards a side", render(scene, make_settings(20, 1)),
                     glm::dvec3(index * index) * glm::dvec3(scene.background), 1e-5, 3);
-    // Towards a corner: reflected totally at all sides, for ever.
+    // Towards a corner: total reflection at all sides, forever.
     scene.camera.target = scene.camera.position + vec3(-1, 1, -1);
     scene.camera.vertical_fov = 10;
     const FilmImage film = render(scene, make_settings(1, 1));
     for (const double mean : pixel_means(film, 0)) ASSERT_EQ(mean, 0);
 }
 
-// Seen from outside, an emitter in glass is n² times darker; seen from within, one outside is n² times
-// brighter, except for what the surface reflects. A black emitter absorbs what comes back to it, the dark sky
-// what leaves.
+// Seen from outside, an emitter in glass is n² times darker; seen from inside, one outside is n² times brighter, except for what
+// the surface reflects. A black emitter absorbs what returns to it, the dark sky what leaves.
 TEST(Dielectric, EmissionPassesTheSurfaceOnce) {
     const double index = 1.5, r = fresnel_reflectance(1, index);
     for (const float lamp_z : {-0.5f, -2.0f}) {
@@ -177,7 +175,7 @@ TEST(Dielectric, EmissionPassesTheSurfaceOnce) {
     }
 }
 
-// The camera ray is absorbed, too: over a length of 1, and of 2 more per reflection.
+// The camera ray is absorbed as well: over a length of 1, plus 2 per reflection.
 TEST(Dielectric, AbsorbsWhatTheCameraSeesWithin) {
     const glm::dvec3 absorption(0, 0.5, 1), once = glm::exp(-absorption), twice = once * once;
     Scene scene = make_scene({dielectric_material(1.5f, vec3(absorption))}, box_sides(vec3(-1), vec3(1), 0, Facing::outwards));

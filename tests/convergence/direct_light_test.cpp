@@ -1,5 +1,4 @@
-// Direct light against Lambert's formula for polygons, which knows it exactly: next event estimation and
-// light that bounces find.
+// Direct light against Lambert's exact formula for polygons: next event estimation, and light that bounces find.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -31,9 +30,8 @@ void add_triangle(Scene& scene, const Corners& corners, uint32_t material) {
     ++scene.meshes.back().triangle_count;
 }
 
-// A square of edge length 1 that the camera sees from close by, so that no light gets between them. Points
-// are given in its own coordinates, z along its normal, and turned into the world, so that it may be a floor
-// or a wall.
+// A square of edge length 1, seen from so close that no light gets between it and the camera. Points are given in its own
+// coordinates, with z along its normal, and rotated into world space, so that it may be a floor or a wall.
 class Receiver {
   public:
     explicit Receiver(const dvec3& normal) : normal_(glm::normalize(normal)) {
@@ -43,7 +41,7 @@ class Receiver {
 
     dvec3 to_world(const dvec3& p) const { return centre_ + p.x * tangent_ + p.y * bitangent_ + p.z * normal_; }
 
-    // Corners of a light in the world as the scene holds them, in an order that lets it face the receiver.
+    // Corners of a light in world space, ordered so that it faces the receiver.
     Corners place(Corners light) const {
         const dvec3 front = glm::cross(light[1] - light[0], light[2] - light[0]);
         if (glm::dot(front, light[0]) > 0) std::reverse(light.begin() + 1, light.end());
@@ -63,8 +61,7 @@ class Receiver {
         return scene;
     }
 
-    // The mean over each pixel of a function of the point that it shows, by a Gauss quadrature of 3 x 3
-    // points.
+    // The mean over each pixel of a function of the visible point, by a Gauss quadrature with 3 x 3 points.
     std::vector<double> image_of(const std::function<double(const dvec3& point)>& function) const {
         const Camera camera = make_camera(scene().camera, size, size);
         constexpr double nodes[] = {-0.7745966692414834, 0, 0.7745966692414834}, weights[] = {5, 8, 5};
@@ -97,11 +94,10 @@ class Receiver {
 };
 
 struct Limits {
-    double image, pixel;  // largest bias that may go unnoticed, as part of the image's mean
+    double image, pixel;  // largest bias that may go unnoticed, relative to the image's mean
 };
 
-// The image is the albedo times what arrives: colour · irradiance / π and the part of the sky that no light
-// covers.
+// The image is the albedo times the incoming light: colour · irradiance / π plus the part of the sky that no light covers.
 void expect_direct_light(const std::string& what, const Batches& batches, const std::vector<double>& irradiance,
                          const Limits& limits, size_t comparisons, double sky = 0) {
     const auto radiance = [&](double e, int channel) {
@@ -157,8 +153,7 @@ const std::vector<LightCase>& light_cases() {
         std::vector<LightCase> all;
         std::mt19937 random(7);
         const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
-        // Random triangles that the middle of the receiver does not see from the side, where noise would hide
-        // them.
+        // Random triangles that the middle of the receiver does not see edge-on, where noise would hide them.
         const auto triangle_in = [&](const dvec3& low, const dvec3& high) {
             while (true) {
                 Corners light;
@@ -212,8 +207,8 @@ TEST_P(DirectLight, OfATriangleIsThatOfLambert) {
 }
 
 TEST_P(DirectLight, OfTransformedInstancesIsThatOfTheirImages) {
-    // Triangle in a mesh of its own, placed three times: as it is, scaled unevenly and turned, and mirrored,
-    // where its front stays on the same side of the object.
+    // A triangle in its own mesh, placed three times: unchanged, scaled unevenly and rotated, and mirrored, where its front stays
+    // on the same side of the object.
     const Receiver receiver({0, 0, 1});
     Scene scene = receiver.scene();
     const Corners light{{-0.3, 0, 0}, {0.2, 0.4, 0.1}, {0.3, -0.3, 0}};
@@ -269,7 +264,7 @@ class AllChapters : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(DirectLight, AllChapters, testing::ValuesIn(all_chapters), own_estimator_name);
 
 TEST_P(AllChapters, FindTheLightOfATriangleByBounces) {
-    // Lights that fill enough of the sky to be found by chance.
+    // Lights large enough to be found by chance.
     uint32_t seed = 200;
     for (const size_t i : {size_t{0}, size_t{4}, size_t{20}}) {
         const auto& [name, normal, light] = light_cases()[i];

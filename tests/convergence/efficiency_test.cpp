@@ -1,5 +1,5 @@
-// What each chapter gains over the one before: error times cost, on the same scene in one run. The cost is
-// the number of rays, so that the test does not depend on what else the machine does.
+// What each chapter gains over the previous one: error times cost, on the same scene in one run. The cost is the number of rays,
+// so the test does not depend on the machine's load.
 #include <cmath>
 #include <cstdio>
 
@@ -20,7 +20,7 @@ struct Cost {
 
 Cost measure(const Scene& scene, RenderSettings settings) {
     constexpr uint32_t renders = 16;
-    settings.samples *= 2;  // in halves, which tell the error
+    settings.samples *= 2;  // in halves, to estimate the error
     const double paths = static_cast<double>(settings.width) * settings.height * settings.samples;
     Cost cost{.logarithms = {}, .error = 0, .rays = 0};
     SceneRenderer renderer(scene, settings);
@@ -36,8 +36,7 @@ Cost measure(const Scene& scene, RenderSettings settings) {
     return cost;
 }
 
-// Expects that `technique` needs fewer rays than `before` for the same error (Welch's test of the
-// logarithms).
+// Expects `technique` to need fewer rays than `before` for the same error (Welch's test of the logarithms).
 void expect_gain(const std::string& what, const Cost& before, const Cost& technique) {
     const Difference gain = difference_of(technique.logarithms, before.logarithms);
     std::printf("  %s: error x %.3f, rays x %.2f, error times rays x %.3f, p = %.2g; finds a gain of x %.2f\n", what.c_str(),
@@ -58,7 +57,7 @@ Cost measure_chapter(const std::string& scene_name, const std::string& name, uin
     return measure(scene, settings);
 }
 
-// Multiple importance sampling with one of its two ways to find light.
+// Multiple importance sampling restricted to one of its two strategies.
 Cost measure_strategy(const std::string& scene_name, Strategy strategy, uint32_t samples, uint32_t length) {
     RenderSettings settings{.width = 64, .height = 64, .samples = samples, .max_path_length = length};
     settings.roulette_start = 2;
@@ -77,14 +76,14 @@ TEST(Efficiency, CosineSamplingAndNextEventEstimationPay_all) {
                 measure_chapter("cornell_box", "next_event_estimation", 4, 4));
 }
 
-// Splitting pays where what comes after the first hit is noisy, as with a light of thousands of triangles. In
-// the Cornell box edges and camera rays weigh as much as they save each other.
+// Splitting pays if what comes after the first hit is noisy, as with a light of thousands of triangles. In the Cornell box, edges
+// and camera rays cancel the gain.
 TEST(Efficiency, SplittingPaysForNoisyLight_all) {
     expect_gain("splitting in 4 against next event estimation", measure_chapter("heart_light", "next_event_estimation", 16, 4),
                 measure_chapter("heart_light", "splitting", 4, 4, 4));
 }
 
-// Without a limit of the path length there is more to be estimated, and still it pays.
+// Without a path length limit there is more to estimate, and it still pays.
 TEST(Efficiency, RussianRoulettePaysForLongPaths_all) {
     expect_gain("Russian roulette against splitting", measure_chapter("cornell_box", "splitting", 8, 8, 2),
                 measure_chapter("cornell_box", "russian_roulette", 8, 1000, 2));
@@ -103,7 +102,7 @@ TEST(Efficiency, RoulettePaysWhereEveryHitSplits_all) {
     expect_gain("roulette where every hit splits", without, measure(scene, settings));
 }
 
-// Where lights are near, light samples are noisy; where surfaces are glossy, they miss the lobe.
+// Near lights, light samples are noisy; on glossy surfaces they miss the lobe.
 TEST(Efficiency, MultipleImportanceSamplingPays_all) {
     expect_gain("multiple importance sampling against dielectrics, heart", measure_chapter("heart_light", "dielectrics", 12, 4),
                 measure_chapter("heart_light", "multiple_importance_sampling", 12, 4));
@@ -127,7 +126,7 @@ TEST(Efficiency, LowDiscrepancyPointsPay_all) {
                 measure_chapter("textured", "low_discrepancy_points", 8, 2));
 }
 
-// A floor, a ball and a torus of metal in a studio. Light samples find the lamps in either case; the lobes show the rest.
+// A floor, a ball and a torus of metal in a studio. Light samples find the lamps either way; the lobes see the rest.
 TEST(Efficiency, VisibleNormalsPay_all) {
     Scene scene = load_shipped_scene("studio.json");
     Microfacets metal{};

@@ -11,9 +11,8 @@ namespace {
 class Furnace : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Furnace, testing::ValuesIn(all_chapters), own_estimator_name);
 
-// Samples that it takes: where everything is equally bright, paths without roulette all carry the same,
-// unless their angles are uniform. Russian roulette saves time, not variance, and low-discrepancy points need
-// the fewest. What short paths carry varies less.
+// Required samples: where everything is equally bright, all paths without roulette carry the same radiance, unless their angles
+// are uniform. Russian roulette saves time, not variance, and low-discrepancy points need the fewest. Short paths vary less.
 struct Samples {
     uint32_t with_uniform_angles, with_roulette, with_low_discrepancy;
 
@@ -27,12 +26,12 @@ struct Samples {
     }
 };
 
-// Inside a closed surface of albedo a and emission E every point shows E (1 + a + a² + ... + a^m) at path
-// length m. Each channel has its own numbers.
+// Inside a closed surface of albedo a and emission E every point shows E (1 + a + a² + ... + a^m) at path length m. Each channel
+// has its own values.
 void expect_furnace(const std::string& chapter, Scene (*make_furnace)(const Material&), const vec3& albedo, const vec3& emission,
                     const Samples& samples) {
     const Scene scene = make_furnace(diffuse_material(albedo, emission));
-    // In a room whose walls all emit, samples of the lights have infinite variance at the edges.
+    // In a room whose walls all emit, light samples have infinite variance at the edges.
     RenderSettings settings{.strategy = Strategy::bounces, .estimator = chapter_estimator(chapter)};
     SceneRenderer renderer(scene, settings);
     for (const uint32_t m : {0u, 1u, 2u, 4u, 8u}) {
@@ -52,8 +51,8 @@ TEST_P(Furnace, BoxShowsTheGeometricSeries) {
     expect_furnace(GetParam(), closed_box, {0.2f, 0.4f, 0.6f}, {1, 2, 0.5f}, {600, 2200, 1000});
 }
 
-// A convex object under a uniform sky shows its albedo times the sky at any path length above 0: light that
-// it reflects does not come back.
+// A convex object under a uniform sky shows its albedo times the sky at any path length above 0: light that it reflects never
+// comes back.
 TEST_P(Furnace, ConvexObjectShowsItsAlbedoTimesTheSky) {
     const vec3 albedo(0.9f, 0.4f, 0.15f), sky(1, 2, 3);
     Scene scene = make_sphere(diffuse_material(albedo), Facing::outwards);

@@ -1,4 +1,4 @@
-// The live verdict on the chapters, as the viewer shows it while they render.
+// The live verdict on the chapters, as the viewer shows it during a render.
 #include "statistics/live_verdict.h"
 
 #include <cstdio>
@@ -27,7 +27,7 @@ void LiveVerdictOf::expect_agreement(uint32_t seeds) {
     const Scene scene = load_shipped_scene("cornell_box.json");
     const GpuScene gpu_scene(test_device(), scene);
     const auto acceleration_structure = build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
-    // Bounces find the light by chance: direct light will do.
+    // Bounces find the light by chance: direct light is enough.
     const uint32_t max_path_length = samples_lights(GetParam()) ? 6 : 1;
     RenderParameters parameters = parameters_for(scene, max_path_length, 1);
     Renderer renderer(test_device(), *acceleration_structure, chapter_estimator(GetParam()), parameters);

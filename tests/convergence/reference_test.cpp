@@ -1,4 +1,4 @@
-// The chapters against images that another renderer has made: Mitsuba 3, see tools/references.
+// The chapters against images by another renderer: Mitsuba 3, see tools/references.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,34 +16,33 @@ namespace {
 
 constexpr uint32_t reference_batches = 64;
 constexpr uint32_t tile = 8;
-// In tiles that light hardly reaches, batches without a hit have no spread. What is a small part of the
-// image's mean there is taken for noise.
+// In tiles that hardly any light reaches, batches without a hit have no spread. Differences there that are a small fraction of
+// the image's mean count as noise.
 constexpr double tile_floor = 5e-4;
 
-// What tests.json of the chapters asks for. Those that find lights by bounces are held to 1 % of the image's
-// mean, the others to 0.3 %; less strictly what takes longest: glass with a small lamp, whose caustics
-// bounces find by chance, and the studio. Chapters that RepeatedChapter shows to be another one, path by
-// path, do not run every time.
+// What the chapters' tests.json ask for. Chapters that find lights by bounces are held to 1 % of the image's mean, the others to
+// 0.3 %; less strictly in the slowest cases: glass with a small lamp, whose caustics bounces find by chance, and the studio.
+// Chapters that follow another one's paths, as RepeatedChapter shows, do not run every time.
 const std::vector<ReferenceCase> all_references = reference_cases();
 
-// The part of the estimates that a batch has in a rectangle of pixels, and the same of the reference.
+// A batch's estimate over a rectangle of pixels, and the reference's mean there.
 struct Comparison {
     const Batches& batches;
     const Reference& reference;
 
-    // Difference of the means over a rectangle, as part of `scale`. The variance of the reference counts.
+    // Difference of the means over a rectangle, relative to `scale`. Includes the variance of the reference.
     Difference difference(int channel, uvec2 corner, uvec2 size, double scale) const {
         const Reference::Part expected = reference.part(static_cast<size_t>(channel), corner, size);
         Difference difference = difference_from(batches.means(channel, corner, size), expected.mean);
-        // Emission alone has no variance, but the two programs round it differently.
+        // Pure emission has no variance, but the two programs round it differently.
         const double rounding = 1e-5 * std::abs(expected.mean);
         difference.standard_error = std::hypot(difference.standard_error, std::sqrt(expected.variance), rounding);
         return difference.relative_to(scale);
     }
 };
 
-// Mean excess kurtosis of the tiles' batch means: about 0 where batches are long enough for their spread to
-// tell the error of the mean.
+// Mean excess kurtosis of the tiles' batch means: about 0 if batches are long enough for their spread to estimate the error of
+// the mean.
 double excess_kurtosis(const Batches& batches) {
     double sum = 0;
     size_t count = 0;
@@ -63,8 +62,8 @@ double excess_kurtosis(const Batches& batches) {
     return count ? sum / static_cast<double>(count) : 0;
 }
 
-// Signs of neighbouring tiles are independent where there is noise only; a bias is coherent. p-value of the
-// number of neighbours with equal signs.
+// Signs of neighbouring tiles are independent if there is only noise; a bias is coherent. Returns the p-value of the number of
+// neighbours with equal signs.
 double sign_map_p_value(const ZMap& map) {
     double equal = 0, pairs = 0;
     for (uint32_t y = 0; y < map.height; ++y)
@@ -100,7 +99,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
 
     RenderSettings settings{.width = reference.mean.width, .height = reference.mean.height, .samples = c.samples};
     settings.max_path_length = static_cast<uint32_t>(std::stoul(attributes.at("max_path_length")));
-    // Another one for each case: chapters may follow the same paths if their seeds are equal.
+    // Different for each case: chapters may follow the same paths if their seeds are equal.
     settings.seed = 1000 + static_cast<uint32_t>(&c - all_references.data());
     settings.roulette_start = 2;
     settings.splitting_factor = 2;
@@ -121,8 +120,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
                 of_tiles.push_back(difference);
                 of_tiles.back().standard_error = std::hypot(difference.standard_error, tile_floor);
                 if (channel != 1) continue;
-                // Tiles that see a light or the sky alone have no noise, so that their p-values are not
-                // uniform.
+                // Tiles that see only a light or the sky are noise-free, so their p-values are not uniform.
                 const MeanEstimate estimate = estimate_mean(batches.means(channel, {x, y}, uvec2(tile)));
                 const bool is_noisy = estimate.standard_error > 1e-5 * estimate.mean;
                 map.values.push_back(is_noisy ? difference.value / difference.standard_error : 0);

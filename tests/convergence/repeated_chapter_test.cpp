@@ -1,5 +1,5 @@
-// Chapters that follow the same paths as an earlier one where their own feature does not occur. Tests of such
-// scenes skip them (see support/render.h): a proof for the one holds for the other.
+// Chapters that follow the same paths as an earlier one wherever their own feature is absent. Tests of such scenes skip them (see
+// support/render.h): a proof for one chapter holds for the other.
 #include <cstdio>
 #include <tuple>
 
@@ -10,14 +10,14 @@
 namespace lab {
 namespace {
 
-// What tests.json of the chapters says.
+// From the chapters' tests.json.
 const std::vector<Repetition> repeated_chapters = repetitions();
 
 class RepeatedChapter : public testing::TestWithParam<size_t> {};
 INSTANTIATE_TEST_SUITE_P(, RepeatedChapter, testing::Range(size_t{0}, repeated_chapters.size()),
                          [](const auto& instance) { return "chapter_" + repeated_chapters[instance.param].chapter; });
 
-// Rooms to be rendered, and whether light samples find the light in them.
+// Rooms to render, and whether light samples find the light in them.
 std::vector<std::pair<Scene, Strategy>> scenes_of(const Repetition& repetition) {
     const Scene room = empty_room();
     Scene glossy = room, open = room, furnace = room;
@@ -32,8 +32,8 @@ std::vector<std::pair<Scene, Strategy>> scenes_of(const Repetition& repetition) 
     return scenes;
 }
 
-// Down to the random numbers. Only the rounding of sums may differ, where a compiler contracts them, and then
-// a few paths by roulette.
+// Down to the random numbers. Only the rounding of sums may differ where a compiler contracts them, and hence the roulette of a
+// few paths.
 void expect_same_paths(const Rendering& chapter, const Rendering& before) {
     size_t equal = 0, close = 0;
     const auto& expected = before.film.pixels;

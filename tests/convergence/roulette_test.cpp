@@ -1,5 +1,4 @@
-// Chapter 5: Russian roulette in a furnace, where mean, variance and cost are known for every survival
-// probability.
+// Chapter 5: Russian roulette in a furnace, where mean, variance and cost are known for every survival probability.
 #include <cmath>
 
 #include "support/expect_statistics.h"
@@ -11,14 +10,14 @@ namespace {
 
 constexpr uint32_t endless = 100'000;
 
-// Inside a box whose walls emit 1 and reflect `albedo`; emission is found by bounces.
+// Inside a box whose walls emit 1 and reflect `albedo`; bounces find the emission.
 Batches render_furnace(const std::string& chapter, const vec3& albedo, RenderSettings settings, uint32_t count) {
     settings.strategy = Strategy::bounces;
     settings.estimator = chapter_estimator(chapter);
     return render_batches(closed_box(diffuse_material(albedo, vec3(1))), settings, count);
 }
 
-// Second moment of one channel: the mean of the squared samples, one number per batch of one sample.
+// Second moment of a channel: the mean squared sample, one number per batch of one sample.
 std::vector<double> square_means(const Batches& batches) {
     std::vector<double> means;
     for (const auto& image : batches.images) {
@@ -36,12 +35,12 @@ std::vector<Difference> relative_difference(const std::vector<double>& numbers, 
 class Roulette : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Roulette, testing::ValuesIn(chapters_that(has_roulette)), own_estimator_name);
 
-// With the survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So
-// E[X] = m = 1/(1-a), E[X²] = (1 + 2am)/(1 - a²/p), and it has 1/(1-p) rays.
+// With survival probability p at every bounce a path sees X = 1 + (a/p) X' with probability p, else 1. So E[X] = m = 1/(1-a),
+// E[X²] = (1 + 2am)/(1 - a²/p), and it traces 1/(1-p) rays.
 TEST_P(Roulette, HasTheKnownMeanVarianceAndCost) {
     const struct {
         float albedo, cap;
-        bool is_fourth_moment_finite;  // a⁴/p³ < 1: else the variance's own estimate is not to be trusted
+        bool is_fourth_moment_finite;  // a⁴/p³ < 1: otherwise the estimate of the variance is unreliable
     } cases[] = {
         {0.5f, 0.45f, true},  {0.5f, 0.5f, true},  {0.5f, 0.95f, true}, {0.8f, 0.7f, false},
         {0.8f, 0.75f, false}, {0.8f, 0.78f, true}, {0.8f, 0.95f, true},
@@ -51,7 +50,7 @@ TEST_P(Roulette, HasTheKnownMeanVarianceAndCost) {
         RenderSettings settings{.samples = 1, .max_path_length = endless, .seed = ++seed};
         settings.survival_cap = cap;
         const Batches batches = render_furnace(GetParam(), vec3(albedo), settings, 256);
-        // The compensated throughput is a after the first bounce, and after a survival 1 or above.
+        // The compensated throughput is a after the first bounce, and 1 or more after a survival.
         const double a = albedo, p = std::min(albedo, cap), m = 1 / (1 - a);
         char name[100];
         std::snprintf(name, sizeof(name), "albedo %.2f, cap %.2f: ", a, double{cap});
@@ -78,8 +77,8 @@ class SplitRoulette : public Roulette {};
 INSTANTIATE_TEST_SUITE_P(Chapters, SplitRoulette, testing::ValuesIn(chapters_that(has_roulette, splits_paths)), chapter_name);
 
 TEST_P(SplitRoulette, IgnoresTheSplitting) {
-    // Each of s branches has p/(1-p) rays, and the variance of one is divided by s: were the factor 1/s part
-    // of the throughput, more of them would end.
+    // Each of s branches traces p/(1-p) rays, and the variance of one is divided by s: if the factor 1/s were part of the
+    // throughput, more of them would end.
     const double a = 0.5, m = 2, variance = (1 + 2 * a * m) / (1 - a) - m * m;
     for (const uint32_t s : {1u, 4u, 7u}) {
         RenderSettings settings{
@@ -93,7 +92,7 @@ TEST_P(SplitRoulette, IgnoresTheSplitting) {
 }
 
 TEST_P(Roulette, BeginsAtItsStart) {
-    // Before it nobody ends; at bounce 3 the survivors' throughput a³ is made up for at once.
+    // Before it no path ends; at bounce 3 the survivors' throughput a³ is compensated at once.
     const double a = 0.5;
     RenderSettings settings{.samples = 16, .max_path_length = endless, .roulette_start = 3};
     const Batches batches = render_furnace(GetParam(), vec3(0.5f), settings, 64);
@@ -102,8 +101,8 @@ TEST_P(Roulette, BeginsAtItsStart) {
 }
 
 TEST_P(Roulette, SurvivorsCarryTheSurvivalWeight) {
-    // With the survival weight a² and no cap two bounces are certain. From then on a path of weight a²
-    // survives with probability a, and so sees 1 + a + a² X' with E[X'] = 1/(1-a) and Var X' = a/(1-a)².
+    // With survival weight a² and no cap, two bounces are certain. From then on a path of weight a² survives with probability a,
+    // and so sees 1 + a + a² X' with E[X'] = 1/(1-a) and Var X' = a/(1-a)².
     const double a = 0.5, m = 1 / (1 - a), variance = std::pow(a, 4) * a * m * m;
     RenderSettings settings{.samples = 1, .max_path_length = endless, .seed = chapter_seed(GetParam()) + 40};
     settings.survival_cap = 1;

@@ -1,6 +1,5 @@
-// The error falls with the square root of the number of samples. A slower fall tells of samples that depend
-// on each other, of seeds that repeat or of an infinite variance. With low-discrepancy points it falls
-// faster.
+// The error falls with the square root of the number of samples. A slower fall reveals correlated samples, repeating seeds or
+// infinite variance. With low-discrepancy points it falls faster.
 #include <cmath>
 #include <cstdio>
 
@@ -14,15 +13,14 @@
 namespace lab {
 namespace {
 
-// That the error of a chapter falls with the root of the number of samples, and that a slope which is off by
-// 0.07 would have been found.
+// Expects a chapter's error to fall with the root of the number of samples; a slope that is off by 0.07 would have been found.
 void expect_slope(const Scene& scene, const std::string& chapter, RenderSettings settings) {
     settings.splitting_factor = 2;
     settings.roulette_start = 2;
     settings.estimator = chapter_estimator(chapter);
     settings.seed = chapter_seed(chapter);
     const ErrorSlope slope = measure_error_slope(scene, settings, 1024);
-    // A slope that leaves the tolerance with this probability.
+    // A slope outside the tolerance is found with this probability.
     const double finds = slope_tolerance + normal_quantile(power) * slope.standard_error;
     std::printf("  variance of a sample, from 1, 4, 16 ... samples:%s\n  slope %.4f; finds one off by %.3f\n",
                 slope.variances.c_str(), slope.value, finds);
@@ -34,20 +32,20 @@ class Convergence : public OnEachChapter {};
 INSTANTIATE_TEST_SUITE_P(Chapters, Convergence, testing::ValuesIn(chapters_that(is_pseudorandom)), own_estimator_name);
 TEST_P(Convergence, ErrorFallsWithTheRootOfTheNumberOfSamples) {
     Scene scene = load_shipped_scene("cornell_box.json");
-    // Without the lamp: a few pixels at its edge would decide the error of the whole image.
+    // Without the lamp: a few pixels at its edge would dominate the error of the whole image.
     scene.camera.target = {0, 0.7f, 0};
     scene.camera.vertical_fov = 22;
     expect_slope(scene, GetParam(), {.width = 44, .height = 44, .max_path_length = 3});
 }
 
-// What makes samples depend on each other does so in either scene.
+// Whatever correlates samples does so in either scene.
 TEST_P(Convergence, ErrorUnderASkyFallsWithTheRootOfTheNumberOfSamples_all) {
     expect_slope(load_shipped_scene("textured.json"), GetParam(), {.width = 48, .height = 48, .max_path_length = 2});
 }
 
 // --- Low-discrepancy points.
 
-// The largest slope of a log-log line through the errors of 1, 4, 16, … that is allowed.
+// The largest slope allowed for a log-log line through the errors of 1, 4, 16, … samples.
 void expect_slope_below(const std::string& what, const std::vector<double>& errors, double largest) {
     double xy = 0, xx = 0;
     std::string text;
@@ -61,8 +59,8 @@ void expect_slope_below(const std::string& what, const std::vector<double>& erro
     EXPECT_LT(xy / xx, largest) << what;
 }
 
-// Of smooth functions whose integrals are known. Pixels that share a scramble would err together, so that
-// their mean is no better than each of them. Pairs of numbers that share one would have another integral.
+// For smooth functions with known integrals. If pixels shared a scramble they would err together, and their mean would be no
+// better than each of them. If pairs of numbers shared one, the integral would be wrong.
 TEST(LowDiscrepancyConvergence, ErrorOfSmoothIntegralsFallsFast) {
     const Estimator chapter = chapter_estimator(chapter_named("low_discrepancy_points"));
     RenderSettings settings{.width = 64, .height = 64, .seed = test_seed(9100)};
@@ -70,7 +68,7 @@ TEST(LowDiscrepancyConvergence, ErrorOfSmoothIntegralsFallsFast) {
                           .defines = chapter.defines,
                           .observed = chapter.file};
     SceneRenderer renderer(closed_box(diffuse_material(vec3(0.5f))), settings);
-    // The pairs have nothing to do with each other: what depends on both converges more slowly.
+    // The pairs are unrelated: what depends on two of them converges more slowly.
     for (const auto& [channel, largest_slope] : {std::pair{0, -0.9}, {1, -0.9}, {2, -0.55}}) {
         std::vector<double> by_samples, by_pixels;
         for (settings.samples = 1; settings.samples <= 1024; settings.samples *= 4) {
@@ -102,7 +100,7 @@ void expect_fast_convergence(const Scene& scene, RenderSettings settings, double
     EXPECT_LT(slope.value + 5 * slope.standard_error, largest_slope);
 }
 
-// A square lamp above a floor: nothing is in the way of its light.
+// A square lamp above a floor, with nothing to block its light.
 Scene lamp_above_floor() {
     Scene scene = make_scene({diffuse_material(vec3(0.8f)), diffuse_material(vec3(0), vec3(5))},
                              {{{-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, 0}, {{-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1}});
@@ -127,9 +125,9 @@ TEST(LowDiscrepancyConvergence, ErrorOfWholePicturesFallsFaster_all) {
     expect_fast_convergence(load_shipped_scene("cornell_box.json"), settings, -0.52);
 }
 
-// What reports, --target-error and noise maps rest on: the difference between the halves of the samples tells the error of their
-// mean, which the spread over seeds tells as well. Halves of one sequence fill each other's gaps. So they differ more than their
-// mean errs: here their estimate would be several times too large.
+// What reports, --target-error and noise maps rely on: the difference between the halves of the samples estimates the error of
+// their mean, which the spread over seeds shows as well. Halves of a single sequence would fill each other's gaps. So they would
+// differ more than their mean errs, and the estimate would be several times too large.
 TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
     constexpr uint32_t seeds = 24;
     RenderSettings settings = light_samples_only();
@@ -161,8 +159,8 @@ TEST(LowDiscrepancyConvergence, HalvesTellTheError) {
     EXPECT_LT(error, tolerance / 6) << "the test is too weak, take larger images";
 }
 
-// The part of tiles of 8 x 8 pixels whose mean is within 1.96 of its standard errors, which the halves tell, of what it should
-// be.
+// The fraction of tiles of 8 x 8 pixels whose mean is within 1.96 standard errors, estimated from the halves, of its expected
+// value.
 double part_within_the_error_bar(const FilmImage& film, const Image& expected) {
     constexpr uint32_t tile = 8;
     uint32_t within = 0, count = 0;
@@ -182,7 +180,7 @@ double part_within_the_error_bar(const FilmImage& film, const Image& expected) {
     return static_cast<double>(within) / count;
 }
 
-// At powers of two, where points are at their best, and at other numbers of samples.
+// At powers of two, where the points are at their best, and at other numbers of samples.
 void expect_error_bars_to_hold(const Scene& scene, RenderSettings settings, uint32_t seeds, const Image& expected) {
     SceneRenderer renderer(scene, settings);
     for (const uint32_t samples : {50u, 64u, 100u, 1000u}) {
@@ -198,7 +196,7 @@ void expect_error_bars_to_hold(const Scene& scene, RenderSettings settings, uint
     }
 }
 
-// Of smooth functions whose integrals are 1: there points gain most, and dependent halves tell the most wrong error.
+// For smooth functions with integral 1: there points gain most, and dependent halves would be most misleading.
 TEST(LowDiscrepancyConvergence, ErrorBarsHoldAtAnyNumberOfSamples) {
     const Estimator chapter = chapter_estimator(chapter_named("low_discrepancy_points"));
     RenderSettings settings{.width = 64, .height = 64};

@@ -1,5 +1,4 @@
-// Chapter 4: with s branches a sample has the variance V_out + V_in / s, and Russian roulette does not notice
-// them.
+// Chapter 4: with s branches a sample has the variance V_out + V_in / s, and Russian roulette is unaffected by them.
 #include <cmath>
 
 #include "support/expect_statistics.h"
@@ -12,8 +11,8 @@ namespace {
 
 const std::vector<uint32_t> splitting_factors{1, 2, 4, 8};
 
-// The variance of single samples of a pixel, averaged over the pixels: independent estimates, one from each
-// `group` of batches, which must have one sample each.
+// The variance of single samples of a pixel, averaged over the pixels: independent estimates, one from each `group` of batches,
+// which must have one sample each.
 std::vector<double> sample_variances(const Batches& batches, size_t group) {
     std::vector<double> variances;
     for (size_t first = 0; first + group <= batches.images.size(); first += group) {
@@ -29,7 +28,7 @@ std::vector<double> sample_variances(const Batches& batches, size_t group) {
     return variances;
 }
 
-// The lower part of the Cornell box, without its lamp, in so wide pixels that the first hit matters.
+// The lower part of the Cornell box, without its lamp, in pixels so wide that the first hit matters.
 Scene view_of_boxes() {
     Scene scene = load_shipped_scene("cornell_box.json");
     scene.camera.target = {0, 0.5f, 0};
@@ -50,7 +49,7 @@ struct SplittingFit {
     Difference outer;                   // V_out
     double inner;                       // V_in
     double p_value;                     // of the fit, a chi-square
-    double smallest_detectable_misfit;  // of one of the variances, relative
+    double smallest_detectable_misfit;  // of any one variance, relative
 };
 SplittingFit fit_variances(const std::vector<std::vector<double>>& variances_of_factor) {
     double w = 0, wx = 0, wxx = 0, wy = 0, wxy = 0, worst_error = 0;
@@ -96,8 +95,8 @@ TEST_P(Splitting, LowersTheVarianceAfterTheFirstHit) {
     EXPECT_GT(fit.outer.value, 5 * fit.outer.standard_error) << "what splitting cannot lower is not there";
 }
 
-// All camera rays hit the same point, so only the branches are random: V_out = 0 if they are independent. A
-// correlation r between them would show as V_out = r V_in.
+// All camera rays hit the same point, so only the branches are random: V_out = 0 if they are independent. A correlation r between
+// them would show as V_out = r V_in.
 TEST_P(Splitting, BranchesAreIndependent) {
     Scene scene = view_of_boxes();
     scene.camera.target = {-0.1f, 0.3f, 0};

@@ -1,8 +1,8 @@
-// A Vulkan layer between program and driver that makes a device fail, or a smaller one of it: no device does
-// so when a test wants it to. FAULT_LOSE_DEVICE_AFTER=N: the device is lost after N submissions.
-// FAULT_MEMORY_MIB=N: it has no more memory than that. FAULT_CARVE_OUT_MIB=N: it is an integrated GPU that
-// calls this much memory its own and the rest the CPU's. FAULT_maxImageDimension2D=N, and so on: it has this
-// limit. The Vulkan loader finds the layer through VK_LAYER_PATH and VK_INSTANCE_LAYERS.
+// A Vulkan layer between program and driver that simulates a failing or smaller device, since no device fails when a test wants
+// it to. FAULT_LOSE_DEVICE_AFTER=N: the device is lost after N submissions. FAULT_MEMORY_MIB=N: it has no more memory than this.
+// FAULT_CARVE_OUT_MIB=N: it is an integrated GPU whose own heap has this size, and the rest is the CPU's.
+// FAULT_maxImageDimension2D=N, and so on: it has this limit. The Vulkan loader finds the layer through VK_LAYER_PATH and
+// VK_INSTANCE_LAYERS.
 #include <vulkan/vk_layer.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ PFN_vkGetDeviceProcAddr next_device_function = nullptr;
 VkInstance instance = VK_NULL_HANDLE;  // programs under test have one instance and one device
 VkDevice device = VK_NULL_HANDLE;
 
-// What an environment variable allows; without it everything.
+// The limit in an environment variable; without it, unlimited.
 uint64_t limit(const char* variable) {
     const char* text = std::getenv(variable);
     return text ? std::strtoull(text, nullptr, 10) : UINT64_MAX;
@@ -30,14 +30,14 @@ const uint64_t carve_out_mebibytes = limit("FAULT_CARVE_OUT_MIB");
 const bool is_integrated = carve_out_mebibytes != UINT64_MAX;
 uint64_t own_mebibytes_left = carve_out_mebibytes;
 uint64_t allocations_left = limit("FAULT_maxMemoryAllocationCount");
-uint32_t driver_memory_types = 0;  // behind each, an integrated GPU has the same one in the CPU's heap
+uint32_t driver_memory_types = 0;  // an integrated GPU repeats each of them in the CPU's heap
 
 template <typename Function>
 Function next(const char* name) {
     return reinterpret_cast<Function>(next_device_function(device, name));
 }
 
-// The next ones of the instance: once it is there, the loader answers with those of the first layer.
+// The next functions of the instance: once it exists, the loader returns those of the first layer.
 PFN_vkGetPhysicalDeviceProperties next_get_properties = nullptr;
 PFN_vkGetPhysicalDeviceProperties2 next_get_properties2 = nullptr;
 PFN_vkGetPhysicalDeviceMemoryProperties next_get_memory_properties = nullptr;
@@ -116,7 +116,7 @@ void VKAPI_CALL free_memory(VkDevice of, VkDeviceMemory memory, const VkAllocati
     next<PFN_vkFreeMemory>("vkFreeMemory")(of, memory, callbacks);
 }
 
-// The loader's link to the next layer or the driver, which is taken off the chain for those that follow.
+// The loader's link to the next layer or the driver; it is removed from the chain for those that follow.
 template <typename Info, VkStructureType type, typename CreateInfo>
 auto take_link(const CreateInfo* create) {
     auto* info = static_cast<Info*>(const_cast<void*>(create->pNext));
@@ -176,7 +176,7 @@ PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance of, const char* name)
 
 }  // namespace
 
-// How the loader and a layer get to know each other.
+// Negotiation between the loader and the layer.
 extern "C" __attribute__((visibility("default"))) VkResult VKAPI_CALL
 vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* version) {
     version->pfnGetInstanceProcAddr = instance_function;

@@ -1,4 +1,4 @@
-// Preloaded, it ends any program that starts GLFW: proof that a run without a window never does.
+// Preload this to end any program that starts GLFW: proof that headless runs never do.
 #include <cstdlib>
 
 extern "C" int glfwInit() { std::_Exit(77); }

@@ -21,7 +21,7 @@ BUILD = ROOT / "build-fuzz"
 SEEDS = ROOT / "tests" / "fuzz" / "seeds"
 FORMATS = ["obj", "mtl", "scene", "hdr", "exr", "texture"]
 LIMITS = {"timeout": 5, "malloc_limit_mb": 1100, "rss_limit_mb": 6000, "max_len": 16384}
-SLICE_SECONDS = 60  # of a run; the next continues with what it found
+SLICE_SECONDS = 60  # per run; the next one continues with what it found
 
 
 def run_slice(name, seconds):

@@ -15,7 +15,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tracing/bvh.h"
 
-// Of the sanitizers' run-time library; GCC does not ship the header.
+// From the sanitizers' run-time library; GCC does not ship the header.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, size_t),
                                                          void (*on_free)(const volatile void*));
 
@@ -33,7 +33,7 @@ void require(bool condition, const char* what) {
     if (!condition) report_defect(what);
 }
 
-// Largest single allocation while an input is read; 0 between inputs.
+// Largest single allocation allowed while reading an input; 0 between inputs.
 std::atomic<size_t> allocation_limit = 0;
 
 void check_allocation(const volatile void*, size_t size) {
@@ -43,7 +43,7 @@ void check_allocation(const volatile void*, size_t size) {
     report_defect("an allocation of " + std::to_string(size) + " bytes");
 }
 
-// A folder in memory, with the seeds of all formats in it for an input to refer to; removed at the end.
+// A folder in memory that contains the seeds of all formats for an input to refer to; removed at the end.
 class Folder {
   public:
     Folder() : folder_(fs::is_directory("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) {

@@ -1,4 +1,4 @@
-// The libraries that read files, compiled once more so that the sanitizers see into them.
+// The libraries that read files, compiled again so that the sanitizers cover them.
 // NOLINTBEGIN
 #include <zlib.h>
 #define TINYEXR_USE_MINIZ 0

@@ -1,6 +1,5 @@
-// Runs a fuzz target where there is no libFuzzer, which needs Clang: changes inputs at random and keeps those
-// that reach code that no other did. Arguments as for libFuzzer: [-max_total_time=SECONDS] [-seed=N]
-// FILE_OR_FOLDER...
+// Runs a fuzz target without libFuzzer, which needs Clang: mutates inputs at random and keeps those that reach new code. Takes
+// libFuzzer's arguments: [-max_total_time=SECONDS] [-seed=N] FILE_OR_FOLDER...
 #include <sanitizer/common_interface_defs.h>
 #include <sys/time.h>
 
@@ -32,7 +31,7 @@ bool reached_more = false;
 
 const Input* current = nullptr;
 
-// Keeps the input that ends the program.
+// Saves the input that crashed the program.
 void save_current_input() {
     if (!current) return;
     const std::string name = std::string("crash_") + lab::hostile_file_name;
@@ -59,7 +58,7 @@ class Mutator {
   public:
     explicit Mutator(uint32_t seed) : random_(seed) {}
 
-    // A copy of one input with up to eight changes.
+    // Copies one input and makes up to eight changes.
     Input make(const std::vector<Input>& corpus) {
         Input input = corpus[below(corpus.size())];
         for (size_t changes = 1 + below(8); changes > 0; --changes) change(input, corpus[below(corpus.size())]);
@@ -129,10 +128,10 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 
 }  // namespace
 
-// Lets the run-time library see abort(), too, and keep the input then.
+// Makes the run-time library catch abort() as well, so that the input is saved then, too.
 extern "C" const char* __asan_default_options() { return "handle_abort=1"; }
 
-// GCC inserts a call at the start of each basic block of the loaders.
+// GCC inserts a call of this at the start of each basic block of the loaders.
 extern "C" void __sanitizer_cov_trace_pc() {
     const auto address = reinterpret_cast<uintptr_t>(__builtin_return_address(0));
     const size_t slot = address * 0x9e3779b97f4a7c15u >> 44;

@@ -1,4 +1,4 @@
-// Cameras of extreme fields of view, images of extreme sizes and views of extreme angles.
+// Extreme fields of view, image sizes and viewing angles.
 #include <cmath>
 #include <cstdio>
 
@@ -16,7 +16,7 @@ using glm::dvec3;
 class HardCamera : public OnEachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, HardCamera, testing::ValuesIn(all_backends), own_backend_name);
 
-// The direction of a camera ray in double, from the pose.
+// The direction of a camera ray in double, computed from the pose.
 dvec3 direction_of(const CameraPose& pose, double width, double height, double x, double y) {
     const dvec3 forward = glm::normalize(dvec3(pose.target) - dvec3(pose.position));
     const dvec3 right = glm::normalize(glm::cross(forward, dvec3(pose.up))), up = glm::cross(right, forward);
@@ -24,8 +24,7 @@ dvec3 direction_of(const CameraPose& pose, double width, double height, double x
     return glm::normalize(forward + tangent * ((2 * x / width - 1) * width / height * right - (2 * y / height - 1) * up));
 }
 
-// A 32-bit direction is exact to a few times 2^-24, and a position in an image of 2^14 pixels to 2^-10 of a
-// pixel.
+// A 32-bit direction is accurate to a few times 2^-24, and a position in an image of 2^14 pixels to 2^-10 of a pixel.
 TEST_P(HardCamera, RaysHaveTheRightDirections) {
     Scene scene = closed_box(diffuse_material(vec3(0.5f)));
     constexpr double rounding = 4 * 0x1p-24;
@@ -58,8 +57,8 @@ TEST_P(HardCamera, RaysHaveTheRightDirections) {
     std::printf("  directions are off by up to %s\n", text);
 }
 
-// A white floor under a white sky shows exactly 1 from any angle, and less if the next ray hits the floor
-// again or starts below it.
+// A white floor under a white sky shows exactly 1 from any angle, and less if the next ray hits the floor again or starts below
+// it.
 TEST_P(HardCamera, GrazingViewsLoseNoLight) {
     double lost = 0, pixels = 0;
     for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999})

@@ -1,8 +1,7 @@
-// A light that touches what it lights. A point y of it, chosen uniformly by area, has the weight A cos θ cos
-// θ' / r², and near the edge where the two meet r goes to 0: at the distance h from the edge the standard
-// deviation grows as 1/h, and a pixel that contains the edge has an infinite variance. Its samples exceed t
-// with a probability of about t^(-3/2), so by the theory of stable laws the error of their mean falls as
-// N^(-1/3) only, and the mean is still right. From chapter 7 on the weights are bounded, which ends that.
+// A light that touches what it illuminates. A point y on it, uniform by area, has the weight A cos θ cos θ' / r², and near the
+// contact edge r goes to 0: at distance h from the edge the standard deviation grows as 1/h, and a pixel that contains the edge
+// has infinite variance. Its samples exceed t with a probability of about t^(-3/2), so by the theory of stable laws the error of
+// their mean falls only as N^(-1/3), although the mean is right. From chapter 7 on the weights are bounded, which cures this.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,9 +19,8 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-// A floor [0,1]² and a wall of light above its edge x = 0. The camera looks straight down to the floor: on
-// the pixels of a row as wide as the image is high lie the distances between `nearest` and `farthest` from
-// the edge.
+// A floor [0,1]² and a wall of light above its edge x = 0. The camera looks straight down on the floor: pixels of a row, as wide
+// as the image is high, span the distances from `nearest` to `farthest` from the edge.
 Scene floor_and_wall(double nearest, double farthest) {
     Scene scene = make_scene({diffuse_material(vec3(1)), diffuse_material(vec3(0), vec3(1))},
                              {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1}});
@@ -43,12 +41,12 @@ RenderSettings settings(const std::string& chapter) {
 }
 
 struct Row {
-    double distance;  // of the edge
+    double distance;  // from the edge
     uint32_t samples;
     double largest_bias;
 };
 
-// The largest standard deviation of a sample over its mean.
+// The largest ratio of a sample's standard deviation to its mean.
 double expect_lambert(const std::string& chapter, const std::vector<Row>& rows) {
     double largest_ratio = 0;
     for (const auto& [h, samples, limit] : rows) {

@@ -1,4 +1,4 @@
-// The device's own arithmetic: within what Vulkan guarantees, and what the shaders make of it.
+// The device's own arithmetic: is it within Vulkan's guarantees, and what do the shaders make of it?
 #include <cmath>
 #include <cstdio>
 
@@ -9,7 +9,7 @@ namespace lab {
 namespace {
 
 TEST(DeviceArithmetic, IsAboutWhatVulkanGuarantees) {
-    // A driver that misses a guarantee by a little is reported, not failed: we cannot mend it.
+    // A driver that just misses a guarantee is reported, not failed: we cannot fix it.
     std::string outside;
     for (const FunctionError& error : measure_functions(test_device())) {
         EXPECT_TRUE(std::isfinite(error.ulps)) << error.name;

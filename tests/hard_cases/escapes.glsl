@@ -1,6 +1,6 @@
-// Counts rays that leave a closed mesh around the camera: from near the camera to random vertices (red), points of edges
-// (green) and of triangles (blue). parameters.background.x is the largest distance of their origins from the camera
-// along each axis.
+// Counts rays that escape from a closed mesh around the camera: from near the camera to random vertices (red), points on edges
+// (green) and on triangles (blue). parameters.background.x is the largest distance of their origins from the camera along each
+// axis.
 vec3 path_trace(Ray camera_ray, inout uvec2 seed) {
     vec2 u = get_random_numbers(seed), v = get_random_numbers(seed), w = get_random_numbers(seed);
     uint kind = uint(3.0 * u.y);

@@ -1,4 +1,4 @@
-// Samplers at every number that the generator yields: the 2^24 multiples of 2^-24 below 1.
+// Samplers at every number that the generator can return: the 2^24 multiples of 2^-24 below 1.
 #include <cmath>
 #include <numbers>
 
@@ -13,8 +13,8 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-// Calls `check` with pairs of numbers, a million at a time: every number comes second, some number first; and
-// of the last ones, where a cosine sample lies along the surface, each with a thousand others.
+// Calls `check` with pairs of numbers, a million at a time: every number as the second one, with some first one; and the last
+// ones, for which a cosine sample lies along the surface, with a thousand others each.
 template <typename Check>
 void for_all_numbers(const Check& check) {
     constexpr uint32_t count = 1 << 24, piece = 1 << 20;
@@ -47,7 +47,7 @@ TEST(EveryNumber, MakesACosineSampleAboveTheHorizon) {
 }
 
 TEST(EveryNumber, GivesUniformAnglesABoundedWeight) {
-    // π sin θ cos θ is at most π/2, also where the density 1/(π² sin θ) is infinite.
+    // π sin θ cos θ is at most π/2, even where the density 1/(π² sin θ) is infinite.
     const Surface surface{{0, 0, 1}, {0, 0, 1}, white_material()};
     double largest = 0, worst = 0;
     for_all_numbers([&](const auto& numbers) {

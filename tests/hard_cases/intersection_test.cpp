@@ -1,4 +1,4 @@
-// Rays at surfaces: they do not hit the one they start from, and none slips through a closed one.
+// Rays at surfaces: they never hit the one they start from, and none slips through a closed one.
 #include <cmath>
 #include <cstdio>
 #include <glm/gtc/matrix_transform.hpp>
@@ -17,7 +17,7 @@ class Intersection : public OnEachBackend {
         return {.width = size, .height = size, .samples = samples, .estimator = probe(name), .backend = GetParam()};
     }
 
-    // `effort` times the fewest rays.
+    // `effort` multiplies the minimal number of rays.
     void expect_no_self_hits(uint32_t effort) const;
     void expect_no_self_hits_of_stretched_instances(uint32_t effort) const;
     void expect_no_escapes(uint32_t effort) const;
@@ -37,7 +37,7 @@ class Random {
   public:
     explicit Random(uint32_t seed) : generator_(test_seed(seed)) {}
     double uniform(double low, double high) { return std::uniform_real_distribution<>(low, high)(generator_); }
-    // Of any magnitude between 10^-8 and 10^8.
+    // Log-uniform between 10^-8 and 10^8.
     double magnitude() { return std::pow(10.0, uniform(-8, 8)); }
     double coordinate() { return uniform(-1, 1) < 0 ? -magnitude() : magnitude(); }
     vec3 point() {
@@ -48,8 +48,7 @@ class Random {
         const double x = uniform(-1, 1), y = uniform(-1, 1);
         return vec3(glm::dvec3(x, y, uniform(-1, 1)));
     }
-    // Corners of triangles of ordinary shapes and all sizes, each as far from the origin as it is large, or
-    // ten or a hundred times.
+    // Triangles of ordinary shapes and all sizes, one, ten or a hundred times as far from the origin as they are large.
     std::vector<vec3> triangles(size_t count) {
         std::vector<vec3> corners;
         for (size_t i = 0; i < count; ++i) {
@@ -66,16 +65,14 @@ class Random {
 
 void Intersection::expect_no_self_hits(uint32_t effort) const {
     constexpr size_t triangle_count = 1000;
-    // As pbrt's test Triangle.Reintersect: each coordinate has a magnitude of its own, so that all are
-    // slivers.
+    // Like pbrt's test Triangle.Reintersect: each coordinate has its own magnitude, so that all are slivers.
     std::vector<vec3> slivers;
     Random random(1);
     for (size_t i = 0; i < 3 * triangle_count; ++i) slivers.push_back(random.point());
     const std::vector<vec3> sizes = random.triangles(triangle_count);
     const bool is_ours = GetParam() == Backend::compute;
-    // In 32 bits the distance of a ray from a sliver that it runs along may be anything: 6 of 10^6 rays hit
-    // one of those again, which cover no area to speak of. Drivers have triangle tests of their own, and that
-    // of an NVIDIA H200 lets 9 of 1000 do so.
+    // In 32 bits, the distance of a ray from a sliver that it runs along can be anything: 6 of 10^6 rays hit one of these again,
+    // which cover a negligible area. Drivers have their own triangle tests, and that of an NVIDIA H200 lets 9 of 1000 do so.
     const double largest_part_of_slivers = is_ours ? 5e-5 : 0.02;
     for (const auto& [name, corners, largest_part] :
          {std::tuple{"slivers", slivers, largest_part_of_slivers}, {"all_sizes", sizes, 0.0}}) {
@@ -95,7 +92,7 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
     const auto turn = [](float angle) { return mat3(glm::rotate(glm::mat4(1), angle, glm::normalize(vec3(1, 2, -0.5f)))); };
     const auto scale = [](float x, float y, float z) { return mat3(glm::scale(glm::mat4(1), {x, y, z})); };
     const std::tuple<const char*, mat3, mat3> cases[] = {
-        // The transform of the instance, and the one applied to the triangles before.
+        // The transform of the instance, and the one applied to the triangles beforehand.
         {"long", scale(100, 1, 1), mat3(1)},
         {"thin", scale(1, 1e-3f, 1e-3f), mat3(1)},
         {"flat", scale(1, 1e-3f, 1), mat3(1)},
@@ -104,7 +101,7 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
         {"slender_only_in_the_mesh", scale(100, 1, 1), scale(0.01f, 1, 1)},
         {"slender_only_in_the_mesh_turned", turn(0.7f) * scale(1, 1e3f, 1), scale(1, 1e-3f, 1)},
     };
-    const uint32_t size = GetParam() == Backend::compute ? 320 : 160;  // drivers' trees of them are slow
+    const uint32_t size = GetParam() == Backend::compute ? 320 : 160;  // drivers' trees of slivers are slow
     for (const auto& [name, object_to_world, before] : cases) {
         std::vector<vec3> corners = Random(2).triangles(200);
         for (vec3& corner : corners) corner = before * corner;
@@ -112,8 +109,7 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
         RecordProperty(std::string("self_hits_") + name, out_of(total.r, total.g));
         std::printf("  %s: %s\n", name, out_of(total.r, total.g).c_str());
         EXPECT_GE(total.g, 0.9 * size * size) << name;
-        // What the instance alone deforms are slivers in the world, and a ray in 10^6 hits those again, as
-        // above.
+        // Triangles that only the instance deforms are slivers in world space, and one ray in 10^6 hits those again, as above.
         EXPECT_LE(total.r, before == mat3(1) ? 5e-6 * total.g : 0) << name;
     }
 }
@@ -123,8 +119,8 @@ TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleOfAStretchedInstanceThatItLeav
     expect_no_self_hits_of_stretched_instances(4);
 }
 
-// Two squares that face each other across a gap, with the camera between them. Every path finds exactly the
-// geometric series of albedo and emission unless a ray leaves the gap.
+// Two squares that face each other across a gap, with the camera in between. Every path finds exactly the geometric series of
+// albedo and emission unless a ray escapes from the gap.
 Scene two_planes(float gap, bool is_turned) {
     Scene scene = make_scene({diffuse_material(vec3(0.5f), vec3(1))},
                              {{{-1, -1, 0.3f}, {2, 0, 0}, {0, 2, 0}}, {{-1, -1, 0.3f + gap}, {0, 2, 0}, {2, 0, 0}}});
@@ -153,7 +149,7 @@ TEST_P(Intersection, NothingLeaksThroughPlanesCloseToEachOther) {
                 leaks += pixel.sum.r != 2 - 1.0f / 256;
                 ++rays;
             }
-            // Points of one plane see those of the other.
+            // Points on one plane see those on the other.
             const glm::dvec3 total = probe_total(scene, settings("visibility", 128, 4));
             shadows += total.r;
             shadow_rays += total.g;
@@ -178,7 +174,7 @@ struct ClosedMesh {
     const char* name;
     TriangleMesh mesh;
     vec3 centre;
-    float half_extent;  // of the cube from which rays start
+    float half_extent;  // of the cube in which rays start
 };
 
 TriangleMesh moved(TriangleMesh mesh, float scale, const vec3& offset) {
@@ -209,7 +205,7 @@ TriangleMesh grid_pyramid(uint32_t cells, float size, const vec3& corner) {
 }
 
 void Intersection::expect_no_escapes(uint32_t effort) const {
-    const vec3 far(148376, 1234, -223423);  // of Embree's verify
+    const vec3 far(148376, 1234, -223423);  // from Embree's verify
     const ClosedMesh meshes[] = {
         {"sphere", bumpy_sphere(100), vec3(0), 0.4f},
         {"far_sphere", moved(bumpy_sphere(100), 2, far), far, 0.8f},
@@ -218,8 +214,8 @@ void Intersection::expect_no_escapes(uint32_t effort) const {
     };
     const bool is_ours = GetParam() == Backend::compute;
     const double rays_of_all = (is_ours ? 1e6 : 2e5) * effort;
-    // Our own triangle test is watertight, what drivers do is theirs: that of an NVIDIA H200 lets through 8
-    // of 10,000 rays far from the origin, lavapipe's 2 % of the rays that aim at a vertex.
+    // Our own triangle test is watertight; drivers' are not necessarily: an NVIDIA H200 lets through 8 of 10,000 rays far from
+    // the origin, lavapipe 2 % of the rays that aim at a vertex.
     const double largest_part = is_ours ? 0 : 0.05;
     for (const ClosedMesh& closed : meshes) {
         Scene scene = lit_scene(closed.mesh);

@@ -1,5 +1,4 @@
-// One sample of one pixel is made infinite or not a number: it is counted and shown, and nothing else
-// changes.
+// One sample of one pixel becomes infinite or NaN: it is counted and displayed, and nothing else changes.
 #include <cstring>
 
 #include "files/project_folder.h"
@@ -16,7 +15,7 @@ class InvalidSamples : public OnEachBackend {
   protected:
     static constexpr uint32_t width = 21, height = 13, samples = 9, poisoned_pixel = 5 * width + 8, poisoned_sample = 4;
 
-    // The film with samples first, ..., first + count - 1, one of which may be poisoned.
+    // The film of samples first, ..., first + count - 1, one of which may be poisoned.
     static FilmImage render(uint32_t bits, int channel, uint32_t first = 0, uint32_t count = samples) {
         const Device& device = test_device();
         const Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}, {1, 2, 3}));

@@ -29,8 +29,7 @@ class Lights : public OnEachBackend {
 };
 INSTANTIATE_TEST_SUITE_P(Backends, Lights, testing::ValuesIn(all_backends), own_backend_name);
 
-// A floor [-1,1]² in the plane z = 0, of which the camera sees hardly more than the origin. Material 0 is its
-// own.
+// A floor [-1,1]² in the plane z = 0, of which the camera sees little more than the origin. It has material 0.
 Scene floor_with(const std::vector<vec3>& emissions, std::vector<Quad> lights) {
     std::vector<Material> materials{diffuse_material(vec3(albedo))};
     for (const vec3& emission : emissions) materials.push_back(diffuse_material(vec3(0), emission));
@@ -40,7 +39,7 @@ Scene floor_with(const std::vector<vec3>& emissions, std::vector<Quad> lights) {
     return scene;
 }
 
-// Radiance of the floor at the origin, from lights that are fully visible.
+// Radiance of the floor at the origin, from fully visible lights.
 double expected_radiance(const Scene& scene) {
     double sum = 0;
     for (size_t i = 2; i < scene.triangles.size(); ++i) {
@@ -79,13 +78,11 @@ TEST_P(Lights, OfExtremeSizesAndDistancesIlluminateAsLambertSays) {
     }
 }
 
-// Towards 90 degrees a cosine is a difference of nearly equal numbers: its error is that of positions
-// relative to the distance.
+// Near 90 degrees a cosine is a difference of nearly equal numbers: its error is that of the positions relative to the distance.
 TEST_P(Lights, AtGrazingAnglesErrByTheRoundingOfPositions) {
     for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999}) {
         const double cosine = std::cos(degrees * pi / 180), sine = std::sin(degrees * pi / 180);
-        // Light that arrives just above the horizon, and a light above the floor whose plane hardly misses
-        // the origin.
+        // Light that arrives just above the horizon, and a light above the floor whose plane just misses the origin.
         const dvec3 to_light(0, 0.6, 0.8), across(0, -0.8, 0.6);
         const auto height = static_cast<float>(cosine);
         const Quad low{{1, 0, height}, {0, 0.01f, 0}, {0, 0, 0.01f * height}, 1};
@@ -93,7 +90,7 @@ TEST_P(Lights, AtGrazingAnglesErrByTheRoundingOfPositions) {
         for (auto [name, quad] : {std::pair("low", low), std::pair("seen_from_its_edge", on_edge)}) {
             if (expected_radiance(floor_with({vec3(1)}, {quad})) == 0) std::swap(quad.edge_u, quad.edge_v);
             Scene scene = floor_with({vec3(1)}, {quad});
-            scene.camera.vertical_fov = 1e-5f;  // elsewhere on the floor the angle is another one
+            scene.camera.vertical_fov = 1e-5f;  // elsewhere on the floor the angle differs
             const double expected = expected_radiance(scene);
             const MeanEstimate radiance = estimate_mean(pixel_means(render(scene, settings(chapters().front(), 64, 1)), 0));
             const double error = radiance.mean / expected - 1, noise = radiance.standard_error / expected;
@@ -122,7 +119,7 @@ TEST_P(Lights, InThePlaneOfTheReceiverGiveNothing) {
     Scene scene = floor_with({vec3(1)}, {{{1, -1, 0}, {1, 0, 0}, {0, 2, 0}, 1}});
     for (const std::string& chapter : chapters())
         for (const FilmPixel& pixel : render(scene, settings(chapter, 16, 1)).pixels) ASSERT_EQ(pixel.sum, vec3(0));
-    // Turned, its corners are no longer exactly in one plane.
+    // Once rotated, its corners are no longer exactly coplanar.
     const mat3 turn(glm::normalize(vec3(2, 1, 0.5f)), glm::normalize(vec3(-1, 2, 0)),
                     glm::normalize(glm::cross(vec3(2, 1, 0.5f), vec3(-1, 2, 0))));
     for (vec3& position : scene.positions) position = turn * position;
@@ -141,7 +138,7 @@ TEST_P(Lights, ThatAreConvexDoNotLightThemselves) {
     }
 }
 
-// One of 100,000 triangles holds nearly all power.
+// One of 100,000 triangles has nearly all the power.
 TEST_P(Lights, OfUnequalPowerAreChosenByIt) {
     constexpr uint32_t columns = 250, rows = 200;
     std::vector<Quad> quads;
@@ -159,9 +156,8 @@ TEST_P(Lights, OfUnequalPowerAreChosenByIt) {
                     chapters_that(samples_lights).size());
 }
 
-// A light that fills the whole lobe, seen in the floor: k_s cos θ of its radiance. Light samples hardly ever
-// hit a lobe that is a ten thousandth of a radian wide, so bounces have to find the light with all of the
-// weight.
+// A light that fills the whole lobe, reflected in the floor: k_s cos θ of its radiance. Light samples hardly ever hit a lobe one
+// ten-thousandth of a radian wide, so bounces have to find the light with the full weight.
 TEST_P(Lights, AreMirroredByTheNarrowestLobes) {
     for (const float exponent : {1e4f, 1e6f, 1e8f})
         for (const std::string& chapter : chapters_for(GetParam(), chapters_that(weights_lights))) {

@@ -1,4 +1,4 @@
-// Path lengths 0 and 1000, and surfaces that absorb nothing: nothing may be gained or lost on the way.
+// Path lengths 0 and 1000, and surfaces that absorb nothing: no energy may be gained or lost on the way.
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -13,7 +13,7 @@ namespace {
 class PathCases : public OnEachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, PathCases, testing::ValuesIn(all_backends), own_backend_name);
 
-// Roulette ends no path where surfaces absorb nothing and the survival probability may be 1.
+// Roulette never ends a path if surfaces absorb nothing and the survival probability may be 1.
 RenderSettings make_settings(Backend backend, const std::string& chapter, uint32_t max_path_length) {
     RenderSettings settings{.width = 16, .height = 16, .samples = 4, .max_path_length = max_path_length};
     settings.survival_cap = 1;
@@ -36,8 +36,8 @@ TEST_P(PathCases, LengthZeroShowsTheEmission) {
 }
 
 TEST_P(PathCases, LengthThousandAddsAThousandAndOneEmissions) {
-    // Inside a white box that emits 1 a path of chapter 2 or later has the weight 1 all the way. It is cut
-    // short only where rounding errors bring a direction below the surface, or if it leaves.
+    // Inside a white box that emits 1, a path of chapter 2 or later keeps the weight 1. It ends early only if rounding errors
+    // bring a direction below the surface, or if it escapes.
     constexpr uint32_t length = 1000;
     const Scene scene = closed_box(diffuse_material(vec3(1), vec3(1)));
     double largest_loss = 0;
@@ -55,8 +55,8 @@ TEST_P(PathCases, LengthThousandAddsAThousandAndOneEmissions) {
 }
 
 TEST_P(PathCases, LengthThousandIsFiniteWithUniformAngles) {
-    // The weights of chapter 1 differ, and the product of a thousand of them vanishes or is huge: no estimate
-    // worth having, but a number. render() fails the test if it is none.
+    // The weights of chapter 1 vary, and the product of a thousand of them underflows or is huge: a useless estimate, but still a
+    // number. render() fails the test if it is not.
     const Scene scene = closed_box(diffuse_material(vec3(1), vec3(1)));
     const FilmImage film = render(scene, make_settings(GetParam(), all_chapters.front(), 1000));
     for (const double mean : pixel_means(film, 1)) ASSERT_GE(mean, 1);
@@ -68,7 +68,7 @@ TEST_P(PathCases, WhiteConvexObjectVanishesBeforeAWhiteSky) {
     size_t samples = 0, lost = 0;
     for (const vec3& scale : {vec3(1), vec3(100, 1, 1), vec3(1000, 1, 0.5f)})
         for (const std::string& chapter : chapters_for(GetParam(), chapters_that(weighs_by_albedo))) {
-            if (scale != vec3(1) && chapter != chapter_named("cosine_sampling")) continue;  // bounces are the same in all
+            if (scale != vec3(1) && chapter != chapter_named("cosine_sampling")) continue;  // bounces are the same in all of them
             set_transform(scene, mat4x3(glm::scale(glm::mat4(1), scale)));
             RenderSettings settings = make_settings(GetParam(), chapter, 1000);
             settings.samples = 256;

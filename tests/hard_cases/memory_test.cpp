@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t mebibyte = 1 << 20;
 
-// The message with which the device refuses.
+// The message of the device's refusal.
 std::string refusal(const std::function<void()>& allocate) {
     try {
         allocate();
@@ -40,7 +40,7 @@ TEST(Memory, RefusesBuffersThatTheDeviceDoesNotAllow) {
     EXPECT_NE(text.find(in_mebibytes(limit)), std::string::npos) << text;
 }
 
-// Each part alone could be allocated, but not all of them.
+// Each part would fit alone, but not all of them.
 TEST(Memory, RefusesMoreThanTheDeviceHas) {
     const size_t memory = test_device().description().memory;
     std::vector<MemoryNeed> parts(8, {"textures", memory / 8});
@@ -58,7 +58,7 @@ TEST(Memory, OfFilmsIsWhatTheyAllocate) {
     EXPECT_NE(text.find(in_mebibytes(size_t{65535} * 65535 * sizeof(FilmPixel))), std::string::npos) << text;
 }
 
-// One binding of 128 MiB, all that some devices allow, holds 4.2 million pixels.
+// A binding of 128 MiB, the limit of some devices, holds 4.2 million pixels.
 TEST(Memory, HoldsFilmsOfSixteenMegapixels) {
     for (const auto& size : {uvec2(4096, 4096), uvec2(7680, 2160)})
         EXPECT_EQ(refusal([&] { require_memory(test_device(), Renderer::memory_needs(size)); }), "");
@@ -73,13 +73,13 @@ TEST(Memory, OfSmallRendersIsThatOfFilmAndSamples) {
     const auto needs = Renderer::memory_needs({48, 40});
     ASSERT_EQ(needs.size(), 2u);
     EXPECT_EQ(needs[0].bytes, Film::memory_need(48, 40).bytes);
-    // Enough to keep a large device busy with a small image, and allowed by every device.
+    // Enough to keep a large device busy with a small image, and within every device's limits.
     EXPECT_GE(needs[1].bytes, (size_t{1} << 20) * sizeof(vec3));
     EXPECT_LT(needs[1].bytes, size_t{128} * mebibyte);
     EXPECT_EQ(refusal([&] { require_memory(test_device(), needs); }), "");
 }
 
-// A tree over so many instances would take minutes to build, and much of the host's memory.
+// A tree over that many instances would take minutes to build, and much of the host's memory.
 TEST(Memory, RefusesTheTreeBeforeItIsBuilt) {
     Scene scene = lit_scene(bumpy_sphere(100));
     const size_t bytes = std::max(largest_visible(test_device(), vk::BufferUsageFlagBits::eUniformTexelBuffer),
@@ -89,7 +89,7 @@ TEST(Memory, RefusesTheTreeBeforeItIsBuilt) {
     for (size_t i = 0; i <= fitting; ++i) place(scene, mat4x3(1));
     const GpuScene gpu_scene(test_device(), scene);
     const std::string text = refusal([&] { build_acceleration_structure(Backend::compute, test_device(), gpu_scene); });
-    // Once it is built, buffers are refused without a name of their own.
+    // Once the tree is built, buffers are refused without their own name.
     EXPECT_NE(text.find("triangles of all instances, a buffer of "), std::string::npos) << text;
 }
 

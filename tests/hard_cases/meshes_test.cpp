@@ -39,8 +39,7 @@ class ObjText {
 
 class BadMeshes : public OnEachBackend {
   protected:
-    // A floor under a grey sky and a lamp above it, with `add_bad_ones` in between; the materials "bad" and
-    // "bright" shine, too.
+    // A floor under a grey sky and a lamp above it, with `add_bad_ones` in between; the materials "bad" and "bright" emit, too.
     Scene load(const std::function<void(ObjText&)>& add_bad_ones) const {
         const TestFolder folder;
         folder.write("m.mtl",
@@ -68,8 +67,8 @@ class BadMeshes : public OnEachBackend {
         return render_batches(scene, settings, 32);
     }
 
-    // Every point has a normal, the picture is that of `equivalent` without an invalid sample, and light
-    // sampling and bounces agree.
+    // Every point has a normal, the picture equals that of `equivalent` without invalid samples, and light samples and bounces
+    // agree.
     void expect_sane(const std::string& what, const Scene& scene, const Scene& equivalent) const {
         EXPECT_NEAR(light_probability_sum(scene), 1, 1e-6) << what;
         const RenderSettings look{.width = 128, .height = 128, .estimator = probe("surface_points"), .backend = GetParam()};
@@ -107,7 +106,7 @@ TEST_P(BadMeshes, SliversAreNoMoreThanTheyAre) {
         for (int i = 0; i < 500; ++i) {
             const double aspect = std::pow(10.0, random.uniform(5, 9));
             const dvec3 a = random.point(), b = random.point(), c = random.point();
-            // Some along an axis, where 32-bit coordinates hold even the narrowest.
+            // Some along an axis, where 32-bit coordinates represent even the narrowest.
             const dvec3 u = i % 2 ? dvec3(1, 0, 0) : b - a, v = i % 2 ? dvec3(0, 1, 0) : c - a;
             const dvec3 origin = i % 4 == 1 ? dvec3(0, 0, a.z) : a;
             obj.add(origin, origin + u, origin + 0.3 * u + v / aspect);
@@ -153,7 +152,7 @@ TEST_P(BadMeshes, TrianglesInTheSamePlaceThatFaceTheSameWayAreTheFirstThatShines
                 load([&](ObjText& obj) { add(obj, "bright", 0); }));
 }
 
-// A double-sided lamp: each side is what it would be if there were a gap between them.
+// A double-sided lamp: each side looks as if there were a gap between the two.
 TEST_P(BadMeshes, TrianglesInTheSamePlaceThatFaceOppositeWaysAreTwoSides) {
     const dvec3 gap = 1e-3 * glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
     const auto load_lamp = [&](const std::string& front, const std::string& back, const dvec3& distance) {
@@ -175,10 +174,10 @@ TEST_P(BadMeshes, NormalsThatAreZeroOrFaceAwayDoNoHarm) {
     };
     const Scene flat = load([](ObjText& obj) { obj.add(corners[0], corners[1], corners[2]); });
     expect_sane("zero normals", with_normals(dvec3(0), dvec3(0)), flat);
-    // The front is where the vertex normals are: a triangle whose normals all face away is turned around.
+    // The front is the side of the vertex normals: a triangle whose normals all face away is flipped.
     expect_sane("all face away", with_normals(-normal, -normal),
                 load([](ObjText& obj) { obj.add(corners[0], corners[2], corners[1]); }));
-    // Where the interpolated normal faces away nothing is reflected: light sampling and bounces still agree.
+    // Where the interpolated normal faces away nothing is reflected: light samples and bounces still agree.
     const Scene one_away = with_normals(-normal, normal);
     expect_sane("one faces away", one_away, one_away);
 }

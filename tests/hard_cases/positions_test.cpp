@@ -1,4 +1,4 @@
-// The same scene elsewhere and in other sizes.
+// The same scene in other places and at other scales.
 #include <cmath>
 
 #include "hard_cases/probe.h"
@@ -29,7 +29,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, Positions, testing::ValuesIn(all_backends), o
 
 Scene cornell_box() { return load_shipped_scene("cornell_box.json"); }
 
-// The instance and the camera are scaled and then moved, as the keys of a scene file do it.
+// Scales and then moves instance and camera, as the keys of a scene file do.
 Scene place(Scene scene, double scale, const dvec3& translation) {
     const auto linear = static_cast<float>(scale);
     mat4x3 transform(linear);
@@ -41,8 +41,8 @@ Scene place(Scene scene, double scale, const dvec3& translation) {
     return scene;
 }
 
-// The means of the image and of its tiles relative to the image's mean: batch by batch the same random
-// numbers make the same paths, so that noise cancels.
+// The means of the image and its tiles relative to the image's mean: in each batch the same random numbers give the same paths,
+// so noise cancels.
 struct Deviation {
     std::vector<Difference> image, tiles;
     double worst_tile() const {
@@ -60,7 +60,7 @@ Deviation deviation(const Batches& moved, const Batches& original) {
         const std::vector<double> expected = original.means(1, corner, size);
         for (size_t i = 0; i < expected.size(); ++i) differences[i] = (differences[i] - expected[i]) / mean;
         Difference result = difference_from(differences, 0);
-        // Roundings shift the view: without noise even 10^-5 of it would show.
+        // Rounding shifts the view: without noise even 10^-5 of it would show.
         result.standard_error = std::max(result.standard_error, 2e-5);
         return result;
     };
@@ -104,8 +104,8 @@ TEST_P(Positions, SizeDoesNotMatter) {
     }
 }
 
-// Scaled by a power of two all numbers keep their digits: the picture is the same to the bit, unless
-// something somewhere has a scale of its own, overflows or vanishes.
+// Scaling by a power of two keeps all digits: the picture is the same to the bit, unless something has an absolute scale,
+// overflows or underflows.
 TEST_P(Positions, PowersOfTwoChangeNoBit) {
     const auto render_scaled = [&](int exponent) {
         Scene scene = cornell_box();

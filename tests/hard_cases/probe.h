@@ -1,4 +1,4 @@
-// Estimators of this folder that count what rays do instead of carrying light, on every backend.
+// This folder's estimators count what rays do instead of carrying light, on every backend.
 #pragma once
 #include <string>
 
@@ -6,17 +6,17 @@
 
 namespace lab {
 
-// tests/hard_cases/NAME.glsl.
+// The estimator in tests/hard_cases/NAME.glsl.
 Estimator probe(const std::string& name);
 
-// What the probe returned, added over all samples of all pixels.
+// What the probe returned, summed over all samples of all pixels.
 glm::dvec3 probe_total(const Scene& scene, const RenderSettings& settings);
 
-// All these chapters for `compute`, the first for the other backends: what chapters do differently does not
-// depend on them. For scenes without glass.
+// All of these chapters for `compute`, only the first for the other backends: where chapters differ does not depend on the
+// backend. For scenes without glass.
 std::vector<std::string> chapters_for(Backend backend, std::vector<std::string> all);
 
-// Of all emissive triangles, as the estimators divide by them; for scenes of untransformed instances.
+// Sum over all emissive triangles of the probability that estimators divide by; for scenes of untransformed instances.
 double light_probability_sum(const Scene& scene);
 
 // For RecordProperty: "3 of 1e+06".

@@ -1,4 +1,4 @@
-// A uniform point of a triangle that u.x chooses, v in [0,1)² the point: as if a ray had hit it.
+// A hit at a uniform point, given by v in [0,1)², on a triangle chosen by u.x.
 Hit get_random_hit(vec2 u, vec2 v) {
     Hit hit;
     hit.instance = 0u;

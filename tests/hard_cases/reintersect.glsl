@@ -1,6 +1,5 @@
-// Counts rays that hit the triangle which they start from: red counts them, green all that start. Each sample aims at
-// a random point of a random triangle, from a distance between 10^-4 times and once the triangle's size, and leaves
-// what it hits in a random direction.
+// Counts rays that hit the triangle they start from: red counts hits, green all rays. Each sample aims at a random point on a
+// random triangle, from a distance between 10^-4 times and once the triangle's size, and leaves the hit in a random direction.
 #include "random_hit.glsl"
 
 vec3 random_direction(inout uvec2 seed) {
@@ -9,7 +8,7 @@ vec3 random_direction(inout uvec2 seed) {
     return vec3(radius * cos(2.0 * PI * u.y), radius * sin(2.0 * PI * u.y), z);
 }
 
-// In the world.
+// In world space.
 vec3 get_corner(Hit hit, vec2 barycentrics) {
     hit.barycentrics = barycentrics;
     return get_surface_point(hit).position;

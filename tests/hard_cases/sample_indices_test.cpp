@@ -1,4 +1,4 @@
-// Sample indices up to 2^32: no two samples of an image share their random numbers, also not the last ones.
+// Sample indices up to 2^32: no two samples of an image share random numbers, not even the last ones.
 #include <set>
 
 #include "support/gpu_test.h"
@@ -24,7 +24,7 @@ TEST_P(SampleIndexCases, TheLastSamplesAreRenderedAsAnyOthers) {
     };
     std::vector<glm::dvec3> sums(whole.pixels.size());
     std::set<std::vector<double>> images;
-    std::vector<uint32_t> others;  // into which the last ones would run over if an index had fewer bits
+    std::vector<uint32_t> others;  // indices that the last ones would wrap to if an index had fewer bits
     for (uint32_t i = 0; i < count; ++i) {
         const FilmImage film = render_sample(last - i);
         images.insert(pixel_means(film, 0));

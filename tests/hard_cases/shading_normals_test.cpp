@@ -1,4 +1,4 @@
-// Shading normals that are not those of the triangles.
+// Shading normals that differ from the triangles' normals.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -33,8 +33,8 @@ RenderSettings settings(const std::string& chapter, Backend backend, uint32_t ma
     return settings;
 }
 
-// Under a white sky a white surface whose shading normal is tilted by τ loses the directions that are below
-// the triangle: it shows (1 + cos τ)/2, seen from where both normals are.
+// Under a white sky, a white surface whose shading normal is tilted by τ loses the directions below the triangle: it shows (1 +
+// cos τ)/2, seen from where both normals are.
 TEST_P(ShadingNormals, TiltedOnesLoseWhatIsBelowTheTriangleAndGainNothing) {
     for (const int degrees : {0, 15, 30, 45, 60}) {
         const double tilt = degrees * pi / 180, expected = 0.5 * (1 + std::cos(tilt));
@@ -52,7 +52,7 @@ TEST_P(ShadingNormals, TiltedOnesLoseWhatIsBelowTheTriangleAndGainNothing) {
     }
 }
 
-// The sides of a closed box with normals that are tilted, the more the farther from the middle of a side.
+// The sides of a closed box with tilted normals, the more so the farther from the middle of a side.
 Scene furnace_with_normals(double largest_tilt) {
     Scene scene = closed_box(diffuse_material(vec3(0.5f), vec3(1)));
     for (size_t i = 0; i < scene.positions.size(); ++i) {
@@ -66,7 +66,7 @@ Scene furnace_with_normals(double largest_tilt) {
 }
 
 TEST_P(ShadingNormals, OfAFurnaceNeverAddEnergy) {
-    // In a closed box of albedo 1/2 and emission 1 every point shows 2 - 2^-m at most.
+    // In a closed box of albedo 1/2 and emission 1 every point shows at most 2 - 2^-m.
     for (const int degrees : {0, 30, 60, 120}) {
         const Scene scene = furnace_with_normals(degrees * pi / 180);
         for (const std::string& chapter : chapters()) {
@@ -79,7 +79,7 @@ TEST_P(ShadingNormals, OfAFurnaceNeverAddEnergy) {
             std::printf("  %d degrees, %s: energy %.4f +- %.4f\n", degrees, chapter.c_str(), energy,
                         radiance.standard_error / most);
             EXPECT_LE(energy, 1 + 6 * radiance.standard_error / most + 1e-6);
-            // At the least the emission is seen.
+            // At least the emission is visible.
             EXPECT_GE(energy, 1 / most - 1e-6);
             if (chapter == chapters().front())
                 RecordProperty("furnace_loss_at_" + std::to_string(degrees) + "_degrees", percent(1 - energy));

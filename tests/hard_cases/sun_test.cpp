@@ -1,4 +1,4 @@
-// A light probe with a sun: one texel 10^6 times as bright as the others.
+// A light probe with a sun: one texel is 10^6 times as bright as the others.
 #include <cmath>
 #include <numbers>
 
@@ -18,7 +18,7 @@ constexpr uint32_t width = 64, height = 32;
 constexpr uvec2 ordinary_sun{40, 8};
 constexpr float sky_radiance = 0.1f, sun_radiance = 1e5f;
 
-// A white floor under the probe, and lamps of radiance 10^5; the camera sees nothing but the floor.
+// A white floor under the probe, and lamps of radiance 10^5; the camera sees only the floor.
 constexpr float lamp_radiance = 1e5f;
 Scene sunny_floor(uvec2 sun = ordinary_sun, float sky = sky_radiance, std::vector<Quad> lamps = {}) {
     std::vector<Material> materials{diffuse_material(vec3(1))};
@@ -33,8 +33,8 @@ Scene sunny_floor(uvec2 sun = ordinary_sun, float sky = sky_radiance, std::vecto
     return scene;
 }
 
-// Texel centres have the full radiance of a texel; between them it changes linearly.
-// The probe repeats from side to side, and ends at the poles.
+// A texel's centre shows its full radiance; in between, radiance is interpolated linearly.
+// The probe wraps around from side to side, and ends at the poles.
 double radiance(double column, double row, uvec2 sun, double sky) {
     const double away = std::abs(column - sun.x), near_x = std::max(0.0, 1 - std::min(away, width - away)),
                  near_y = std::max(0.0, 1 - std::abs(std::max(row, 0.0) - sun.y));
@@ -43,7 +43,7 @@ double radiance(double column, double row, uvec2 sun, double sky) {
 
 // The radiance of the floor: ∫ L cos θ / π over the upper hemisphere, by the midpoint rule.
 double floor_radiance(uvec2 sun = ordinary_sun, double sky = sky_radiance) {
-    constexpr int steps = 64;  // a texel
+    constexpr int steps = 64;  // per texel
     double sum = 0;
     for (int i = 0; i < static_cast<int>(height) / 2 * steps; ++i)
         for (int j = 0; j < static_cast<int>(width) * steps; ++j) {
@@ -69,13 +69,13 @@ TEST_P(SunCases, IsSeenAtItsFullRadiance) {
     EXPECT_NEAR(radiance_at(film, 0, 0).r / sun_radiance, 1, 1e-3);
 }
 
-// Light samples find the sun wherever it is, together with the bounces and alone.
+// Light samples find the sun wherever it is, with and without bounces.
 TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
     const struct {
         const char* name;
         uvec2 sun;
         float sky;
-        float rotation = 0;  // about the floor's normal: the light stays the same
+        float rotation = 0;  // about the floor's normal: its illumination stays the same
     } cases[] = {{"ordinary", ordinary_sun, sky_radiance},
                  {"at the pole", {40, 0}, sky_radiance},
                  {"across the seam", {0, 8}, sky_radiance},
@@ -105,7 +105,7 @@ TEST_P(SunCases, LampAndSunAddUp) {
     RenderSettings settings{
         .samples = 64, .max_path_length = 1, .seed = 77 + static_cast<uint32_t>(GetParam()), .backend = GetParam()};
     settings.estimator = chapter_estimator(chapter_named("light_probes"));
-    // A lamp so far to the side that it hides next to nothing of the sky, and not the sun.
+    // A lamp so far to the side that it hides almost nothing of the sky, and not the sun.
     const std::vector<dvec3> lamp{{9, 5, -9}, {10, 5, -8}, {10, 6, -8}, {9, 6, -9}};
     Scene scene = sunny_floor(ordinary_sun, sky_radiance, {{vec3(lamp[0]), vec3(lamp[1] - lamp[0]), vec3(lamp[3] - lamp[0]), 1}});
     scene.camera.vertical_fov = 0.5f;
@@ -115,8 +115,8 @@ TEST_P(SunCases, LampAndSunAddUp) {
     expect_mean("lamp and sun", estimate_mean(pixel_means(render(scene, settings), 1)), of_lamp + of_sun, 0.02);
 }
 
-// A dim sky, found by light samples alone, beside a sun below the horizon that takes nearly all of them. In a
-// probe of this size the alias table has 2^23 entries, and nearly all keep one sample in thousands.
+// A dim sky, found by light samples alone, next to a sun below the horizon that attracts nearly all of them. In a probe of this
+// size the alias table has 2^23 entries, and nearly all of them keep one sample in thousands.
 TEST(Sun, LeavesADimSkyItsShareOfTheLargestTable_all) {
     Scene scene = sunny_floor();
     const uint32_t columns = MAX_PROBE_CELL_COLUMNS, rows = MAX_PROBE_CELL_ROWS;

@@ -1,5 +1,5 @@
-// Looks at a random point of a random triangle: red counts those without a unit normal, green those without a position
-// or an offset, blue all.
+// Looks at a random point on a random triangle: red counts those without a unit normal, green those without a position or an
+// offset, blue all of them.
 #include "random_hit.glsl"
 
 vec3 path_trace(Ray camera_ray, inout uvec2 seed) {

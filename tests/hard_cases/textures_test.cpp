@@ -15,7 +15,7 @@ using glm::dvec3;
 class TextureCases : public OnEachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, TextureCases, testing::ValuesIn(all_backends), own_backend_name);
 
-// A colour for each texel: the column in red and green, the row in blue and green.
+// A distinct colour for each texel: the column in red and green, the row in blue and green.
 Texture numbered_texture(uint32_t width, uint32_t height) {
     Texture texture{width, height, {}};
     texture.pixels.reserve(size_t{4} * width * height);
@@ -26,8 +26,8 @@ Texture numbered_texture(uint32_t width, uint32_t height) {
     return texture;
 }
 
-// The largest error of the colours at centres of texels, some repetitions away. A position that is off by a
-// part of a texel mixes as much of a neighbour in.
+// The largest error of the colours at texel centres, some repetitions away. A position that is off by a fraction of a texel mixes
+// in the same fraction of a neighbour.
 double largest_error(Backend backend, const Texture& texture, const std::vector<uvec2>& texels, const vec2& repetitions) {
     std::vector<vec2> coordinates;
     for (const uvec2& position : texels)
@@ -40,7 +40,7 @@ double largest_error(Backend backend, const Texture& texture, const std::vector<
     return largest;
 }
 
-// Twice the decoding error of the device, and roundings.
+// Twice the device's decoding error, plus rounding.
 double decoding_error() { return 2 * test_arithmetic().decoding + 1e-6; }
 
 TEST_P(TextureCases, OneTexelIsAColour) {
@@ -62,11 +62,11 @@ TEST_P(TextureCases, SizesNeedNotBePowersOfTwo) {
             worst = std::max(worst, largest_error(GetParam(), texture, texels, repetitions));
     }
     record("largest_error_of_a_colour", "%.1e", worst);
-    // A centre such as 3.5/641 is no float: with its repetition added it is off by 2^-24, 4e-5 texels.
+    // A centre such as 3.5/641 is not a float: with its repetition added it is off by 2^-24, 4e-5 texels.
     EXPECT_LT(worst, decoding_error() + 1e-4);
 }
 
-// The threads of a group see all of them at once.
+// The threads of a group see textures of all sizes at once.
 TEST_P(TextureCases, NeighboursHaveDifferentSizes) {
     const std::vector<Texture> textures{numbered_texture(13, 7), numbered_texture(1, 5), numbered_texture(200, 3)};
     std::vector<vec2> coordinates;
@@ -93,7 +93,7 @@ TEST_P(TextureCases, LargeOnesShowEveryTexel) {
 }
 
 TEST_P(TextureCases, CoordinatesMayLieFarOutside) {
-    // Centres of 4 x 2 texels are multiples of 1/8, which floats hold up to 2^20.
+    // Centres of 4 x 2 texels are multiples of 1/8, which floats represent up to 2^20.
     const Texture texture = numbered_texture(4, 2);
     std::vector<uvec2> texels;
     for (uint32_t column = 0; column < 4; ++column)
@@ -107,8 +107,7 @@ TEST_P(TextureCases, CoordinatesMayLieFarOutside) {
 }
 
 TEST_P(TextureCases, FarCoordinatesAreInterpolatedAsNearOnes) {
-    // The triangle's own coordinates are exact; what lies between them must not lose what floats near 10^6
-    // lack.
+    // The triangle's own coordinates are exact; those in between must not lose the digits that floats near 10^6 lack.
     const auto coordinates_at = [&](float far) {
         Scene scene = make_scene({diffuse_material(vec3(1))}, {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}});
         scene.textures = {numbered_texture(4, 2)};
@@ -131,8 +130,7 @@ TEST_P(TextureCases, FarCoordinatesAreInterpolatedAsNearOnes) {
 }
 
 TEST_P(TextureCases, RepeatWithinATriangle) {
-    // A square with two and a half repetitions in a direction, and the same in pieces of one repetition or
-    // less.
+    // A square with two and a half repetitions in one direction, and the same in pieces of at most one repetition.
     const auto render_pieces = [&](int direction,
                                    const std::vector<vec2>& pieces) {  // first and last coordinate
         std::vector<Quad> quads;

@@ -1,4 +1,4 @@
-// A chapter with camera rays through the whole image instead of a pixel.
+// A chapter whose camera rays cover the whole image in every pixel.
 #define path_trace path_trace_along
 #include "observed.glsl"
 #undef path_trace

@@ -1,5 +1,5 @@
-// Counts shadow rays to random points of the lights from what the camera sees: red those that something stops, green all
-// that point from above the surface to the front of a light.
+// Counts shadow rays from visible points to random points on the lights: red counts blocked ones, green all that leave above the
+// surface and reach the front of a light.
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     Hit hit;
     if (!trace_ray(ray, NO_LIMIT, hit)) return vec3(0.0);

@@ -6,5 +6,5 @@ const vec3 LIGHT_NORMAL = vec3(0.0f, -1.0f, 0.0f);
 const float LIGHT_AREA = 0.25f;
 const vec3 LIGHT_RADIANCE = vec3(17.0f, 12.0f, 4.0f);
 
-// A path survives with the probability of its throughput, at most this.
+// A path survives with the probability of its throughput, but at most this.
 const float SURVIVAL_CAP = 0.95f;

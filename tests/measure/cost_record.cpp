@@ -1,5 +1,5 @@
-// Measures what each feature of a scene costs and how cost grows with triangles, lights and so on, and writes
-// a JSON record for docs/results.md.
+// Measures what each scene feature costs and how cost grows with the number of triangles, lights and so on, and writes a JSON
+// record for docs/results.md.
 #include <cstdio>
 #include <thread>
 
@@ -26,14 +26,14 @@ struct Options {
     std::filesystem::path output = "cost.json";
 };
 
-// Of each array and image of a scene on the device.
+// Bytes of each array and image of a scene on the device.
 json bytes_of(const GpuScene& scene) {
     json bytes = json::object();
     for (const auto& need : scene.memory_needs()) bytes[need.what] = bytes.value(need.what, size_t{0}) + need.bytes;
     return bytes;
 }
 
-// What the shipped scenes take.
+// Device memory of the shipped scenes.
 json describe_shipped_scenes(const Device& device) {
     json scenes = json::array();
     for (const auto& file : sorted_entries(project_folder() / "assets/scenes")) {
@@ -46,7 +46,7 @@ json describe_shipped_scenes(const Device& device) {
     return scenes;
 }
 
-// A scene that is ready to be rendered.
+// A scene ready to be rendered.
 class Subject {
   public:
     Subject(const Device& device, Backend backend, const std::string& chapter, const GrowthStep& step)
@@ -101,7 +101,7 @@ void print(const std::string& what, Backend backend, const std::vector<Rates>& r
     std::fflush(stdout);
 }
 
-// Each feature alone, and nothing, in the box without light. Chapter 6 knows all of them.
+// Each feature alone, and none, in the box without light. Chapter 6 supports all of them.
 json measure_features(const Device& device, Backend backend, const Options& options) {
     const std::string chapter = chapter_named("dielectrics");
     Scene bare = make_box_scene(200, 100);
@@ -156,7 +156,7 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
 }
 
 int run(const Options& options) {
-    check_writable(options.output, {".json"});  // before minutes are spent
+    check_writable(options.output, {".json"});  // fail before spending minutes
     const Device device({options.device});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size, options.size);

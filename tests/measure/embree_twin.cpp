@@ -20,8 +20,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-// The functions below are those of random.glsl, frame.glsl, camera.glsl, shading_data.glsl and
-// path_trace.glsl.
+// The functions below correspond to random.glsl, frame.glsl, camera.glsl, shading_data.glsl and path_trace.glsl.
 void advance_random_state(uvec2& seed) {
     seed = 1664525u * seed + 1013904223u;
     seed.x += 1664525u * seed.y;
@@ -189,8 +188,7 @@ struct EmbreeTwin::Implementation {
         return radiance;
     }
 
-    // The sum of the samples from `samples` to target_samples of the pixels in tiles that no other thread
-    // took.
+    // Sums the samples from `samples` to target_samples of all pixels in tiles that no other thread has taken.
     glm::dvec3 render_tiles(std::atomic<uint32_t>& next_tile, uint32_t target_samples) const {
         _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
         _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);

@@ -1,4 +1,4 @@
-// The benchmark's estimator once more, natively with Intel's Embree: the yardstick for our own traversal.
+// The benchmark's estimator, reimplemented natively with Intel's Embree: the yardstick for our own traversal.
 #pragma once
 #include <memory>
 
@@ -12,7 +12,7 @@ class EmbreeTwin {
     EmbreeTwin(const Scene& scene, const RenderParameters& parameters);
     ~EmbreeTwin();
 
-    // Brings every pixel up to this many samples, with two threads.
+    // Brings every pixel to this many samples, with two threads.
     void advance(uint32_t target_samples);
 
     // Mean radiance of the image so far.

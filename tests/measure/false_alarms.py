@@ -21,18 +21,18 @@ import test_report  # noqa: E402  (found by the line above)
 from project import BINARIES  # noqa: E402
 
 PROGRAMS = ["shaders_tests", "convergence_tests", "hard_cases_tests"]
-SIGNIFICANCE = 1e-6  # of an expectation, as in tests/support/expect_statistics.h
+SIGNIFICANCE = 1e-6  # per expectation, as in tests/support/expect_statistics.h
 
 
 def run(seed, folder):
-    """Runs all tests with a seed; returns the tests that failed and the lines test, what, p-value."""
+    """Runs all tests with a seed; returns the failed tests and the lines test, what, p-value."""
     file = Path(folder) / f"{seed}.tsv"
     environment = {**os.environ, "LAB_TEST_SEED": str(seed), "LAB_TEST_P_VALUES": str(file)}
     failed = []
     for program in PROGRAMS:
         report = Path(folder) / f"{seed}.{program}.json"
         test_report.run(BINARIES / program, report, "--gtest_brief=1", f"--gtest_filter=-{test_report.ONLY_IN_ALL}", env=environment, stdout=sys.stderr)
-        # What a test could have found varies a little with the seed; that is no verdict on the estimator.
+        # A test's power varies a little with the seed; that says nothing about the estimator.
         failed += [
             test.full_name
             for test in test_report.read(report)[0]

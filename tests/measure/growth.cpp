@@ -12,13 +12,13 @@ namespace {
 
 constexpr uint32_t path_length = 8;
 
-// The box with a sphere, of about so many triangles in all.
+// The box with a sphere, about this many triangles in all.
 Scene box_of(uint64_t triangles) {
     const auto rings = static_cast<uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 4)));
     return make_box_scene(2 * rings, rings);
 }
 
-// Spheres of 1012 triangles in a cube, which keeps its size.
+// Spheres of 1012 triangles each in a cube of constant size.
 Scene spheres(uint64_t count) {
     Scene scene = lit_scene(bumpy_sphere(23));
     const auto side = static_cast<uint64_t>(std::ceil(std::cbrt(static_cast<double>(count)) - 1e-9));

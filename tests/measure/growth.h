@@ -1,4 +1,4 @@
-// Scenes and settings of which one quantity grows: how does the cost follow it?
+// Scenes and settings in which one quantity grows: how does the cost follow it?
 #pragma once
 #include <functional>
 #include <string>
@@ -9,7 +9,7 @@
 namespace lab {
 
 struct GrowthStep {
-    uint64_t count;  // of the quantity, about what was asked for
+    uint64_t count;  // of the quantity, approximately as requested
     Scene scene;
     uvec2 image_size;
     uint32_t max_path_length;
@@ -18,11 +18,11 @@ struct GrowthStep {
 struct Growth {
     std::string quantity;          // "triangles"
     std::string chapter;           // whose estimator renders
-    std::vector<uint64_t> counts;  // the first is the one that all are compared with
+    std::vector<uint64_t> counts;  // the first is the one that the others are compared with
     std::function<GrowthStep(uint64_t)> make;
 };
 
-// Of images of that width and height, where those do not grow themselves.
+// For images of this width and height, unless these grow themselves.
 std::vector<Growth> all_growths(uint32_t size);
 
 }  // namespace lab

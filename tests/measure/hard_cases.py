@@ -25,12 +25,12 @@ def cited_tests():
 
 
 def is_python(test):
-    """Tests of the command line are named Class.test_something."""
+    """Command line tests are named Class.test_something."""
     return test.partition(".")[2].startswith("test_")
 
 
 def python_module(test):
-    """The module of tests/cli that holds a test; nothing if there is none."""
+    """The module of tests/cli that contains a test, or None."""
     suite, _, method = test.partition(".")
     for path in sorted((ROOT / "tests" / "cli").glob("*_test.py")):
         classes = re.split(r"(?m)^class ", path.read_text(encoding="utf-8"))[1:]
@@ -46,7 +46,7 @@ def missing_tests():
 
 
 def run_python(test):
-    """Runs a test of the command line; returns what it recorded."""
+    """Runs a command line test; returns what it recorded."""
     with tempfile.NamedTemporaryFile("r", suffix=".jsonl") as record:
         command = [sys.executable, "-B", "-m", "unittest", f"{python_module(test)}.{test}"]
         environment = {**os.environ, "LAB_BINARIES": str(BINARIES), "LAB_TEST_RECORD": record.name}

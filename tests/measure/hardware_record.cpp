@@ -1,6 +1,6 @@
-// Measures the backends of a device and writes a JSON record for docs/results.md: paths and rays per second
-// of the benchmark's estimator on three sizes of scene and of the last chapter on two shipped scenes, and the
-// bare rate at which each backend traces the very same rays.
+// Measures the backends of a device and writes a JSON record for docs/results.md: paths and rays per second of the benchmark's
+// estimator on three sizes of scene and of the last chapter on two shipped scenes, and the bare rate at which each backend traces
+// exactly the same rays.
 #include <cstdio>
 
 #include "files/file.h"
@@ -15,15 +15,15 @@
 namespace lab {
 namespace {
 
-// Index of the path in the order of the film's blocks, as each backend's main program knows it. The n-th rays
-// of neighbouring paths are neighbours in memory.
+// Index of the path in the order of the film's blocks, as each backend's main program computes it. The n-th rays of neighbouring
+// paths are adjacent in memory.
 std::vector<std::string> path_defines(Backend backend, size_t path_count) {
     const std::string index =
         backend == Backend::pipeline ? "gl_LaunchIDEXT.x" : "gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex";
     return {"PATH_INDEX (dispatch.first_block * 64u + " + index + ")", "PATH_COUNT " + std::to_string(path_count) + "u"};
 }
 
-// What is measured: a scene, and an estimator whose paths have at most eight bounces.
+// What to measure: a scene, and an estimator whose paths have at most eight bounces.
 struct Subject {
     std::string name;
     Scene scene;
@@ -42,7 +42,7 @@ Subject chapter_subject(uint32_t size, const std::string& scene_name) {
     Options options;
     options.image.width = options.image.height = size;
     options.light.max_path_length = 8;
-    options.samples.chapter_values.resize(chapter.options.size());  // none given
+    options.samples.chapter_values.resize(chapter.options.size());  // all defaults
     Scene scene = load_scene(project_folder() / "assets/scenes" / (scene_name + ".json"));
     const RenderParameters parameters = make_parameters(chapter, scene, options);
     return {scene_name, std::move(scene), estimator_of(chapter), parameters};
@@ -53,7 +53,7 @@ json measure(const Device& device, const Subject& subject) {
     const auto tests = project_folder() / "tests";
     const uint32_t size = parameters.image_size.x;
     const GpuScene gpu_scene(device, scene);
-    const size_t path_count = size_t{(size + 7) / 8 * 8} * ((size + 7) / 8 * 8);  // blocks at the border are whole
+    const size_t path_count = size_t{(size + 7) / 8 * 8} * ((size + 7) / 8 * 8);  // blocks at the border count in full
     const Buffer rays(device, path_count * MAX_RECORDED_RAYS * sizeof(RecordedRay), vk::BufferUsageFlagBits::eStorageBuffer);
     device.submit([&](const vk::raii::CommandBuffer& commands) { commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, 0); });
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
@@ -96,7 +96,7 @@ json measure(const Device& device, const Subject& subject) {
 }
 
 int run(const std::string& choice, uint32_t size, const std::filesystem::path& output) {
-    check_writable(output, {".json"});  // before minutes are spent
+    check_writable(output, {".json"});  // fail before spending minutes
     const Device device({choice});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), size, size);

@@ -1,4 +1,4 @@
-// What the programs of this folder share.
+// Shared by the programs in this folder.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -10,7 +10,7 @@ namespace lab {
 
 using json = nlohmann::ordered_json;
 
-// The device, as every record begins.
+// Describes the device; every record starts with this.
 json record_of(const Device& device);
 
 // Reads the command line and measures. Returns the program's exit code.

@@ -6,17 +6,17 @@
 
 namespace lab {
 
-// Per second of the device.
+// Per second on the device.
 struct Rates {
     double paths_per_second;
     double rays_per_second;
 };
 
-// Runs of about `seconds` each, which the renderers do in turns: what else the machine does meanwhile hits
-// all of them alike. For each renderer its runs in order, without a first one that warms up.
+// Runs of about `seconds` each, by the renderers in turns, so that other load on the machine affects all of them alike. Returns
+// the runs of each renderer in order, without the first one, which warms up.
 std::vector<std::vector<Rates>> measure_in_turns(const std::vector<Renderer*>& renderers, double seconds, uint32_t runs = 5);
 
-// Of an odd number of runs.
+// The median of an odd number of runs.
 Rates median(std::vector<Rates> runs);
 
 }  // namespace lab

@@ -1,4 +1,4 @@
-// An estimator which also writes down the rays that it traces: those of one path of every pixel.
+// An estimator that also records the rays it traces: those of one path per pixel.
 #include "replay/recorded_ray.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) buffer RecordedRays { RecordedRay recorded_rays[]; };

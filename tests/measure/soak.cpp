@@ -1,6 +1,5 @@
-// Renders for a long time while scenes are loaded again, cameras move and backends change: memory must stay
-// flat and every picture must be, to the bit, what it was when the program had just started. Exit code 1 if
-// not.
+// Renders for a long time while scenes are reloaded, cameras move and backends change: memory must stay flat, and every picture
+// must be, to the bit, what it was when the program had just started. Exit code 1 if not.
 #include <malloc.h>
 
 #include <algorithm>
@@ -35,8 +34,8 @@ constexpr uint32_t camera_count = 2;
 constexpr uvec2 image_size(32, 32);
 constexpr uint32_t samples = 2;
 
-// Of the memory in use, and of the resident memory: the allocator keeps some of what was freed. Mesa's CPU
-// driver (25.0) keeps some of each pipeline, too, 0.2 KiB of one for a compute shader, until its device ends.
+// For memory in use, and for resident memory: the allocator keeps some of what was freed. Mesa's CPU driver (25.0) also keeps
+// some of each pipeline, 0.2 KiB for a compute shader, until its device is destroyed.
 constexpr double tolerated_growth_mib = 2, tolerated_growth_per_picture_mib = 1.0 / 1024, tolerated_resident_growth_mib = 16;
 
 // A line of /proc/self/status in MiB.
@@ -48,7 +47,7 @@ double status_mib(const std::string& name) {
 }
 
 struct Memory {
-    double used_mib;  // on the heap, and shared, which is the device memory of Mesa's CPU driver
+    double used_mib;  // on the heap, and shared: the device memory of Mesa's CPU driver
     double resident_mib;
 };
 
@@ -74,7 +73,7 @@ class Soak {
   public:
     explicit Soak(const Device& device) : device_(device) {}
 
-    // All cases on all backends from all cameras, each from its files on.
+    // All cases on all backends from all cameras, each loaded from its files.
     void run_round() {
         for (const Case& item : cases)
             for (const Backend backend : all_backends)
@@ -106,12 +105,12 @@ class Soak {
     }
 
     const Device& device_;
-    std::map<std::string, uint64_t> first_hashes_;  // of the films of the first round
+    std::map<std::string, uint64_t> first_hashes_;  // of the films in the first round
     std::vector<Memory> memory_;                    // at the end of each round
     size_t picture_count_ = 0, wrong_picture_count_ = 0;
 };
 
-// A film that gets a sample now and then over the whole time, and one that gets all of them at once.
+// One film that gets a sample now and then over the whole time, and one that gets all of them at once.
 class PatientFilm {
   public:
     explicit PatientFilm(const Device& device)
@@ -142,7 +141,7 @@ class PatientFilm {
     uint32_t sample_count_ = 0;
 };
 
-// A figure of all rounds: what its maximum in the second half is above its value at the end of the first.
+// Growth of a figure over all rounds: its maximum in the second half minus its value at the end of the first.
 double growth(const std::vector<Memory>& rounds, double Memory::*figure) {
     const size_t middle = rounds.size() / 2;
     double largest = 0;
@@ -150,7 +149,7 @@ double growth(const std::vector<Memory>& rounds, double Memory::*figure) {
     return largest - rounds[middle - 1].*figure;
 }
 
-// At most 24 of the rounds, evenly chosen, for the record.
+// At most 24 rounds, evenly spaced, for the record.
 json chosen(const std::vector<Memory>& rounds, double Memory::*figure) {
     auto list = json::array();
     const size_t count = std::min<size_t>(rounds.size(), 24);
@@ -158,8 +157,8 @@ json chosen(const std::vector<Memory>& rounds, double Memory::*figure) {
     return list;
 }
 
-// Caches of its own: in those that all programs share, another one may replace an entry, and the driver would
-// compile a shader in the middle of the run, which takes memory.
+// Private caches: in shared ones another program may replace an entry, and the driver would compile a shader in mid-run, which
+// takes memory.
 class PrivateCaches {
   public:
     PrivateCaches() { setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
@@ -176,7 +175,7 @@ int run(double seconds, const std::string& commit, const std::filesystem::path& 
     PatientFilm film(device);
     const auto start = std::chrono::steady_clock::now();
     const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    constexpr size_t min_rounds = 4;  // so that both halves have some
+    constexpr size_t min_rounds = 4;  // so that neither half is empty
     const auto& rounds = soak.memory_after_rounds();
     while (elapsed() < seconds || rounds.size() < min_rounds) {
         soak.run_round();

@@ -1,4 +1,4 @@
-// Paths per second of the `compute` backend, next to a native twin of the same estimator that uses Embree.
+// Paths per second of the `compute` backend, compared with a native twin of the same estimator that uses Embree.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -36,7 +36,7 @@ void print(const char* name, const Runs& runs, const glm::dvec3& mean) {
     std::printf("; image mean %.5f %.5f %.5f\n", mean.r, mean.g, mean.b);
 }
 
-// Renders with all threads or the device, once to warm up and then interleaved.
+// Renders with all threads or the device, once to warm up and then alternately.
 void compare(const Device& device, const Options& options, uint32_t segments, uint32_t rings) {
     const Scene scene = make_box_scene(segments, rings);
     std::printf("%zu triangles\n", scene.triangles.size());

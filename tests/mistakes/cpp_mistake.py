@@ -32,7 +32,7 @@ def load():
 
 
 def copy_sources():
-    """Brings the copy up to date and leaves alone what is, so that it is not built again."""
+    """Brings the copy up to date without touching unchanged files, so that they are not rebuilt."""
     TREE.mkdir(parents=True, exist_ok=True)
     for folder in ("common", "tests", "shaders", "chapters"):
         for copy in (TREE / folder).rglob("*"):
@@ -50,13 +50,13 @@ def copy_sources():
     if not (TREE / "assets").exists():
         (TREE / "assets").symlink_to(ROOT / "assets")
     if not (TREE / "build" / "build.ninja").exists():
-        # Compiling takes longer than the tests do, which have an -O1 of their own.
+        # Compiling takes longer than the tests, which are built with their own -O1.
         command = ["cmake", "--preset", "release", "-DCMAKE_CXX_FLAGS_RELEASE=-O0"]
         subprocess.run(command, cwd=TREE, check=True, stdout=subprocess.DEVNULL)
 
 
 def build(target):
-    """Returns what the compiler says if the program does not build."""
+    """Returns the compiler's output if the program does not build."""
     command = ["cmake", "--build", TREE / "build", "--target", target]
     result = subprocess.run(command, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     return result.stdout[-3000:] if result.returncode else None
@@ -79,7 +79,7 @@ def run(program, test):
 
 
 def find_source(mistake):
-    """The only file of common/ that has the text, wherever it has moved, and its contents."""
+    """The only file of common/ that contains the text, wherever it has moved, and its contents."""
     files = {file: file.read_text(encoding="utf-8") for file in (TREE / "common").rglob("*") if file.suffix in (".cpp", ".h")}
     found = [item for item in files.items() if mistake["find"] in item[1]]
     if len(found) != 1:
@@ -88,7 +88,7 @@ def find_source(mistake):
 
 
 def failures_with(mistake):
-    """The failures of a mistake's test while the mistake is in the copy."""
+    """The failures of a mistake's test while the copy contains the mistake."""
     source, text = find_source(mistake)
     program, test = mistake["test"].split(".", 1)
     try:

@@ -34,14 +34,14 @@ from report.sources import COMMENT_OR_BLANKS  # noqa: E402
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
-DEPTH = 2  # of what has a line in these files and in the record
-# Levels have the seeds of a check without --seed, see grading.first_seed(); the others have seeds that no check has.
+DEPTH = 2  # items at this depth get a line in these files and in the record
+# Levels use the seeds of a check without --seed, see grading.first_seed(); the others use seeds that no check has.
 LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0)}
-# The chapter that a chapter has less noise than with the same samples, where that is its lesson.
+# The chapter that a chapter should beat in noise with the same samples, if that is its lesson.
 GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in grading.DESCRIPTIONS.items()
               if "gains_over" in says.get("check", {})}
 TRYING = {"runs": grading.RUNS, "first_seed": 3001}  # as a check does, with seeds that nothing was learnt from
-OWN_SEED, OWN_FACTOR, MISTAKE_SEED = 5001, 4, 6001  # of experiments; the chapter's own shader has so many times the samples
+OWN_SEED, OWN_FACTOR, MISTAKE_SEED = 5001, 4, 6001  # of experiments; the chapter's own shader has this many times the samples
 
 
 def settings(chapter, plan, samples, scenes=None):
@@ -50,18 +50,18 @@ def settings(chapter, plan, samples, scenes=None):
 
 
 def level_digest(chapter):
-    """Of what the levels of a chapter depend on."""
+    """Digest of what the levels of a chapter depend on."""
     return digest(settings(chapter, LEVELS, grading.SCENES[chapter][0]),
                   *(own_text(number) for number in (chapter, GAINS_OVER.get(chapter)) if number))
 
 
 def experiment_digest(chapter, name):
-    """Of what an experiment depends on."""
+    """Digest of what an experiment depends on."""
     return digest(repr(experiments_of(chapter)[name]), own_text(chapter))
 
 
 def code(text):
-    """Of a shader: comments change nothing that it shows."""
+    """A shader without comments, which change nothing that it shows."""
     return COMMENT_OR_BLANKS.sub(" ", text)
 
 
@@ -85,7 +85,7 @@ class Workshop:
                 "samples": None, "first_seed": plan["first_seed"] + seed, "is_quiet": True}
 
     def levels(self, chapter):
-        """Those of the chapter's own shader, with what it gains over the one that chapter.json names."""
+        """Levels of the chapter's own shader, with its gain over the chapter that chapter.json names."""
         def levels_of(number):
             plan = self.settings(LEVELS) | {"samples": grading.SCENES[chapter][0]}
             return {case["scene"]: grading.level(case) for case in grading.render(number, own_shader(number), plan, grading.SCENES[chapter][1])}
@@ -98,14 +98,14 @@ class Workshop:
         return levels
 
     def own_sights(self, chapter, experiment):
-        """What the chapter's own shader shows in an experiment, in lists."""
+        """What the chapter's own shader shows in an experiment, as lists."""
         kind = "factor" if repeats_of(chapter) == 1 else "repeats"  # more samples would have less noise each
         sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, **{kind: OWN_FACTOR})
         return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
 
     def shown(self, bug, expected):
-        """What a mistake shows in experiments, as texts with a number for each point: brightness, noise and rays, where they are not the
-        chapter's own."""
+        """What a mistake shows in experiments, as text with a number per point: brightness, noise and rays, where they differ
+        from the chapter's own."""
         with grading.program_with(CHAPTERS[bug.chapter], bug.text, bug.file) as program:
             facts, sights = observe(bug.chapter, program, self.settings(LEVELS), expected, lambda *_: True, MISTAKE_SEED)
         ratios = ratios_of(sights, expected)
@@ -124,19 +124,19 @@ class Workshop:
 
 
 def to_digits(values, digits=4):
-    """Text with so many significant digits of each number."""
+    """Text with this many significant digits in each number."""
     return " ".join(f"{value:.{digits}g}" for value in values)
 
 
 def read_knowledge(chapters):
-    """Chapter -> what its knowledge.json says."""
+    """Chapter -> content of its knowledge.json."""
     files = {chapter: grading.knowledge_file(chapter) for chapter in chapters}
     return {chapter: read_json(file) for chapter, file in files.items() if file.exists()}
 
 
 def planned_knowledge(chapters, before):
-    """What is to be known of chapters: levels and experiments of the own shader, and what its mistakes show. What `before` has of it and
-    was measured alike is there, the rest is empty."""
+    """What should be known about chapters: levels and experiments of their own shader, and what their mistakes show. Filled in as
+    far as `before` has it, measured alike; the rest is empty."""
     knowledge = {}
     for chapter in chapters:
         known = before.get(chapter, {})
@@ -157,7 +157,7 @@ def planned_knowledge(chapters, before):
 
 
 def unmeasured(knowledge):
-    """What is missing or was measured with something else, as (chapter, name of an experiment or a mistake, or "levels")."""
+    """What is missing or was measured differently, as (chapter, name of an experiment or a mistake, or "levels")."""
     planned = planned_knowledge(project.course(), knowledge)
     missing = [(chapter, "levels") for chapter, entry in planned.items() if not entry["levels"]]
     missing += [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["experiments"].items() if "mean" not in seen]
@@ -165,7 +165,7 @@ def unmeasured(knowledge):
 
 
 def learn(workshop, chapters, is_anew):
-    """Fills the files of knowledge with what they lack."""
+    """Completes the knowledge files."""
     knowledge, lock = planned_knowledge(chapters, {} if is_anew else read_knowledge(chapters)), Lock()
 
     def write(chapter):
@@ -195,7 +195,7 @@ def learn(workshop, chapters, is_anew):
 
 
 def planned_trials(chapters):
-    """Name -> a Trial and the digest of all that it depends on."""
+    """Name -> a Trial and the digest of everything that it depends on."""
     return {key: (trial, digest(settings(trial.chapter, TRYING, grading.SCENES[trial.chapter][0]), code(trial.text), trial.seed,
                                 own_text(trial.chapter), [repr(e) for e in experiments_of(trial.chapter).values()]))
             for key, trial in trials().items() if trial.chapter in chapters}
@@ -228,7 +228,7 @@ def confusion(workshop, chapters, is_anew):
 
 
 def effect(result):
-    """The largest change of a picture's mean and the largest of its error, both as parts: what a check must find."""
+    """The largest change of a picture's mean and of its error, both relative: what a check must find."""
     sure = [abs(test["value"]) for scene in result["scenes"] for test in scene["image"] if abs(test["value"]) > test["half_width"]]
     return {"bias": max(sure, default=0.0),
             "noise": max(scene["noise"][0] or 1.0 for scene in result["scenes"]), "rays": max(scene["rays"] for scene in result["scenes"])}

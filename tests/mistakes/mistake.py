@@ -22,7 +22,7 @@ from project import BINARIES  # noqa: E402
 
 
 def load():
-    """Mistakes that have a test, by name, with the shader that they are planted in; the others are there for ./lab check only."""
+    """Mistakes that have a test, by name, with the shader they are planted in; the others exist for ./lab check only."""
     everything, mistakes = records(), {}
     for chapter, record in ((chapter, record) for chapter, those in everything.items() for record in those if "test" in record):
         file = shader_of(chapter, record).relative_to(ROOT).as_posix()
@@ -43,9 +43,9 @@ def make(mistake, tree):
 
 
 def run(program, test, tree):
-    """Runs tests of a program on that tree; returns all tests that ran, with the messages of their failures. A test may be one of
-    those that only ./lab test --all takes, whose names end in _all."""
-    # Programs find the shaders above themselves.
+    """Runs tests of a program on that tree; returns all tests that ran, with the messages of their failures. The tests may
+    include those that run only with ./lab test --all, whose names end in _all."""
+    # Programs look for the shaders in parent folders.
     binary = tree / "bin" / f"{program}_tests"
     binary.parent.mkdir(exist_ok=True)
     shutil.copy(BINARIES / binary.name, binary)
@@ -61,7 +61,7 @@ def run(program, test, tree):
 
 
 def is_verdict(message):
-    """Whether a failure speaks of the estimator: not where a test finds itself too weak or Vulkan is misused."""
+    """Whether a failure is about the estimator: not if a test finds itself too weak or Vulkan is misused."""
     return "too weak" not in message and "validation" not in message
 
 

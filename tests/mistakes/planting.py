@@ -1,16 +1,16 @@
-"""Shaders with mistakes planted in them: those that ./lab check is to know, and those that it is tried with."""
+"""Shaders with planted mistakes: those that ./lab check should know, and those it is tested with."""
 from dataclasses import dataclass
 from pathlib import Path
 
 from course.mistakes import catalogue, own_shader, plant
 from project import course, name_of, read_json
 
-CORRECT_CHECKS = 7  # of each correct shader, with other seeds
+CORRECT_CHECKS = 7  # per correct shader, with different seeds
 
 
 @dataclass
 class Trial:
-    """A shader that is to be judged: this text in place of the file `shader`."""
+    """A shader to be judged: this text instead of the file `shader`."""
     chapter: int
     mistake: str  # its name, or None
     text: str
@@ -19,7 +19,7 @@ class Trial:
 
 
 def variants():
-    """(chapter, file, shader in whose place it is, mistakes) for all shaders that are written in another way than their chapter's own."""
+    """(chapter, file, shader that it replaces, mistakes) for all shaders written differently from their chapter's own."""
     for chapter in course():
         folder = own_shader(chapter).with_name("variants")
         for variant in read_json(folder / "variants.json") if folder.exists() else []:
@@ -27,8 +27,8 @@ def variants():
 
 
 def trials():
-    """What check is tried with: condition/chapter/mistake -> Trial. All mistakes with new seeds, those of each variant, and
-    each correct shader several times."""
+    """The trials of check: condition/chapter/mistake -> Trial. All mistakes with new seeds, those of each variant, and each
+    correct shader several times."""
     result, correct = {}, [(chapter, "its own", own_shader(chapter), own_shader(chapter)) for chapter in course()]
     for bug in catalogue():
         result[f"new seeds/{name_of(bug.chapter)}/{bug.mistake['name']}"] = Trial(bug.chapter, bug.mistake["name"], bug.text, bug.file)

@@ -23,8 +23,8 @@ from check.facts import readings  # noqa: E402
 from project import CHAPTERS, RECORDS, Parser, UserError, add_device_options, commit, number, read_json, run_tool, show_progress, write_json  # noqa: E402
 
 GOES_ON = True
-SEED, FACTOR = 9001, 4  # of the second measurement, which has so many times the samples
-AGREE = 3.5  # standard errors between two measurements of the same
+SEED, FACTOR = 9001, 4  # of the second measurement, which takes this many times the samples
+AGREE = 3.5  # standard errors between two measurements of the same quantity
 ROUNDING = 0.005
 
 
@@ -34,7 +34,7 @@ def settings(options, seed):
 
 
 def untrue(chapter, file, found, those):
-    """What a second measurement contradicts of the numbers of wrong experiments: (experiment, point, number, number anew)."""
+    """Numbers of wrong experiments that a second measurement contradicts: (experiment, point, number, second number)."""
     known, contradicted = read_json(grading.knowledge_file(chapter))["experiments"], []
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
         program, _ = grading.make_tree(CHAPTERS[chapter], file, Path(folder))

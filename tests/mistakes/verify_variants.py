@@ -16,9 +16,9 @@ from project import CHAPTERS, Parser, number, read_json, run_program, show_progr
 from references.images import read_rgb  # noqa: E402
 
 SIZE, TILE = 64, 8
-SAMPLES_OF_CHECKS = 4  # a run has so many times the samples of one of ./lab check
+SAMPLES_OF_CHECKS = 4  # a run takes this many times the samples of a run of ./lab check
 LIMITS = {"z": 4, "mean": 1, "noise": 1.4, "rays": 1.4}
-# What chapter.json must say: scenes and options. The scenes together have all that an estimator must handle.
+# What chapter.json must contain: scenes and options. Together, the scenes have everything that an estimator must handle.
 SETTINGS = {
     (): [("cornell_box", "--max-path-length 5"), ("cornell_box", "--max-path-length 4 --only-path-length 2"),
          (HERE / "under_the_sky.json", "--max-path-length 3"), ("textured", "--max-path-length 3"), ("glossy", "--max-path-length 4"),
@@ -39,7 +39,7 @@ SETTINGS = {
 
 
 def settings_of(chapter):
-    """The scenes and options that a chapter handles."""
+    """The scenes and options that a chapter supports."""
     says = DESCRIPTIONS[chapter]
     abilities = {key for key, value in says.items() if value is True} | {*says.get("options", []), *says.get("strategies", [])}
     return [setting for needed, those in SETTINGS.items() if abilities.issuperset(needed) for setting in those]
@@ -50,7 +50,7 @@ def samples_of(chapter):
 
 
 def render(chapter, file, shader, scene, options, seeds):
-    """Images [seed, row, column, channel] and rays per sample, by a chapter's program with this file in place of its shader."""
+    """Images [seed, row, column, channel] and rays per sample, from a chapter's program with this file instead of its shader."""
     images, rays = [], 0
     with tempfile.TemporaryDirectory() as folder:
         program, _ = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
@@ -77,7 +77,7 @@ def compare(images, rays, own_images, own_rays):
     variance = grey.var(axis=0, ddof=1) / len(grey) + own_grey.var(axis=0, ddof=1) / len(own_grey)
     tiles = tile_means(difference) / np.sqrt(tile_means(variance) / TILE**2 + 1e-13)
     whole = difference.mean() / np.sqrt(variance.mean() / SIZE**2 + 1e-13)
-    # Mean of the tiles' ratios, by logarithms: a few samples that are very bright would decide the image's own ratio.
+    # Geometric mean of the tiles' ratios: a few very bright samples would dominate the image's own ratio.
     mean = (images.mean(axis=0) + own_images.mean(axis=0)) / 2
     noise, own_noise = [tile_means((x.var(axis=0, ddof=1) / (mean**2 + 0.01 * mean.mean() ** 2)).mean(axis=2))
                         for x in (images, own_images)]

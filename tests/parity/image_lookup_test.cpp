@@ -23,7 +23,7 @@ class Textures : public OnEachBackend {
 };
 INSTANTIATE_TEST_SUITE_P(Backends, Textures, testing::ValuesIn(all_backends), backend_name);
 
-// Four columns and two rows of colours that are all different.
+// Four columns and two rows, all of different colours.
 Texture colourful_texture() {
     Texture texture{4, 2, {}};
     for (int row = 0; row < 2; ++row)
@@ -33,12 +33,12 @@ Texture colourful_texture() {
     return texture;
 }
 
-// Allowed decoding error: twice that of x^2.4 on the device, and roundings.
+// Allowed decoding error: twice that of x^2.4 on the device, plus rounding.
 double decoding_error() { return 2 * test_arithmetic().decoding + 1e-6; }
 
 TEST_P(Textures, AreFilteredLinearlyAcrossTheirBorders) {
     const Texture texture = colourful_texture();
-    // Between two columns, a quarter of the way between two rows, and between the first and the last ones.
+    // Between two columns, a quarter of the way between two rows, and between the last and the first of each.
     const auto albedos = albedo_at(texture, {{0.25f, 0.25f}, {0.125f, 0.375f}, {0, 0.25f}, {0.9375f, 0.25f}, {0.125f, 0}});
     const std::array<dvec3, 5> expected{
         0.5 * (texel(texture, 0, 0) + texel(texture, 1, 0)), 0.75 * texel(texture, 0, 0) + 0.25 * texel(texture, 0, 1),
@@ -68,7 +68,7 @@ TEST_P(Textures, CoordinatesAreInterpolated) {
 
 class LightProbe : public OnEachBackend {
   protected:
-    // A probe whose texels have different colours, over an empty scene.
+    // A probe whose texels all have different colours, over an empty scene.
     static constexpr uint32_t width = 9, height = 5;
     static vec3 texel_radiance(uint32_t column, uint32_t row) {
         return {static_cast<float>(column * column), static_cast<float>(row) * 100, static_cast<float>(column + row) + 0.5f};
@@ -83,7 +83,7 @@ class LightProbe : public OnEachBackend {
                     scene.light_probe->pixels.push_back(texel_radiance(column, row)[channel]);
         return scene;
     }
-    // Radiance that a camera sees in a direction.
+    // Radiance seen by a camera that looks in a direction.
     vec3 radiance(Scene scene, const dvec3& direction) const {
         scene.camera = {.position = {0, 0, 0}, .target = vec3(direction), .up = {0.3f, 0.2f, 0.1f}, .vertical_fov = 0.01f};
         return radiance_at(render(scene, {.width = 1, .height = 1, .samples = 1, .backend = GetParam()}), 0, 0);
@@ -119,7 +119,7 @@ TEST_P(LightProbe, JoinsAtItsSidesAndEndsAtItsPoles) {
     const Scene scene = probe_scene();
     const vec3 sides = 0.5f * (texel_radiance(0, 2) + texel_radiance(8, 2));
     EXPECT_LT(glm::distance(radiance(scene, {0, 0, 1}), sides), 0.1f);
-    // Above the highest row of texel centres only that row is seen.
+    // Above the top row of texel centres only that row is visible.
     EXPECT_NEAR(radiance(scene, {0, 1, -0.01}).g, 0, 1e-3);
     EXPECT_NEAR(radiance(scene, {0, -1, -0.01}).g, 100 * (height - 1), 1e-2);
 }

@@ -1,5 +1,5 @@
-// The backends give the same picture: same random numbers, same paths. Each chapter renders each scene with
-// `compute` and with the backends of the driver, one sample a pixel, and the pixels are compared one by one.
+// All backends render the same picture: same random numbers, same paths. Each chapter renders each scene with `compute` and with
+// the driver's backends, one sample per pixel, and pixels are compared one by one.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +28,7 @@ class BackendScene {
         : gpu_scene_(test_device(), scene, Strategy::both, samples_probe),
           structure_(build_acceleration_structure(backend, test_device(), gpu_scene_)) {}
 
-    // One sample a pixel.
+    // One sample per pixel.
     TracedImage render(const RenderSettings& settings) const {
         Renderer renderer(test_device(), *structure_, settings.estimator, make_parameters(gpu_scene_.scene(), settings));
         while (renderer.advance(1)) {
@@ -42,16 +42,16 @@ class BackendScene {
 };
 
 struct Limits {
-    // Paths are different where their radiance differs by more than this, relatively, and by more than what
-    // is left of zero where two points of one light are in its plane but for roundings.
+    // Paths count as different if their radiance differs by more than this, relatively, and by more than what rounding leaves of
+    // zero where two points of one light lie in its plane.
     double radiance = 1e-3;
-    // Largest number of different paths for each path segment.
+    // Largest number of different paths per path segment.
     double fraction = 1e-4;
-    // Of the means, beyond what those paths explain, relatively.
+    // Relative difference of the means beyond what those paths explain.
     double mean = 1e-6;
 };
 
-// The paths are the same within the limits, and the means differ by no more than the different paths explain.
+// Expects equal paths within the limits, and means that differ no more than the different paths explain.
 void expect_parity(const std::string& what, Backend backend, const TracedImage& expected, const TracedImage& actual,
                    const Limits& limits) {
     size_t different = 0, pixels = expected.image.pixels.size() / 3;
@@ -74,15 +74,14 @@ void expect_parity(const std::string& what, Backend backend, const TracedImage& 
     std::printf("[  PARITY  ] %-36s %-8s %zu of %zu paths differ, %.1e a segment, mean differs by %.1e relatively\n",
                 what.c_str(), to_string(backend).c_str(), different, pixels, fraction, sum > 0 ? difference_sum / sum : 0.0);
     EXPECT_LE(fraction, limits.fraction) << what;
-    // Rays that are counted differently would be traced differently.
+    // Different ray counts would mean different rays.
     EXPECT_NEAR(static_cast<double>(actual.rays), static_cast<double>(expected.rays),
                 10 * limits.fraction * static_cast<double>(expected.rays) + 1);
-    // A path that takes another way is as likely to gain as to lose: five standard deviations of the sum, and
-    // roundings.
+    // A path that goes another way is as likely to gain as to lose: allows five standard deviations of the sum, plus rounding.
     EXPECT_LE(std::abs(difference_sum), 5 * std::sqrt(difference_square_sum) + limits.mean * sum) << what;
 }
 
-// Lavapipe of Mesa 25 has all backends, so where it is used (in continuous integration) none may be missing.
+// Lavapipe of Mesa 25 supports all backends, so none may be missing where it is used (in continuous integration).
 bool must_have_all_backends() {
     const std::string& driver = test_device().description().driver;
     const size_t version = driver.find("llvmpipe Mesa ");
@@ -91,24 +90,24 @@ bool must_have_all_backends() {
 
 Limits limits_of(const Scene& scene, Backend backend) {
     Limits limits;
-    // At uv ~ 20 a hit point is rounded to 1/1000 of a texel. Where a dark texel meets a bright one that is
-    // some percent in radiance, while the path stays the same: one path in a hundred is beyond 10^-3, one in
-    // a thousand beyond 10^-2. A path that goes another way nearly always differs by more than a tenth.
+    // At uv ~ 20 a hit point is rounded to 1/1000 of a texel. Where a dark texel meets a bright one that is some percent of
+    // radiance, although the path is the same: one path in a hundred exceeds 10^-3, one in a thousand 10^-2. A path that goes
+    // another way nearly always differs by more than a tenth.
     if (!scene.textures.empty()) limits = {.radiance = 0.1, .fraction = 2e-4};
     size_t triangles = 0;
     for (const uint32_t mesh : scene.instance_meshes) triangles += scene.meshes[mesh].triangle_count;
-    // Triangles that are a thousandth of their distance from the origin leave many edges to be grazed, and
-    // `compute` knows their vertices in world space where the driver transforms the ray. Barycentrics, and
-    // with them the light at a hit, differ by more than roundings.
+    // Triangles of a thousandth of their distance from the origin have many edges to graze, and `compute` stores their vertices
+    // in world space whereas the driver transforms the ray. Barycentrics, and with them the light at a hit, differ by more than
+    // rounding.
     if (triangles > 1000000) limits = {.radiance = 1e-2, .fraction = 5e-4};
-    // Sine, cosine and arctangent are the CPU's on `native` and the driver's elsewhere. Close to a small sun of a light
-    // probe a rounding of the direction is some percent of radiance, and it is the same one in all paths.
+    // Sine, cosine and arctangent are the CPU's on `native` and the driver's elsewhere. Near a small sun in a light probe,
+    // rounding the direction changes radiance by some percent, and equally so in all paths.
     if (backend == Backend::native && scene.light_probe)
         limits = {std::max(limits.radiance, 1e-2), std::max(limits.fraction, 3e-4), 1e-4};
     return limits;
 }
 
-// The estimators of chapters, with the options that bring in all of their code.
+// The chapters' estimators, with options that enable all of their code.
 using Estimators = std::map<std::string, RenderSettings>;
 Estimators estimators_of(const std::vector<std::string>& chapters) {
     Estimators estimators;
@@ -139,7 +138,7 @@ class Parity : public testing::TestWithParam<Backend> {
                       BackendScene(GetParam(), scene).render(settings), limits);
     }
 
-    // On a file of assets/scenes.
+    // On a scene file of assets/scenes.
     void expect_same_on(const std::filesystem::path& file, const Estimators& estimators);
 };
 
@@ -156,8 +155,8 @@ void Parity::expect_same_on(const std::filesystem::path& file, const Estimators&
     }
 }
 
-// Chapters share what traces rays and what scenes bring with them: a default run has all chapters on one
-// scene, and all scenes with the last chapter.
+// Chapters share the code that traces rays and handles scene features, so a default run has all chapters on one scene, and all
+// scenes with the last chapter.
 TEST_P(Parity, EveryChapter) { expect_same_on(project_folder() / "assets" / "scenes" / "cornell_box.json", all_estimators()); }
 
 TEST_P(Parity, EveryScene) {
@@ -200,7 +199,7 @@ TEST_P(Parity, EmptySceneAndSingleTriangle) {
     expect_same("single triangle", triangle, 64, {.fraction = 1e-3});
 }
 
-// More vertices than 16-bit indices reach, and more triangles than some drivers like to number.
+// More vertices than 16-bit indices can address, and more triangles than some drivers like to number.
 TEST_P(Parity, LargeMeshes) {
     for (const uint32_t rings : {260u, 1460u}) {
         Scene scene = lit_scene(bumpy_sphere(rings));

@@ -1,4 +1,4 @@
-// Cameras, sides of surfaces, instances and normals on each backend.
+// Cameras, sides of surfaces, instances and normals on every backend.
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
@@ -62,8 +62,7 @@ dvec2 brightest_point(const FilmImage& film) {
 }
 
 TEST_P(Surface, AppearsWhereTheCameraSeesIt) {
-    // A lamp up and to the right of the centre for the first camera; the others look from elsewhere or lie on
-    // a side.
+    // For the first camera a lamp up and to the right of the centre; the others look from elsewhere or lie on their side.
     const dvec3 lamp(0.7, 1.1, 0);
     for (const CameraPose& pose :
          {CameraPose{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 50}, CameraPose{{0, 0, 5}, {0, 0, 0}, {1, 0, 0}, 50},
@@ -115,7 +114,7 @@ TEST_P(Surface, KeepsItsFrontInTransformedInstances) {
         for (const float camera_z : {1.0f, -1.0f}) {
             Scene scene = square(diffuse_material(vec3(0), vec3(1)), camera_z);
             set_transform(scene, glm::mat4x3(transform));
-            if (camera_z < 0) scene.camera.position.z = -10;  // behind the one that is moved
+            if (camera_z < 0) scene.camera.position.z = -10;  // behind the translated one
             EXPECT_EQ(radiance(scene, 0).r, (camera_z > 0) == is_front_at_positive_z ? 1 : 0) << name << ", camera " << camera_z;
         }
 }
@@ -125,10 +124,10 @@ TEST_P(Surface, HasTheNormalsOfItsVertices) {
     const vec3 normal = glm::normalize(vec3(0.4f, -0.2f, 1));
     scene.normals.assign(scene.positions.size(), normal);
     EXPECT_LT(glm::distance(radiance_at(render_view(scene, "normals"), 3, 5), 0.5f + 0.5f * normal), 1e-6f);
-    // From behind, the other side's normal is shown.
+    // From behind, the other side's normal is visible.
     scene.camera.position.z = -1;
     EXPECT_LT(glm::distance(radiance_at(render_view(scene, "normals"), 3, 5), 0.5f - 0.5f * normal), 1e-6f);
-    // The image of a plane's normal is the normal of the plane's image.
+    // A plane's normal must be transformed into the normal of the transformed plane.
     set_transform(scene, mat4x3(2, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0, 0, 0));
     const vec3 transformed = glm::normalize(normal / vec3(2, 1, 0.5f));
     EXPECT_LT(glm::distance(radiance_at(render_view(scene, "normals"), 3, 5), 0.5f - 0.5f * transformed), 1e-6f);
@@ -137,7 +136,7 @@ TEST_P(Surface, HasTheNormalsOfItsVertices) {
 TEST_P(Surface, InterpolatesTheNormalsOfItsVertices) {
     Scene scene = square(diffuse_material(vec3(1)));
     scene.camera.vertical_fov = 1;
-    // Both triangles contain the centre of the square, where opposite corners have the same weight.
+    // Both triangles contain the centre of the square, where opposite corners have equal weights.
     const std::vector<vec3> normals{{0.5f, 0, 1}, {0, 0, 1}, {0, 0.5f, 1}, {0, 0, 1}};
     for (const vec3& normal : normals) scene.normals.push_back(glm::normalize(normal));
     const vec3 expected = glm::normalize(scene.normals[0] + scene.normals[2]);

@@ -1,5 +1,5 @@
 #version 460
-// Runs an estimator at a surface: which direction it samples, and with which weight.
+// Runs an estimator at a surface point: which direction it samples, and with which weight.
 #include "observation/estimator_stub.glsl"
 #include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }
@@ -8,7 +8,7 @@ bool is_occluded(Ray ray, float t_max) { return false; }
 struct Bounce {
     vec3 direction;
     float weight;    // radiance of the red channel
-    uint ray_count;  // 1 if the estimator dropped the direction
+    uint ray_count;  // 1 if the estimator rejected the direction
 };
 
 layout(scalar, binding = 0) writeonly buffer Results { Bounce results[]; };
@@ -17,8 +17,8 @@ layout(scalar, binding = 1) readonly buffer Inputs {
     vec3 out_direction;  // towards the camera
     Material material;
     uint max_path_length;
-    uvec2 key;      // of the random start states, where none are given
-    uvec2 seeds[];  // random states at the start of the estimator
+    uvec2 key;      // of the random start states, if none are given
+    uvec2 seeds[];  // random states in which the estimator starts
 };
 
 layout(local_size_x = 128) in;

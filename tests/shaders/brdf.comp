@@ -1,5 +1,5 @@
 #version 460
-// get_brdf() and is_above_surface() for each pair of directions at a surface.
+// get_brdf() and is_above_surface() for each pair of directions at a surface point.
 #define FEATURE_SPECULAR
 #include "observation/estimator_stub.glsl"
 

@@ -16,7 +16,7 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-// As in brdf.comp.
+// Layout as in brdf.comp.
 struct BrdfInput {
     vec3 normal;
     vec3 in_direction;
@@ -38,7 +38,7 @@ Material glossy_material(float exponent) {
     return material;
 }
 
-// The definition: the BRDF of one channel.
+// The BRDF of one channel, by definition.
 double brdf(const BrdfInput& input, int channel) {
     const dvec3 n(input.normal), in(input.in_direction), out(input.out_direction);
     const double cos_alpha = std::max(glm::dot(2 * glm::dot(n, in) * n - in, out), 0.0);
@@ -60,7 +60,7 @@ TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
     for (const float exponent : {1.0f, 10.0f, 100.0f, 1000.0f})
         for (int i = 0; i < 20'000; ++i) {
             const vec3 in = direction(1.57 * uniform(generator), 6.28 * uniform(generator));
-            // Half of the directions near the mirror image, where the lobe is.
+            // Half of the directions near the mirror direction, where the lobe is.
             const vec3 mirrored(-in.x, -in.y, in.z);
             const vec3 other = direction(1.57 * uniform(generator), 6.28 * uniform(generator));
             const vec3 out = glm::normalize(i % 2 == 0 ? other : mirrored + 3 / std::sqrt(exponent) * other);
@@ -80,7 +80,7 @@ TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
         }
     }
     std::printf("  largest error %.2g, largest difference of exchanged directions %.2g, of the peak\n", worst, worst_reciprocity);
-    // The base's own roundings, about 2^-23, are magnified as well.
+    // The rounding errors of the base, about 2^-23, are magnified as well.
     const double tolerance = 2 * test_arithmetic().phong_lobe + 1000 * 3 * 0x1p-24;
     EXPECT_LT(worst, tolerance);
     EXPECT_LT(worst_reciprocity, 2 * tolerance);
@@ -89,7 +89,7 @@ TEST(Brdf, IsLambertianWithANormalisedPhongLobe) {
 TEST(Brdf, CarriesNothingBelowTheSurface) {
     const std::vector<BrdfInput> inputs{{{0, 0, 1}, {0, 0.6f, -0.8f}, {0, 0, 1}, white_material()},
                                         {{0, 0, 1}, {0, 1, 0}, {0, 0, 1}, white_material()},
-                                        // Seen from behind, the surface reflects to behind.
+                                        // seen from behind, the surface reflects backwards
                                         {{0, 0, 1}, {0, 0.6f, -0.8f}, {0, 0, -1}, white_material()},
                                         {{0, 0, 1}, {0, 0.6f, 0.8f}, {0, 0, -1}, white_material()}};
     const auto results = evaluate(inputs);
@@ -99,15 +99,15 @@ TEST(Brdf, CarriesNothingBelowTheSurface) {
     EXPECT_EQ(results[3].is_above, 0u);
 }
 
-// Directions sampled from the whole BRDF, from all diffuse to all mirror.
+// Directions sampled from the whole BRDF, from purely diffuse to a pure mirror.
 struct SampledLobe {
     float exponent;
-    double degrees;  // of the light that leaves
+    double degrees;  // of the outgoing light
 };
 
 class BrdfSampling : public testing::TestWithParam<std::string> {
   protected:
-    // A surface whose lobe leaves at this angle.
+    // A surface whose lobe is sampled for light that leaves at this angle.
     static Surface surface(const SampledLobe& lobe, const vec3& diffuse, const vec3& specular) {
         Material material = white_material();
         material.diffuse_albedo = diffuse;
@@ -119,8 +119,8 @@ class BrdfSampling : public testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_that(weights_lights)), chapter_name);
 
 TEST_P(BrdfSampling, FollowsTheLobe) {
-    // 1 - cos α grows from 0 with the probability 1 - (cos α)^(n+1), and the azimuth about the mirror image
-    // is uniform. Light that leaves along the normal has its whole lobe above the surface.
+    // 1 - cos α increases from 0 with probability 1 - (cos α)^(n+1), and the azimuth about the mirror direction is uniform. For
+    // light that leaves along the normal the whole lobe is above the surface.
     uint32_t run = 300;
     for (const float exponent : {0.0f, 1.0f, 20.0f, 1e3f, 1e6f, 1e8f}) {
         constexpr size_t rows = 16, columns = 8;
@@ -140,7 +140,7 @@ TEST_P(BrdfSampling, FollowsTheLobe) {
 }
 
 TEST_P(BrdfSampling, ReflectsWhatTheBrdfSays) {
-    // The lobe reflects k_s cos θ where all of it is above the surface: ∫ (n+2)/(2π) cos^n α cos θ dω.
+    // If all of it is above the surface, the lobe reflects k_s cos θ: ∫ (n+2)/(2π) cos^n α cos θ dω.
     uint32_t run = 400;
     for (const SampledLobe lobe : {SampledLobe{200, 50}, {1e4f, 75}, {1e6f, 80}, {1e8f, 60}, {1e4f, 0}})
         for (const float share : {0.0f, 0.3f, 0.9f, 1.0f}) {

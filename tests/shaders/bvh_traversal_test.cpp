@@ -1,5 +1,5 @@
-// The traversal of the bounding volume hierarchy against brute force. Hard cases send rays at closed meshes,
-// and Parity compares the triangle test with that of the driver.
+// Traversal of the bounding volume hierarchy against brute force. The hard cases shoot rays at closed meshes, and Parity compares
+// the triangle test with the driver's.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -29,7 +29,7 @@ struct TestHit {
     float distance;
 };
 
-// Triangles with their numbers as ids.
+// Triangles with their indices as ids.
 struct Mesh {
     std::vector<BvhTriangle> triangles;
     void add(const vec3& a, const vec3& b, const vec3& c) { triangles.push_back(make_triangle(a, b, c, triangles.size())); }
@@ -71,8 +71,8 @@ std::vector<TestHit> trace(const Bvh& bvh, const std::vector<TestRay>& rays) {
     return hits;
 }
 
-// The same tree with boundless boxes, in which a traversal visits every triangle: brute force with the same
-// triangle test, so that distances have to be equal to the bit.
+// The same tree with infinite boxes, so that a traversal visits every triangle: brute force with the same triangle test, so
+// distances must be equal to the bit.
 Bvh without_boxes(Bvh bvh) {
     for (auto& node : bvh.nodes)
         for (auto& axis : node.bounds)
@@ -99,7 +99,7 @@ void expect_same_hits(const Bvh& bvh, const std::vector<TestRay>& rays, double l
         << "too few hits for the test to mean anything";
 }
 
-// Rays of all directions, some of them parallel to an axis or a plane of axes, some of limited length.
+// Rays in all directions, some parallel to an axis or a coordinate plane, some of limited length.
 std::vector<TestRay> random_rays(size_t count, float scale, const vec3& centre, uint32_t seed) {
     Random random(seed);
     std::vector<TestRay> rays;
@@ -112,7 +112,7 @@ std::vector<TestRay> random_rays(size_t count, float scale, const vec3& centre, 
             ray.direction = vec3(0);
             ray.direction[axis] = sign;
         }
-        // From afar the origin's rounding errors are the larger ones.
+        // From afar the rounding errors of the origin dominate.
         if (i % 5 == 1) {
             ray.direction = ray.origin - centre;
             ray.origin = centre - 1e4f * ray.direction + 0.5f * scale * random.point();
@@ -154,7 +154,7 @@ TEST(BvhTraversal, FindsTheHitsOfBruteForce) {
         }
 }
 
-// Boxes of a grid have their faces where rays run, and rays start on faces.
+// In a grid, box faces lie exactly where rays run, and rays start on faces.
 TEST(BvhTraversal, HitsBoxesAlongTheirFaces) {
     Mesh mesh;
     const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
@@ -175,7 +175,7 @@ TEST(BvhTraversal, HitsBoxesAlongTheirFaces) {
                     // Half of the rays run along a face, the others along an edge of the grid.
                     if (i % 2) ray.origin[(axis + 1) % 3] += random.uniform(0, 1);
                     rays.push_back(ray);
-                    // From afar to the same places: there the rounding errors of the origin are the largest.
+                    // From afar to the same places, where the rounding errors of the origin are largest.
                     ray.direction = random.point();
                     ray.origin -= 1e4f * ray.direction;
                     rays.push_back(ray);
@@ -183,7 +183,7 @@ TEST(BvhTraversal, HitsBoxesAlongTheirFaces) {
     const Bvh bvh = build_bvh(mesh.triangles);
     expect_same_hits(bvh, rays, 0.3);
 
-    // Along the plane x = 0, in which faces of the boxes lie: straight on to the faces z = -8.
+    // In the plane x = 0, which contains box faces: straight to the faces z = -8.
     rays.clear();
     for (float y_0 = -7.7f; y_0 < 8; y_0 += 2) rays.push_back({{0, y_0, -20}, {0, 0, 1}});
     for (const TestHit& hit : trace(bvh, rays)) {

@@ -22,7 +22,7 @@ std::vector<Bounce> sample(const std::string& chapter, const dvec3& normal, size
 }
 
 TEST(CosineSampling, FollowsItsDensity) {
-    // The probability of cos θ < c is c²: exact.
+    // The probability of cos θ < c is exactly c².
     const auto integral = [](double c) { return c * c; };
     uint32_t run = 50;
     for (const dvec3& normal : test_normals()) {
@@ -35,7 +35,7 @@ TEST(CosineSampling, FollowsItsDensity) {
 }
 
 TEST(CosineSampling, WeightsEveryDirectionWithTheAlbedo) {
-    // So a Lambertian surface under a uniform sky has no variance.
+    // So a Lambertian surface under a uniform sky has zero variance.
     Material material = white_material();
     material.diffuse_albedo = vec3(0.7f);
     const dvec3 normal = test_normals()[2];

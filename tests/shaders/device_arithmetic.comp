@@ -1,5 +1,5 @@
 #version 460
-// FUNCTION(x, y) of each pair of numbers, as the device computes it.
+// FUNCTION(x, y) for each pair of numbers, as the device computes it.
 #extension GL_EXT_scalar_block_layout : require
 
 layout(scalar, binding = 0) writeonly buffer Results { float results[]; };

@@ -1,11 +1,11 @@
 #version 460
-// Runs an estimator at a surface that sees a triangular light, with nothing between them and no other light.
+// Runs an estimator at a surface point that sees a triangular light, without occluders or other lights.
 #define FEATURE_LIGHT_TRIANGLES
 #include "observation/estimator_stub.glsl"
 
 struct Result {
     vec3 origin;     // of the shadow ray
-    vec3 to_light;   // its direction, as long as the way to the light
+    vec3 to_light;   // its direction, as long as the distance to the light
     float radiance;  // of the red channel
     uint shadow_rays;
 };

@@ -1,4 +1,4 @@
-// shaders/engine/display.comp: a screen shows what film/display.h computes.
+// shaders/engine/display.comp: the screen shows what to_display() of film/film_image.h computes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +9,7 @@
 namespace lab {
 namespace {
 
-// Radiance from far below to far above what a screen shows, with different sample counts and some invalid
-// samples.
+// Radiance from far below to far above the displayable range, with different sample counts and some invalid samples.
 FilmImage make_film(uint32_t width, uint32_t height) {
     FilmImage film{width, height, {}};
     for (uint32_t i = 0; i < width * height; ++i) {
@@ -33,7 +32,7 @@ std::vector<uint8_t> show(Film& film, const std::shared_ptr<StorageImage>& pictu
 }
 
 TEST(Display, AgreesWithTheSavedPictureToOneStepOfEightBits) {
-    const FilmImage image = make_film(61, 35);  // no multiples of a block
+    const FilmImage image = make_film(61, 35);  // not multiples of a block
     Film film(test_device(), image.width, image.height);
     film.write(image);
     const auto picture = std::make_shared<StorageImage>(test_device(), image.width, image.height);

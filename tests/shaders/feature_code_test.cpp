@@ -1,5 +1,5 @@
-// A feature that a scene lacks costs nothing: no instruction, no binding, no byte. Each feature is switched
-// on alone, and code and buffers must have what it needs and nothing else.
+// A feature that a scene lacks costs nothing: no instruction, no binding, no byte. Each feature is enabled on its own, and code
+// and buffers must contain what it needs and nothing else.
 #include "rendering/renderer.h"
 #include "support/gpu_test.h"
 #include "support/render.h"
@@ -10,13 +10,13 @@
 namespace lab {
 namespace {
 
-// The code that a scene makes of the shaders of a chapter, and its buffers on the device.
+// What a scene makes of a chapter's shaders: their code, and its buffers on the device.
 struct Footprint {
     ShaderCode code;
     std::set<uint32_t> bindings;
 };
 
-// What a feature adds to those of the bare scene.
+// What a feature adds to the footprint of the bare scene.
 struct Needs {
     std::set<uint32_t> bindings = {};
     std::set<std::string> functions = {}, material_members = {}, parameter_members = {};
@@ -129,7 +129,7 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
     }
 }
 
-// The backend native translates the shaders of compute.
+// The native backend translates the shaders of compute.
 TEST_P(FeatureCode, OfABareSceneIsOfNoFeature) {
     for (const Backend backend : {Backend::pipeline, Backend::query, Backend::compute}) {
         SCOPED_TRACE(to_string(backend));
@@ -140,7 +140,7 @@ TEST_P(FeatureCode, OfABareSceneIsOfNoFeature) {
 // So the test above would find each of them.
 TEST_P(FeatureCode, HasWhatEachFeatureNeedsAndNothingElse) { expect_each_feature_alone(Backend::compute); }
 
-// Chapters share what is the backends'.
+// The chapters' code is the same on all backends.
 TEST_P(FeatureCode, OfTheDriversBackendsHasWhatEachFeatureNeedsAndNothingElse_all) {
     for (const Backend backend : {Backend::pipeline, Backend::query}) {
         SCOPED_TRACE(to_string(backend));

@@ -1,5 +1,5 @@
 #version 460
-// add_sample() on streams of samples that the CPU can add exactly; or is_invalid() of given bits.
+// add_sample() on streams of samples that the CPU can sum exactly; or is_invalid() of given bits.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
 #include "world/random.glsl"

@@ -1,4 +1,4 @@
-// shaders/engine/film.glsl: sums of millions of samples, and samples that are not numbers.
+// shaders/engine/film.glsl: sums of millions of samples, and samples that are not finite.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -12,11 +12,11 @@
 namespace lab {
 namespace {
 
-// As in film.comp.
+// Values as in film.comp.
 enum Kind : uint32_t { uniform, constant, outliers, invalid };
 
-// The sum of a stream of samples, each times its factor. Their bits span less than the 53 of a double, so sums are exact; the
-// constant is a product.
+// The sum of a stream of samples, each times its factor. Their bits span less than a double's 53, so sums are exact; for the
+// constant it is a product.
 template <typename Factor>
 std::array<double, 3> exact_sum(Kind kind, uint32_t samples, Factor factor) {
     std::array<double, 3> sum{};
@@ -55,7 +55,7 @@ TEST(Film, AddsTenMillionSamplesWithoutLosingAny) {
             const double exact = expected[static_cast<size_t>(channel)];
             const double sum = double{pixel.sum[channel]} + double{pixel.compensation[channel]};
             worst = std::max(worst, std::abs(sum / exact - 1));
-            // Of which the error is told: of random samples it is about as large as the root of their number.
+            // The scale of the error: for random samples it is about the root of their number.
             const double difference = differences[static_cast<size_t>(channel)];
             EXPECT_NEAR(pixel.difference[channel], difference, 1e-3 * std::sqrt(samples) + 1e-4 * std::abs(difference))
                 << "stream " << i;

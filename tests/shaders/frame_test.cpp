@@ -12,7 +12,7 @@ vec3 unit_vector(double x, double y, double z) { return vec3(glm::normalize(glm:
 
 std::vector<vec3> hard_normals() {
     std::vector<vec3> normals{
-        // Frisvad's construction fails on these two: Duff et al., "Building an Orthonormal Basis, Revisited".
+        // Frisvad's construction fails for these two: Duff et al., "Building an Orthonormal Basis, Revisited".
         {0.00038527316f, 0.00038460016f, -0.99999988079f},
         {-0.00019813581f, -0.00008946839f, -0.99999988079f},
     };
@@ -22,7 +22,7 @@ std::vector<vec3> hard_normals() {
             normals.push_back({zero, sign, zero});
             normals.push_back({zero, zero, sign});
         }
-    // Directions whose distance to the z-axis is spread evenly over its orders of magnitude.
+    // Directions whose distance to the z-axis is log-uniform over all orders of magnitude.
     std::mt19937 generator(1);
     std::uniform_real_distribution<double> uniform(0, 1);
     for (int i = 0; i < 1'000'000; ++i) {
@@ -30,7 +30,7 @@ std::vector<vec3> hard_normals() {
         const double z = std::sqrt((1 - radius) * (1 + radius));
         normals.push_back(unit_vector(radius * std::cos(angle), radius * std::sin(angle), i % 2 == 0 ? z : -z));
     }
-    // And those around the xy-plane, where the sign of z changes.
+    // And directions near the xy-plane, where the sign of z changes.
     for (int i = 0; i < 100'000; ++i) {
         const double angle = 6.283185307179586 * uniform(generator);
         const double z = std::pow(10.0, -20 * uniform(generator));
@@ -47,7 +47,7 @@ TEST(ShadingSpace, IsARotationThatTakesZToTheNormal) {
         ASSERT_EQ(frames[i][2], normals[i]);
         const glm::dmat3 frame(frames[i]);
         const glm::dmat3 product = glm::transpose(frame) * frame;
-        double error = std::abs(glm::determinant(frame) - 1);  // -1 if it were left-handed
+        double error = std::abs(glm::determinant(frame) - 1);  // -1 if left-handed
         for (int column = 0; column < 3; ++column)
             for (int row = 0; row < 3; ++row) error = std::max(error, std::abs(product[column][row] - (row == column)));
         ASSERT_LT(error, 1e-6) << "normal " << normals[i].x << " " << normals[i].y << " " << normals[i].z;

@@ -1,6 +1,5 @@
-// Chapter 6's Fresnel reflectance, refraction and choice between the two directions, against the textbook's
-// formulas in long double: those cancel where indices are nearly equal, but have 11 bits more than double to
-// lose.
+// Chapter 6's Fresnel reflectance, refraction and choice between the two directions, against the textbook's formulas in long
+// double: those cancel if the indices are nearly equal, but have 11 bits more than double to lose.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,10 +17,10 @@ namespace {
 
 using glm::dvec3;
 
-// The random state whose next number is u.
+// The random state that yields u next.
 RandomState seed_of(double u) { return state_before(static_cast<uint64_t>(std::max(u, 0.0) * 0x1p64)); }
 
-// As in fresnel.comp.
+// Layout as in fresnel.comp.
 struct DielectricInput {
     vec3 normal{0, 0, 1};
     vec3 out_direction;
@@ -40,10 +39,10 @@ std::vector<DielectricResult> evaluate(const std::vector<DielectricInput>& input
     return run_shader<DielectricResult>(shader, inputs);
 }
 
-// Indices from nearly equal ones to diamond, seen from both sides.
+// Indices from nearly equal ones to diamond, from both sides.
 const std::vector<float> test_etas{1, 1 + 1e-6f, 1 - 1e-6f, 1 + 1e-4f, 1 - 1e-4f, 1.5f, 1 / 1.5f, 2.4f, 1 / 2.4f};
 
-// Cosines from grazing to normal incidence, evenly spaced in the logarithm.
+// Cosines from grazing to normal incidence, evenly spaced on a logarithmic scale.
 std::vector<float> test_cosines() {
     constexpr int count = 600;
     std::vector<float> cosines;
@@ -68,8 +67,8 @@ struct Textbook {
     }
 };
 
-// By how much the reflectance changes where the cosine and the difference of the indices change by a few
-// roundings: near the critical angle that is much more than a rounding, and no formula can do better.
+// How much the reflectance changes if the cosine and the difference of the indices change by a few ulps: near the critical angle
+// that is far more than an ulp, and no formula can do better.
 double rounding_effect(double cos_theta, double eta) {
     const long double exact = Textbook(cos_theta, eta).reflectance;
     long double largest = 0;
@@ -94,7 +93,7 @@ bool is_reflected(const DielectricInput& input, const DielectricResult& result) 
     return glm::dot(input.normal, result.direction) > 0;
 }
 
-// The largest number below 1: it asks for refraction, if there is any.
+// The largest number below 1: it selects refraction, if there is any.
 constexpr double refract = 1 - 0x1p-53;
 
 TEST(Fresnel, IsTheTextbooksReflectance) {
@@ -113,7 +112,7 @@ TEST(Fresnel, IsTheTextbooksReflectance) {
                 worst = std::max(worst, std::abs(results[i].reflectance / expected - 1));
         }
         std::printf("  index ratio %.7f: largest relative error of the reflectance %.2g\n", eta, worst);
-        // Quotients of the numbers that the sums of two roundings make, squared.
+        // Squared quotients of sums, each with two rounding errors.
         EXPECT_LT(worst, 4 * test_arithmetic().division + 1e-6) << eta;
         worst_of_all = std::max(worst_of_all, worst);
     }
@@ -176,13 +175,12 @@ TEST(Dielectric, OfIndexOneIsTransparent) {
     const auto results = evaluate(inputs);
     for (size_t i = 0; i < inputs.size(); ++i) {
         ASSERT_FALSE(is_reflected(inputs[i], results[i]));
-        // To the roundings by which it is brought to unit length: some devices multiply by the inverse
-        // length.
+        // Up to the rounding of the normalisation: some devices multiply by the inverse length.
         ASSERT_LT(glm::distance(dvec3(results[i].direction), -dvec3(inputs[i].out_direction)), 0x1p-22);
     }
 }
 
-// Surfaces and directions in general position, for each index ratio.
+// Surfaces and directions in general position, for each ratio of indices.
 std::vector<DielectricInput> random_inputs(double u) {
     std::mt19937 generator(2);
     std::normal_distribution<double> normal;

@@ -1,4 +1,4 @@
-// The hemisphere at a shading point, against known values and against what the chapters estimate there.
+// The hemisphere at a shading point, against known values and against the chapters' own estimates there.
 #include "inside/hemisphere_view.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t extent = HemisphereView::extent;
 
-// Sets up the view at the point that a path through the image finds first.
+// Sets up the view at the first hit of a path through the image.
 struct LookAtPoint {
     LookAtPoint(Scene scene_to_use, const RenderSettings& settings)
         : scene(std::move(scene_to_use)),
@@ -40,8 +40,7 @@ struct LookAtPoint {
     PathVertex vertex;
 };
 
-// Calls check(i, cosine) for the pixels that lie in the disc: the number of the red channel, and cos θ at the
-// centre.
+// Calls check(i, cosine) for the pixels inside the disc, with the index of the red channel and cos θ at the centre.
 template <typename Check>
 void for_each_inner_pixel(const Check& check) {
     for (uint32_t y = 0; y < extent; ++y)
@@ -62,7 +61,7 @@ TEST(HemisphereView, ShowsKnownFactorsInAFurnace) {
         EXPECT_EQ(pictures.incoming_radiance.pixels[i], 3);
         EXPECT_NEAR(pictures.brdf.pixels[i], 0.8 / std::numbers::pi, 1e-6);
         EXPECT_NEAR(pictures.brdf.pixels[i + 2], 0.2 / std::numbers::pi, 1e-6);
-        EXPECT_NEAR(pictures.cosine.pixels[i], cosine, 0.025);  // which is what it changes by within a pixel
+        EXPECT_NEAR(pictures.cosine.pixels[i], cosine, 0.025);  // the cosine's variation within a pixel
     });
     EXPECT_GT(pixels, 11000u);
     // ∫ L_i ρ n·ω dω = L_i albedo.
@@ -73,7 +72,7 @@ TEST(HemisphereView, ShowsKnownFactorsInAFurnace) {
 }
 
 TEST(HemisphereView, ShowsTheSkyUpwards) {
-    // A floor under a sky and a bright wall behind it, seen by a camera that looks along -z.
+    // A floor under a sky, with a bright wall behind it, seen by a camera that looks along -z.
     Scene scene = make_scene({diffuse_material(vec3(0.5f)), diffuse_material(vec3(0), vec3(5))},
                              {{{-9, 0, 9}, {18, 0, 0}, {0, 0, -18}, 0}, {{-9, 0, -9}, {18, 0, 0}, {0, 9, 0}, 1}});
     scene.camera = {.position = {0, 2, 4}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 40};
@@ -84,10 +83,10 @@ TEST(HemisphereView, ShowsTheSkyUpwards) {
     const auto pictures = setup.look(1);
     const auto at = [&](uint32_t x, uint32_t y) { return pictures.incoming_radiance.pixels[3 * (size_t{y} * extent + x)]; };
     EXPECT_EQ(at(extent / 2, extent / 2), 1);   // straight up
-    EXPECT_EQ(at(extent / 2, extent / 16), 5);  // far away is upwards
+    EXPECT_EQ(at(extent / 2, extent / 16), 5);  // up in the picture is far away
     EXPECT_EQ(at(extent / 2, 15 * extent / 16), 1);
     EXPECT_EQ(at(extent / 16, extent / 2), 1);
-    EXPECT_EQ(at(0, 0), 0);  // no direction
+    EXPECT_EQ(at(0, 0), 0);  // outside the disc
 }
 
 class HemisphereOf : public testing::TestWithParam<std::string> {};
@@ -101,7 +100,7 @@ TEST_P(HemisphereOf, IntegratesToWhatTheChapterReflects) {
     settings.estimator = chapter_estimator(GetParam());
     Scene scene = load_shipped_scene(samples_lights(GetParam()) ? "cornell_box.json" : "instances.json");
     LookAtPoint setup(std::move(scene), settings);
-    // A camera at the same place whose whole image is that point.
+    // A camera at the same place whose whole image shows that point.
     RenderParameters narrow = setup.parameters;
     narrow.camera.forward = setup.vertex.direction;
     narrow.camera.right *= 1e-5f;

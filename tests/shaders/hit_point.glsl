@@ -1,5 +1,5 @@
-// In place of a chapter's estimator: tells what a camera ray hits, in numbers. The maximal path length chooses which,
-// so that the same code traces the same ray for all of them.
+// Replaces a chapter's estimator: outputs numbers about a camera ray's hit. The maximal path length selects which, so that the
+// same code traces the same ray for all of them.
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     Hit hit;
     if (!trace_ray(ray, NO_LIMIT, hit)) return vec3(-1.0);

@@ -1,4 +1,4 @@
-// --view idle-lanes: the fraction of its time that a thread waits for the others of its subgroup.
+// --view idle-lanes: the fraction of time that a thread waits for the others in its subgroup.
 #include <cstdio>
 
 #include "support/gpu_test.h"
@@ -11,7 +11,7 @@ namespace {
 const std::string without_regeneration = chapter_named("low_discrepancy_points"),
                   with_regeneration = chapter_named("path_regeneration");
 
-// The mean over the image, whose size is no multiple of a block's.
+// The mean over an image whose size is not a multiple of the block size.
 double idle_part(const Scene& scene, const std::string& chapter, RenderSettings settings) {
     settings.width = 52;
     settings.height = 36;

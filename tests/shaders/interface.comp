@@ -1,5 +1,5 @@
 #version 460
-// Writes consecutive numbers into all fields of all structs that C++ and GLSL share, in the order of the host.
+// Writes consecutive numbers to all fields of all structs that C++ and GLSL share, in the host's order.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
 #include "all_structs.h"

@@ -1,4 +1,4 @@
-// shaders/interface.h: C++ and GLSL agree on the layout of the structs they share.
+// shaders/interface.h: C++ and GLSL agree on the layout of the structs that they share.
 #include "shaders/interface.h"
 
 #include "support/gpu_test.h"

@@ -1,6 +1,6 @@
 #version 460
-// choose_light_triangle() for given random states, and for those of different samples. With ONE_PAIR a
-// single pair of words chooses the triangle and the point on it.
+// choose_light_triangle() for given random states, and for those of different samples. With ONE_PAIR a single pair of words
+// chooses both the triangle and the point on it.
 #define FEATURE_LIGHT_TRIANGLES
 #include "observation/estimator_stub.glsl"
 
@@ -11,7 +11,7 @@ struct Choice {
 
 layout(scalar, binding = 0) writeonly buffer Results { Choice results[]; };
 layout(scalar, binding = 1) readonly buffer Inputs {
-    uvec2 key;  // of the random start states, where none are given
+    uvec2 key;  // of the random start states, if none are given
     uvec2 states[STATE_COUNT];
     LightTriangle light_triangles[];
 };

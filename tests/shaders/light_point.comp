@@ -1,5 +1,5 @@
 #version 460
-// The barycentric coordinates of the point of a light that an estimator chooses, for each state of the random numbers.
+// The barycentric coordinates of the light point that an estimator chooses, for each random state.
 #define FEATURE_LIGHT_TRIANGLES
 #include "observation/estimator_stub.glsl"
 

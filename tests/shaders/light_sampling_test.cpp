@@ -1,4 +1,4 @@
-// Samples of the lights: which triangle, which point of it, and with which weight.
+// Samples on lights: which triangle, which point on it, and with which weight.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -26,7 +26,7 @@ void append_bytes(std::vector<std::byte>& bytes, std::span<const T> objects) {
     bytes.insert(bytes.end(), more.begin(), more.end());
 }
 
-// A table of triangles 0, 1, 2, ... that are chosen with probabilities proportional to the weights.
+// A table of triangles 0, 1, 2, ... chosen with probabilities proportional to the weights.
 std::vector<LightTriangle> make_table(const std::vector<double>& weights) {
     const AliasTable table = build_alias_table(weights);
     std::vector<LightTriangle> lights;
@@ -39,14 +39,13 @@ std::vector<LightTriangle> make_table(const std::vector<double>& weights) {
     return lights;
 }
 
-// As in light_choice.comp.
+// Layout as in light_choice.comp.
 struct Choice {
     uint32_t triangle;
     vec2 u;
 };
 
-// The choices of the device: first after the given random states (at least one), then with the numbers of
-// different samples.
+// The device's choices: first from the given random states (at least one), then with the numbers of different samples.
 std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::vector<RandomState>& states, size_t count,
                            uint32_t run, std::vector<std::string> defines = {}) {
     std::vector<std::byte> inputs;
@@ -60,7 +59,7 @@ std::vector<Choice> choose(const std::vector<LightTriangle>& lights, const std::
     return chosen;
 }
 
-// Powers as unequal as those of a mesh of very different triangles; every tenth is 0.
+// Powers as different as in a mesh of very unequal triangles; every tenth is 0.
 std::vector<double> unequal_weights(size_t count) {
     std::mt19937_64 random(count);
     std::vector<double> weights;
@@ -68,15 +67,15 @@ std::vector<double> unequal_weights(size_t count) {
     return weights;
 }
 
-// The entry that 64 digits choose: the words' first one, and a hash of both.
+// The entry that 64 bits choose: the first word, and a hash of both.
 uint32_t entry_of(const RandomState& words, uint64_t count) {
     const uint64_t further = uint64_t{next_state(words)[0]} * count >> 32;
     return static_cast<uint32_t>((uint64_t{words[0]} * count + further) >> 32);
 }
 
 TEST(LightChoice, FollowsTheTableWordByWord) {
-    // Where the words change the choice: at the first and last word of an entry, at its threshold and just
-    // below. Of the last word, further digits decide whether the next entry is chosen.
+    // Words at which the choice changes: at the first and last word of an entry, at its threshold and just below. For the last
+    // word, further bits decide whether the next entry is chosen.
     size_t carried = 0;
     for (const size_t n : {size_t{1}, size_t{7}, size_t{4000}, size_t{100'000}}) {
         const auto lights = make_table(unequal_weights(n));
@@ -117,8 +116,8 @@ TEST(LightChoice, HasTheProbabilitiesOfTheWeights) {
     }
 }
 
-// Chapter 9 chooses with a single pair of words. In large tables few words are left to an entry, and with 2^k
-// entries they are the same for all.
+// Chapter 9 chooses with a single pair of words. In large tables few words belong to an entry, and with 2^k entries the same
+// number for all.
 TEST(LightChoice, ByOnePairOfWordsHasTheProbabilitiesOfDimLights) {
     for (const size_t n : {size_t{1} << 20, size_t{1} << 22, size_t{3'000'000}}) {
         std::vector<double> weights(n, 3e-4);
@@ -147,7 +146,7 @@ TEST(LightChoice, LeavesUniformNumbers) {
     }
 }
 
-// The share of some of 49 equal lights is rounded to just below 1: the largest digits alone give way.
+// The share of some of 49 equal lights is rounded to just below 1: only the largest words give way.
 TEST(LightChoice, LeavesANumberWhereOnlyTheLargestDigitsGiveWay) {
     const auto lights = make_table(std::vector<double>(49, 1.0));
     const auto choices = choose(lights, {{1, 2}}, lights.size(), 5, {"ONE_PAIR", "LARGEST_DIGITS"});
@@ -160,8 +159,7 @@ TEST(LightChoice, LeavesANumberWhereOnlyTheLargestDigitsGiveWay) {
     EXPECT_GT(rounded, 0u);
 }
 
-// A triangle above a surface at the origin, with its front towards it: no symmetry, nothing below the
-// horizon.
+// A triangle above a surface at the origin that it faces: without symmetry, and entirely above the horizon.
 const std::array<vec3, 3> light_corners{vec3(-0.7f, 0.4f, 1.1f), vec3(0.3f, 0.9f, 0.8f), vec3(0.5f, -0.6f, 1.4f)};
 constexpr vec3 surface_normal{0, 0, 1};
 constexpr float emission = 2.5f, inverse_density = 3.5f, albedo = 0.6f;
@@ -200,7 +198,7 @@ std::vector<LightAnswer> sample_light(const std::string& chapter, const std::arr
     return samples;
 }
 
-// Barycentric coordinates w_1 and w_2 of a point in the plane of the light.
+// Barycentric coordinates w_1 and w_2 of a point in the light's plane.
 dvec2 barycentrics_of(const dvec3& point) {
     const dvec3 origin(light_corners[0]), u = dvec3(light_corners[1]) - origin, v = dvec3(light_corners[2]) - origin,
                                           normal = glm::cross(u, v);
@@ -212,15 +210,14 @@ class LightPoints : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Chapters, LightPoints, testing::ValuesIn(chapters_that(samples_lights)), chapter_name);
 
 TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
-    // Cells of equal area: rows between the lines of equal w_0, in each the two kinds of triangles of a
-    // regular grid.
+    // Cells of equal area: rows between lines of equal w_0, each with the two kinds of triangles of a regular grid.
     constexpr size_t rows = 16;
     std::vector<uint64_t> counts(rows * rows);
     std::vector<double> w_1, w_2, products, squares;
     for (const LightAnswer& sample : sample_light(GetParam(), light_corners, 1'100'000)) {
         ASSERT_EQ(sample.shadow_rays, 1u);
         const dvec2 w = barycentrics_of(dvec3(sample.origin) + dvec3(sample.to_light));
-        // Rounding may bring points of an edge 10^-6 beyond it.
+        // Rounding may push points at an edge 10^-6 beyond it.
         ASSERT_GT(w.x, -1e-6);
         ASSERT_GT(w.y, -1e-6);
         ASSERT_LT(w.x + w.y, 1 + 1e-6);
@@ -228,7 +225,7 @@ TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
         const auto column = static_cast<size_t>(cell.x);
         const auto row = std::min(static_cast<size_t>(cell.y), rows - 1 - column);
         const bool is_upper = cell.x - double(column) + cell.y - double(row) > 1 && column + row + 2 <= rows;
-        // Cells of a column: rows - column upright ones and one fewer upside-down ones.
+        // Cells in a column: rows - column upright ones and one fewer inverted.
         const size_t first = column * (2 * rows - column);
         ++counts[first + 2 * row + is_upper];
         w_1.push_back(w.x);
@@ -244,9 +241,9 @@ TEST_P(LightPoints, PointsAreUniformOnTheTriangle) {
 }
 
 TEST_P(LightPoints, WeightIsThatOfTheArea) {
-    // L_e ρ cos θ cos θ' / r² A/P, for every sample. With multiple importance sampling times p_l / (p_l +
-    // p_b), the balance heuristic with the densities p_l = r² / cos θ' P/A of this sample and p_b = cos θ / π
-    // of the bounce; with --strategy light there is no such bounce.
+    // L_e ρ cos θ cos θ' / r² A/P for every sample, in multiple importance sampling times p_l / (p_l + p_b), the balance
+    // heuristic with the densities p_l = r² / cos θ' P/A of this sample and p_b = cos θ / π of the bounce; with --strategy light
+    // there is no such bounce.
     const bool has_strategies = load_chapter(GetParam()).strategies.front() == Strategy::both;
     const dvec3 normal = glm::normalize(
         glm::cross(dvec3(light_corners[1]) - dvec3(light_corners[0]), dvec3(light_corners[2]) - dvec3(light_corners[0])));
@@ -275,7 +272,7 @@ TEST_P(LightPoints, BacksAndLightsBelowTheHorizonGiveNothing) {
     for (const auto& corners : {turned, below, below_turned})
         for (const LightAnswer& sample : sample_light(GetParam(), corners, 10'000)) {
             ASSERT_EQ(sample.radiance, 0);
-            ASSERT_EQ(sample.shadow_rays, 0u);  // none is worth a ray
+            ASSERT_EQ(sample.shadow_rays, 0u);  // none deserves a ray
         }
 }
 

@@ -1,5 +1,5 @@
 #version 460
-// Points of an estimator's own random numbers: pairs of random words that follow each other in a sample.
+// Points from an estimator's own random numbers: consecutive pairs of random words of a sample.
 #include "observation/estimator_stub.glsl"
 #include "world/lights.glsl"
 bool is_occluded(Ray ray, float t_max) { return false; }

@@ -1,4 +1,4 @@
-// Low-discrepancy points: how evenly they fill the unit square, and that they are independent otherwise.
+// Low-discrepancy points: how evenly they fill the unit square, and that they are otherwise independent.
 #include <cstdio>
 
 #include "rendering/renderer.h"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t pairs = 6;
 
-// As in low_discrepancy.comp.
+// Layout as in low_discrepancy.comp.
 struct SampleId {
     uint32_t pixel, sample;
     uvec2 key;
@@ -27,7 +27,7 @@ std::vector<Words> words_of(const std::vector<SampleId>& samples) {
     return run_shader<Words>(shader, samples);
 }
 
-// Points of pixels 0, 1, … with samples first, …, end - 1 of each.
+// Points of pixels 0, 1, …, for samples first, …, end - 1 of each.
 class Points {
   public:
     Points(uint32_t pixels, uint32_t first, uint32_t end, uint32_t seed) : count_(end - first) {
@@ -36,11 +36,11 @@ class Points {
             for (uint32_t i = first; i < end; ++i) samples.push_back({pixel, i, seed_key(test_seed(seed))});
         words_ = words_of(samples);
     }
-    // A word of a pair of the pixel's sample number i.
+    // One word of a pair, for sample i of the pixel.
     uint32_t word(uint32_t pixel, uint32_t i, uint32_t pair, int axis) const {
         return words_[size_t{pixel} * count_ + i].pair[pair][axis];
     }
-    // The same as number, uniform in [0,1).
+    // The same as a number, uniform in [0,1).
     double number(uint32_t pixel, uint32_t i, uint32_t pair, int axis) const { return word(pixel, i, pair, axis) * 0x1p-32; }
 
   private:
@@ -48,8 +48,8 @@ class Points {
     std::vector<Words> words_;
 };
 
-// How many rectangles of 2^-i x 2^(i-k), i = 0, …, k, do not hold exactly one of 2^k points of a pixel: every second sample from
-// number `first` on.
+// Counts the rectangles of 2^-i x 2^(i-k), i = 0, …, k, that do not hold exactly one of 2^k points of a pixel: every second
+// sample starting with `first`.
 uint32_t count_uneven(const Points& points, uint32_t pixel, uint32_t pair, uint32_t k, uint32_t first) {
     uint32_t uneven = 0;
     for (uint32_t i = 0; i <= k; ++i) {
@@ -67,7 +67,7 @@ uint32_t count_uneven(const Points& points, uint32_t pixel, uint32_t pair, uint3
 TEST(LowDiscrepancyPoints, OfEachHalfFillEveryElementaryIntervalOnce) {
     constexpr uint32_t pixels = 32;
     for (uint32_t k = 0; k <= 12; k += k < 6 ? 1 : 3) {
-        // The first 2^k of each half, and the next.
+        // The first 2^k points of each half, and the next 2^k.
         const Points points(pixels, 0, 4u << k, 100 + k);
         for (uint32_t pixel = 0; pixel < pixels; ++pixel)
             for (uint32_t pair = 0; pair < pairs; ++pair)
@@ -78,7 +78,7 @@ TEST(LowDiscrepancyPoints, OfEachHalfFillEveryElementaryIntervalOnce) {
 }
 
 TEST(LowDiscrepancyPoints, AreUniformEachAlone) {
-    // Of one sample over all pixels: the lower digits as well as the upper ones.
+    // For one sample over all pixels: both lower and upper bits.
     constexpr uint32_t pixels = 1 << 20, cells = 16;
     for (const uint32_t sample : {0u, 1u, 37u, 1u << 20, 0xffffffffu}) {
         std::vector<SampleId> samples;
@@ -96,8 +96,8 @@ TEST(LowDiscrepancyPoints, AreUniformEachAlone) {
 }
 
 TEST(LowDiscrepancyPoints, AreUniformWithinTheirStrata) {
-    // Where in its stratum of width 1/64 a point lies: a shift that all points of a pixel share would show in
-    // the product of two of them.
+    // A point's position within its stratum of width 1/64: a shift shared by all points of a pixel would show in the product of
+    // two of them.
     constexpr uint32_t pixels = 1 << 14, count = 64;
     const Points points(pixels, 0, 2 * count, 130);
     for (int axis = 0; axis < 2; ++axis) {
@@ -112,9 +112,9 @@ TEST(LowDiscrepancyPoints, AreUniformWithinTheirStrata) {
     }
 }
 
-// Of two words of the same 64 samples in each of many pixels: the mean square of their coefficient of
-// correlation, times 63. It is 1 where their orders are independent permutations. Where neighbours stay
-// together, as here, it is below 2. Where one order decides the other it is dozens.
+// For two words of the same 64 samples in each of many pixels: the mean square of their correlation coefficient, times 63. It is
+// 1 if their orders are independent permutations. If neighbours stay together, as here, it is below 2. If one order determines
+// the other, it is dozens.
 template <typename First, typename Second>
 MeanEstimate shared_order(uint32_t pixels, First first, Second second) {
     constexpr uint32_t count = 64;
@@ -132,7 +132,7 @@ MeanEstimate shared_order(uint32_t pixels, First first, Second second) {
 }
 
 TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndHalvesAreIndependent) {
-    // Samples of even number, which share a scramble.
+    // Samples of even index, which share a scramble.
     constexpr uint32_t pixels = 4096, count = 64;
     const Points points(pixels + 1, 0, 2 * count, 140), other_seed(pixels, 0, 2 * count, 141);
     const auto expect_independent = [&](const std::string& what, const MeanEstimate& mean) {
@@ -146,7 +146,7 @@ TEST(LowDiscrepancyPoints, OfDifferentPairsPixelsAndHalvesAreIndependent) {
                                shared_order(
                                    pixels, [&](uint32_t p, uint32_t i) { return points.number(p, 2 * i, 0, 0); },
                                    [&](uint32_t p, uint32_t i) { return points.number(p, 2 * i, pair, axis); }));
-    // The same number of a path of neighbouring pixels, of other seeds and of the other half.
+    // The same number of the path for neighbouring pixels, other seeds and the other half.
     const auto own = [&](uint32_t p, uint32_t i) { return points.number(p, 2 * i, 1, 1); };
     expect_independent("neighbours",
                        shared_order(pixels, own, [&](uint32_t p, uint32_t i) { return points.number(p + 1, 2 * i, 1, 1); }));

@@ -1,5 +1,5 @@
 #version 460
-// The microfacets of the chapter that has them, at a surface: their BSDF and density for each pair of directions, and a sample.
+// Microfacets at a surface point, for the chapter that has them: BSDF and density for each pair of directions, and a sample.
 #define FEATURE_MICROFACETS
 #define FEATURE_DIELECTRICS
 #include "observation/estimator_stub.glsl"
@@ -17,7 +17,7 @@ struct Result {
     uint carries_light;       // along in_direction
     vec3 sampled_direction;
     vec3 sampled_weight;
-    float sampled_density;    // 0 where the sample has been dropped
+    float sampled_density;    // 0 if the sample was rejected
     float density_of_sample;  // by get_bsdf_density()
     float radiance_scale;
 };

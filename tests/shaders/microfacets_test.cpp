@@ -1,4 +1,4 @@
-// The microfacets of the chapters that have them, at a surface: their BSDF, its density, and samples of it.
+// Microfacets at a single surface point, for the chapters that have them: BSDF, density and samples.
 #include "scene/microfacets.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 using glm::dvec3;
 using std::numbers::pi;
 
-// As in microfacets.comp.
+// Layout as in microfacets.comp.
 struct Directions {
     vec3 in, out;
 };
@@ -56,7 +56,7 @@ RoughMaterial rough_glass(float alpha, float index = 1.5f) {
 
 const std::vector<std::string> all_samplings{"SAMPLES_VISIBLE_NORMALS", "SAMPLES_NORMALS", "SAMPLES_COSINES"};
 
-// At angles whose sine keeps its digits.
+// At angles whose sine is accurate.
 vec3 facing(double theta, double phi = 0) {
     return {dvec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta))};
 }
@@ -80,13 +80,13 @@ class MicrofacetSurface : public testing::TestWithParam<std::string> {
         return results;
     }
 
-    // Samples of light that leaves along this direction.
+    // Samples directions for light that leaves along this one.
     static std::vector<Result> sample(const RoughMaterial& material, const vec3& out, size_t count, uint32_t seed,
                                       const std::vector<std::string>& defines = {}) {
         return run(material, std::vector<Directions>(count, {{0, 0, 1}, out}), seed, defines);
     }
 
-    // The mean of what samples carry is this albedo, and that relative error would have been found.
+    // Expects the samples' mean weight to be this albedo; that relative error would have been found.
     static void expect_albedo(const std::string& what, const std::vector<Result>& results, double expected, double largest_error,
                               size_t comparisons) {
         std::vector<double> weights;
@@ -96,7 +96,7 @@ class MicrofacetSurface : public testing::TestWithParam<std::string> {
 };
 INSTANTIATE_TEST_SUITE_P(Chapters, MicrofacetSurface, testing::ValuesIn(chapters_that(handles_microfacets)), chapter_name);
 
-// The definitions for one channel, of a surface with its normal along z; glass has the side of `out` in air.
+// One channel by definition, for a surface with its normal along z; for glass the side of `out` is air.
 struct Definition {
     double alpha, index, metalness, colour;
     bool is_glass;
@@ -110,7 +110,7 @@ struct Definition {
         const double metal = colour + (1 - colour) * std::pow(1 - cosine, 5);
         return glm::mix(dielectric_fresnel(cosine, index), metal, metalness);
     }
-    // The BSDF without diffuse light, and the density of visible normals.
+    // The BSDF without its diffuse part, and the density of visible normals.
     std::pair<double, double> bsdf_and_density(const dvec3& in, const dvec3& out) const {
         const double eta = in.z > 0 ? 1 : index;
         dvec3 m = glm::normalize(out + eta * in);
@@ -138,7 +138,7 @@ TEST_P(MicrofacetSurface, HasTheBsdfAndTheDensityOfTheDefinition) {
             std::vector<Directions> directions;
             while (directions.size() < 10'000) {
                 const dvec3 out(facing(1.57 * uniform(generator), 6.28 * uniform(generator)));
-                // A facet of D, and the direction that it reflects or refracts to.
+                // A facet drawn from D, and the direction that it reflects or refracts to.
                 const double u = uniform(generator), phi = 6.28 * uniform(generator);
                 const double tangent = alpha * std::sqrt(u / (1 - u));
                 const dvec3 m = glm::normalize(dvec3(tangent * std::cos(phi), tangent * std::sin(phi), 1));
@@ -154,10 +154,10 @@ TEST_P(MicrofacetSurface, HasTheBsdfAndTheDensityOfTheDefinition) {
             for (size_t i = 0; i < results.size(); ++i) {
                 const auto [bsdf, density] = definition.bsdf_and_density(glm::normalize(dvec3(directions[i].in)),
                                                                          glm::normalize(dvec3(directions[i].out)));
-                // Facets of which one direction sees hardly the edge.
+                // Facets that one of the directions sees almost edge-on.
                 if (bsdf == 0 || results[i].density == 0) continue;
-                // m is rounded by 2^-24 over the length of the sum that it lies along, and D changes over α; cosines are rounded,
-                // too.
+                // m is rounded by 2^-24 over the length of the sum that it lies along, and D varies on the scale of α; the
+                // cosines are rounded, too.
                 const dvec3 sum =
                     dvec3(directions[i].out) + (directions[i].in.z > 0 ? 1.0 : double{index}) * dvec3(directions[i].in);
                 const double cosine = std::abs(glm::dot(sum, dvec3(directions[i].out))) / glm::length(sum);
@@ -191,7 +191,7 @@ TEST_P(MicrofacetSurface, IsReciprocal) {
             double difference = 0, sum = 0;
             const auto results = run(material, directions, 1, {"FEATURE_MULTIPLE_SCATTERING"});
             for (size_t i = 0; i < results.size(); i += 2) {
-                // Radiance grows by η² on its way into glass.
+                // Radiance grows by η² on entering glass.
                 const float scale = directions[i].in.z < 0 ? 1.5f * 1.5f : 1;
                 const vec3 there = scale * results[i].brdf, back = results[i + 1].brdf;
                 difference += glm::distance(dvec3(there), dvec3(back));
@@ -204,9 +204,8 @@ TEST_P(MicrofacetSurface, IsReciprocal) {
         }
 }
 
-// Nori's test of microfacets (Assignment 5 of its course) states what a surface of Beckmann's facets with α = 0.1 and the index
-// 1.5046 / 1.000277 reflects, with a share of 0.8 beside a diffuse one. It is the diffuse albedo that is left at normal
-// incidence.
+// Nori's test of microfacets (Assignment 5 of its course) states the reflectance of a surface with Beckmann facets of α = 0.1 and
+// index 1.5046 / 1.000277, with a share of 0.8 beside a diffuse one. At normal incidence what remains is the diffuse albedo.
 TEST(MicrofacetModel, GivesTheNumbersThatAnotherCourseStates) {
     const std::pair<double, double> stated[] = {{0, 0.207067}, {45, 0.215733}, {60, 0.247884}, {80, 0.430936}, {85, 0.519016}};
     const auto reflected = [](double degrees) {
@@ -227,7 +226,8 @@ TEST_P(MicrofacetSurface, ReflectsWhatTheFacetsDoHoweverItIsSampled) {
         float alpha;
         double degrees, largest_error;
     };
-    // Any normal is hardly ever one of the few that a grazing direction sees, and the cosine hardly ever meets a narrow lobe.
+    // Normals drawn from D are hardly ever among the few that a grazing direction sees, and cosine samples hardly ever hit a
+    // narrow lobe.
     const Case cases[] = {{0, 1e-4f, 0, 0.001},  {0, 1e-4f, 85, 0.001}, {0, 0.01f, 60, 0.001}, {0, 0.1f, 0, 0.003},
                           {0, 0.1f, 85, 0.005},  {0, 0.4f, 60, 0.01},   {0, 1, 0, 0.02},       {0, 1, 85, 0.01},
                           {1, 1e-4f, 60, 0.001}, {1, 0.1f, 0, 0.003},   {1, 0.1f, 60, 0.01},   {1, 0.4f, 60, 0.03},
@@ -246,7 +246,7 @@ TEST_P(MicrofacetSurface, ReflectsWhatTheFacetsDoHoweverItIsSampled) {
     }
 }
 
-// Which part of light goes back and which goes through, seen from the outside and from within.
+// Which fractions of the light are reflected and transmitted, seen from outside and from inside.
 TEST_P(MicrofacetSurface, OfGlassReflectsAndRefractsWhatTheFacetsDo) {
     uint32_t seed = 600;
     for (const std::string& sampling : {all_samplings[0], all_samplings[1]})
@@ -276,8 +276,8 @@ TEST_P(MicrofacetSurface, OfGlassReflectsAndRefractsWhatTheFacetsDo) {
             }
 }
 
-// Facets that nothing absorbs lose the light that they reflect to each other. With it white metal is as bright as the sky; a
-// white material under a coat always is. The table of albedos is not exact, so that a small difference is right.
+// Facets that absorb nothing still lose the light that they reflect onto each other. With it, white metal is as bright as the
+// sky; a white material under a coat always is. The table of albedos is approximate, so a small difference is expected.
 TEST_P(MicrofacetSurface, OfWhiteMaterialsVanishesInTheFurnace) {
     const std::vector<std::string> defines{"FEATURE_MULTIPLE_SCATTERING"};
     constexpr int rows = 800, columns = 320;
@@ -315,7 +315,7 @@ TEST_P(MicrofacetSurface, NeverGivesMoreThanItReceivesNorNothing) {
         for (const RoughMaterial& material :
              {rough_opaque(alpha, 1, vec3(1)), rough_opaque(alpha, 0, vec3(0.8f)), rough_opaque(alpha, 0, vec3(0), 1),
               rough_glass(alpha), rough_glass(alpha, 1.001f), rough_glass(alpha, 100)}) {
-            // Under a coat that reflects little, a steep facet that reflects all is sampled too rarely.
+            // Under a coat that reflects little, steep facets that reflect everything are sampled too rarely.
             const float most = material.material.refractive_index > 0 || material.facets.metalness == 1 ? 1.01f : 30;
             std::vector<Directions> directions;
             for (const double below_horizon : {1e-7, 1e-5, 1e-3, 0.1, 1.5})
@@ -331,7 +331,7 @@ TEST_P(MicrofacetSurface, NeverGivesMoreThanItReceivesNorNothing) {
         }
 }
 
-// Visible normals, by the part of facets that are steeper and by azimuth.
+// Visible normals, binned by the fraction of steeper facets and by azimuth.
 TEST_P(MicrofacetSurface, SamplesVisibleNormalsAsOftenAsTheyAreSeen) {
     constexpr size_t rows = 16, columns = 16;
     uint32_t seed = 900;
@@ -340,7 +340,7 @@ TEST_P(MicrofacetSurface, SamplesVisibleNormalsAsOftenAsTheyAreSeen) {
             const dvec3 out(facing(degrees * pi / 180));
             const double out_lambda = ggx(alpha).lambda(std::tan(degrees * pi / 180));
             std::vector<double> probabilities(rows * columns);
-            constexpr int parts = 24;  // of a cell
+            constexpr int parts = 24;  // per cell
             for (size_t i = 0; i < rows * parts; ++i)
                 for (size_t j = 0; j < columns * parts; ++j) {
                     const double rest = 1 - (static_cast<double>(i) + 0.5) / (rows * parts), u = 1 - rest * rest;

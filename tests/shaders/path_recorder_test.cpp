@@ -24,7 +24,7 @@ struct Recorded {
     RecordedPath path;
 };
 
-// Paths of `count` pixels all over the image, of varying sample indices.
+// Paths of `count` pixels spread over the image, with varying sample indices.
 std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
     const GpuScene gpu_scene(test_device(), scene, settings.strategy);
     const auto acceleration_structure = build_acceleration_structure(settings.backend, test_device(), gpu_scene);
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(, PathRecorderOf, testing::ValuesIn(all_chapters), own_
 TEST_P(PathRecorderOf, RecordsTheSampleThatTheRenderAdds) {
     const Scene scene = scene_for(GetParam());
     const RenderSettings settings = settings_for(GetParam());
-    const uint32_t paths = samples_lights(GetParam()) ? 40 : 300;  // bounces hardly ever meet the light
+    const uint32_t paths = samples_lights(GetParam()) ? 40 : 300;  // bounces rarely hit the light
     std::vector<FilmImage> films;
     for (uint32_t sample = 0; sample < 5; ++sample) {
         RenderSettings one = settings;
@@ -105,7 +105,7 @@ TEST_P(PathRecorderOf, FollowsRaysFromSurfaceToSurface) {
 
 TEST_P(PathRecorderOf, TellsWhereRadianceWasFound) {
     RenderSettings settings = settings_for(GetParam());
-    settings.splitting_factor = 1;  // where a path splits, each branch counts 1/s
+    settings.splitting_factor = 1;  // if paths split, each branch has weight 1/s
     uint32_t visible = 0, occluded = 0;
     for (const auto& [pixel, sample, path] : record_paths(scene_for(GetParam()), settings, 60)) {
         vec3 sum(0);
@@ -124,7 +124,7 @@ TEST_P(PathRecorderOf, TellsWhereRadianceWasFound) {
 }
 
 TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
-    // Every bounce reflects (0.9, 0.5, 0.3) of the light, and chapters from 2 on weigh all directions alike.
+    // Every bounce reflects (0.9, 0.5, 0.3) of the light, and from chapter 2 on all directions have equal weight.
     const vec3 albedo(0.9f, 0.5f, 0.3f);
     const bool is_weighted_alike = weighs_by_albedo(GetParam());
     const bool may_end = has_roulette(GetParam());
@@ -145,7 +145,7 @@ TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
             }
             if (is_weighted_alike)
                 EXPECT_LT(glm::length(vertex.throughput - expected), 1e-5f);
-            else  // colours have the albedo's ratio to each other
+            else  // colours have the ratios of the albedo
                 EXPECT_NEAR(vertex.throughput.r * expected.g, vertex.throughput.g * expected.r, 1e-5f);
         }
     }
@@ -158,7 +158,7 @@ TEST(PathRecorder, SaysWhetherThereIsAThroughputToFollow) {
     const Scene scene = closed_box(diffuse_material(vec3(0.5f)));
     for (const auto& recorded : record_paths(scene, settings, 4)) EXPECT_TRUE(recorded.path.has_throughput);
     const TemporaryFolder folder;
-    const auto copy = folder.path() / "chapter";  // with the technique that it includes
+    const auto copy = folder.path() / "chapter";  // including the technique that it uses
     std::filesystem::copy(settings.estimator.file.parent_path(), copy, std::filesystem::copy_options::recursive);
     std::ifstream original(settings.estimator.file);
     const std::string text{std::istreambuf_iterator<char>(original), {}};
@@ -186,7 +186,7 @@ TEST(PathRecorder, RecordsTheSameOnEveryBackend) {
     }
 }
 
-// Names of a shader's functions and variables are in its SPIR-V.
+// SPIR-V contains the names of a shader's functions and variables.
 bool mentions(const std::vector<uint32_t>& words, const std::string& name) {
     const auto bytes = std::as_bytes(std::span(words));
     const auto same = [](std::byte a, char b) { return static_cast<char>(a) == b; };

@@ -1,5 +1,5 @@
-// Chapter 2's estimator, but for the sample with the state POISONED_STATE of the random numbers one channel is replaced
-// by a number with the bits POISON.
+// Chapter 2's estimator, but for the sample that starts with the random state POISONED_STATE, one channel is replaced by the
+// number with the bits POISON.
 #define path_trace path_trace_of_chapter
 #include "../../chapters/02_cosine_sampling/path_trace.glsl"
 #undef path_trace

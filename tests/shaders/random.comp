@@ -1,5 +1,5 @@
 #version 460
-// One function of random.glsl for each input, chosen by a define.
+// One function of random.glsl, chosen by a define, for each input.
 #extension GL_EXT_scalar_block_layout : require
 #include "world/random.glsl"
 
@@ -15,7 +15,7 @@ uvec2 evaluate(Input state) {
     return state;
 }
 #elif defined(NUMBERS)
-// The numbers that a sample of a path uses.
+// The numbers that a path's sample uses.
 struct Input { uint pixel_index; uint sample_index; uvec2 key; };
 struct Result { vec2 numbers[NUMBERS]; };
 Result evaluate(Input i) {
@@ -29,7 +29,7 @@ struct Input { uvec2 state; float probability; };
 #define Result uint
 uint evaluate(Input i) { return happens(i.probability, i.state) ? 1u : 0u; }
 #else
-// Sum over an image of `pixels` pixels with a sample each, and sum of squares, of a function of four random numbers.
+// Over an image of `pixels` pixels with one sample each: the sum and sum of squares of a function of four random numbers.
 struct Input { uint pixels; uint sample_index; uvec2 key; };
 #define Result vec2
 vec2 evaluate(Input i) {

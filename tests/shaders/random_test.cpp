@@ -1,4 +1,4 @@
-// shaders/world/random.glsl: the generator, its start states, and how independent samples are.
+// shaders/world/random.glsl: the generator, its start states, and the independence of samples.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// As in random.comp.
+// Layout as in random.comp.
 struct StreamId {
     uint32_t pixel;
     uint32_t sample;
@@ -22,7 +22,7 @@ RandomState key_of_seed(uint32_t seed) {
     return {key.x, key.y};
 }
 
-// States at the limits of 8, 16, 24 and 32 bits, and a million spread over the range.
+// States around 8, 16, 24 and 32 bits, and a million spread over the whole range.
 std::vector<RandomState> hard_states() {
     const uint32_t hard[] = {0, 1, 2, 0xff, 0x100, 0xffff, 0x10000, 0x7fffffff, 0x80000000, 0xffffff00, 0xffffffff};
     std::vector<RandomState> states;
@@ -45,7 +45,7 @@ TEST(RandomNumbers, StayBelowOneAtTheExtremes) {
     struct Numbers {
         float u[2];
     };
-    // The start state is the bijection's value, so any number can be asked for: here those next to 0 and 1.
+    // The start state is a bijection, so any number can be produced: here those next to 0 and 1.
     std::vector<StreamId> streams;
     const auto states = hard_states();
     for (const RandomState& state : states) {
@@ -67,8 +67,7 @@ TEST(RandomNumbers, LetHappenWhatIsAsProbableAsItSays) {
         RandomState state;
         float probability;
     };
-    // Of the 2^64 pairs of words those below the probability times 2^64. Below 2^-40 it is rounded down to a
-    // whole number of them.
+    // Of the 2^64 pairs of words, those below the probability times 2^64. Below 2^-40 it is rounded down to a multiple of 2^-64.
     std::vector<Event> events;
     std::vector<uint32_t> expected;
     for (const float probability :
@@ -87,14 +86,14 @@ TEST(RandomNumbers, LetHappenWhatIsAsProbableAsItSays) {
 }
 
 TEST(StartStates, AreDistinct) {
-    // 2^22 samples as images use them: many pixels with few samples, and few pixels with many.
+    // 2^22 samples as in real images: many pixels with few samples, and few pixels with many.
     std::vector<StreamId> streams;
     const RandomState key = key_of_seed(1);
     for (uint32_t i = 0; i < 1 << 21; ++i) {
         streams.push_back({i >> 2, i & 3, key});
         streams.push_back({i & 7, 4 + (i >> 3), key});
     }
-    // And where 32 bits end: the last pixels of the largest image, the middle and the last of all samples.
+    // And at the end of the 32-bit range: the last pixels of the largest image, the middle and the last of all samples.
     for (uint32_t i = 0; i < 1 << 15; ++i)
         for (const uint32_t pixel : {(1u << 28) - 1, (1u << 28) - 2}) {
             streams.push_back({pixel, 0x7fffffffu + i, key});
@@ -111,7 +110,7 @@ TEST(StartStates, AreDistinct) {
     record("states_that_occur_twice", "0 of %zu", states.size());
 }
 
-// Numbers of all pixels of an image, as a separate series for each sample, seed and dimension.
+// Numbers of all pixels of an image, as one series per sample, seed and dimension.
 class Streams {
   public:
     static constexpr uint32_t width = 512, height = 288, pixels = width * height;
@@ -132,7 +131,7 @@ class Streams {
             }
     }
 
-    // Pairs of numbers at these lags of pixel, sample and seed.
+    // Pairs of numbers at these distances in pixel, sample and seed.
     struct Lag {
         const char* name;
         uint32_t pixel, sample, seed;
@@ -159,7 +158,7 @@ class Streams {
     std::vector<std::vector<float>> series_;
 };
 
-// Of the coefficient of correlation of two series from 0.
+// Difference of the correlation coefficient of two series from 0.
 Difference difference_of_correlation(std::span<const float> first, std::span<const float> second) {
     const double count = static_cast<double>(first.size());
     return {correlation(first, second), 1 / std::sqrt(count), count - 2};
@@ -182,7 +181,7 @@ TEST(RandomNumbers, AreNotCorrelated) {
 }
 
 TEST(RandomNumbers, FillTheSquareEvenly) {
-    // Pairs of numbers in 64 x 64 cells: correlations that are not linear show here.
+    // Pairs of numbers in 64 x 64 cells: non-linear correlations show here.
     const Streams streams;
     constexpr size_t cells = 64;
     const std::vector<double> even(cells * cells, 1.0 / (cells * cells));
@@ -198,8 +197,8 @@ TEST(RandomNumbers, FillTheSquareEvenly) {
 }
 
 TEST(RandomNumbers, OfPixelsMakeIndependentImages) {
-    // The variance of the mean of an image is the variance of a pixel over the number of pixels only if
-    // pixels are independent. Shared random numbers (pixel + 2^16 * frame) show as a wrong ratio.
+    // The variance of an image's mean is that of a pixel over the number of pixels only if pixels are independent. Shared random
+    // numbers (pixel + 2^16 * frame) show as a wrong ratio.
     constexpr uint32_t images = 1 << 16, pixels = 256;
     std::vector<StreamId> inputs;
     for (uint32_t image = 0; image < images; ++image) inputs.push_back({pixels, image, key_of_seed(3)});
@@ -218,7 +217,7 @@ TEST(RandomNumbers, OfPixelsMakeIndependentImages) {
     for (const double image_mean : image_means)
         ratio_terms.push_back((image_mean - mean.mean) * (image_mean - mean.mean) / expected_variance);
     expect_mean("variance of the image mean / that of independent pixels", estimate_mean(ratio_terms), 1, 0.05);
-    // Sums of successive images, which use successive samples, are independent as well.
+    // Sums over successive images, which use successive samples, are independent as well.
     const std::vector<float> means(image_means.begin(), image_means.end());
     expect_no_difference("correlation of successive images",
                          std::vector{difference_of_correlation(std::span(means).first(images - 1), std::span(means).subspan(1))},

@@ -1,4 +1,4 @@
-// Russian roulette, random number by random number: how many of the 2^64 pairs of words a path survives.
+// Russian roulette, random number by random number: how many of the 2^64 pairs of words let a path survive.
 #include "support/bounce.h"
 #include "support/render.h"
 
@@ -12,7 +12,7 @@ TEST_P(RouletteOf, WeightsPathsByTheProbabilityWithWhichTheySurvive) {
     for (const float probability : {0.5f, 0.001f, 1e-6f, 1e-9f}) {
         const auto count = static_cast<uint64_t>(probability * 0x1p64);
         std::vector<RandomState> states;
-        // One step of the generator goes to the direction.
+        // The direction takes one step of the generator.
         for (const uint64_t bits : {count - 1, count}) states.push_back(previous_state(state_before(bits)));
         const auto bounces = bounces_with_roulette(GetParam(), probability, states);
         EXPECT_EQ(bounces[0].ray_count, 2u) << probability << ": the last that survives";

@@ -1,5 +1,5 @@
-// Smooth functions of random numbers, whose integrals are 1: of the first pair behind the pixel's, of the second pair, and
-// of one number of both.
+// Smooth functions of random numbers with integral 1: of the first pair after the pixel's, of the second pair, and of one number
+// from each.
 #include "observation/observed_estimator.glsl"
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {

@@ -1,4 +1,4 @@
-// Chapter 1's sampling of directions: uniform inclination and azimuth, density 1/(π² sin θ) per solid angle.
+// Chapter 1's direction sampling: uniform inclination and azimuth, density 1/(π² sin θ) per solid angle.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -21,7 +21,7 @@ std::vector<Bounce> sample(const dvec3& normal, size_t count, uint32_t run) {
     return sample_bounces(chapter, {vec3(normal), vec3(normal), white_material()}, count, run);
 }
 
-// The probability of cos θ < c: exact, as the inclination is uniform.
+// The probability of cos θ < c, exact because the inclination is uniform.
 double integral(double c) { return 1 - 2 / pi * std::acos(c); }
 
 TEST(UniformAngles, FollowTheirDensity) {
@@ -30,15 +30,15 @@ TEST(UniformAngles, FollowTheirDensity) {
         const auto bounces = sample(normal, 4'000'000, ++run);
         expect_distribution("normal " + std::to_string(run) + ", 16 x 32 cells", histogram(bounces, Frame(normal), 16, 32),
                             cell_probabilities(16, 32, integral), 0.01);
-        // Odd numbers: the middle of the range lies within a cell.
+        // Odd numbers, so that the middle of the range lies inside a cell.
         expect_distribution("normal " + std::to_string(run) + ", 51 x 102 cells", histogram(bounces, Frame(normal), 51, 102),
                             cell_probabilities(51, 102, integral), 0.015);
     }
 }
 
 TEST(UniformAngles, HaveTheDensityOfTheJacobian) {
-    // |det J| of the map from random numbers to directions is the solid angle per unit area: 1 / density = π²
-    // sin θ. Central differences over 2^-8 have an error of 1e-4 or less.
+    // |det J| of the map from random numbers to directions is solid angle per unit area: 1 / density = π² sin θ. Central
+    // differences over 2^-8 have an error of at most 1e-4.
     constexpr double step = 0x1p-9;
     std::vector<std::array<double, 2>> numbers;
     for (int x = 0; x < 128; ++x)
@@ -74,7 +74,7 @@ TEST(UniformAngles, AreWeightedByReflectanceTimesCosineOverDensity) {
             worst = std::max(worst, std::abs(bounce.weight - expected));
         }
         std::printf("  normal %u: largest error of a weight %.2g\n", run - 20, worst);
-        // The reference direction has the errors of the sines as well.
+        // The reference direction contains the sines' errors as well.
         EXPECT_LT(worst, 8 * test_arithmetic().sine + 1e-6);
     }
 }

@@ -1,4 +1,4 @@
-// The validation layers watch all tests of this program: see tests/support/test_main.cpp.
+// The validation layers watch all tests in this program: see tests/support/test_main.cpp.
 #include "support/gpu_test.h"
 
 namespace lab {

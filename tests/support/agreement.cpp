@@ -20,7 +20,7 @@ std::vector<double> expect_agreement(const std::string& what, const Batches& ima
                 of_tiles.push_back(
                     difference_of(image.means(channel, {x, y}, uvec2(tile)), oracle.means(channel, {x, y}, uvec2(tile)))
                         .relative_to(mean));
-                // The other channels follow the same paths: they would not be independent.
+                // The other channels follow the same paths and would not be independent.
                 if (channel != 1) continue;
                 const Difference& difference = of_tiles.back();
                 p_values.push_back(difference.p_value());

@@ -7,15 +7,14 @@
 
 namespace lab {
 
-// Largest biases that may go unnoticed, as parts of the mean radiance of the whole image.
+// Largest biases that may go unnoticed, relative to the mean radiance of the whole image.
 struct AgreementLimits {
     double image;
     double tile;
 };
 
-// Batches rendered with different seeds agree: the whole images, and tiles of 8 x 8 pixels (both with the
-// significance of one test). Returns the tiles' p-values in the green channel, uniform where images are
-// equal.
+// Expects batches rendered with different seeds to agree: the whole images, and tiles of 8 x 8 pixels (sharing the significance
+// of one test). Returns the tiles' p-values in the green channel, which are uniform if the images are equal.
 std::vector<double> expect_agreement(const std::string& what, const Batches& image, const Batches& oracle,
                                      const AgreementLimits& limits);
 

@@ -22,18 +22,17 @@ Material white_material();
 struct Bounce {
     vec3 direction;
     float weight;        // of the direction: π ρ cosθ / (π density), the radiance under a sky of radiance 1
-    uint32_t ray_count;  // 2, or 1 if the estimator dropped the direction
+    uint32_t ray_count;  // 2, or 1 if the estimator rejected the direction
 };
 
-// Bounces with random numbers of different samples. `run` chooses other ones.
+// Bounces with the random numbers of different samples. `run` selects different ones.
 std::vector<Bounce> sample_bounces(const std::string& chapter, const Surface& surface, size_t count, uint32_t run);
 
-// Bounces whose first two random numbers are given (down to multiples of 2^-24).
+// Bounces with given first two random numbers (rounded down to multiples of 2^-24).
 std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surface,
                                const std::vector<std::array<double, 2>>& numbers, const Device& device = test_device());
 
-// Bounces at white_material() that Russian roulette with this survival probability follows, from random
-// states.
+// Bounces at white_material() that Russian roulette with this survival probability lets through, from given random states.
 std::vector<Bounce> bounces_with_roulette(const std::string& chapter, float survival_probability,
                                           const std::vector<RandomState>& seeds);
 

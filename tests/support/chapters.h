@@ -1,4 +1,4 @@
-// The chapters as tests see them: by name and by what chapter.json says, never by number.
+// The chapters as tests see them: by name and by what their chapter.json says, never by number.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,24 +13,23 @@ inline const std::vector<std::string> all_chapters = course_chapters();
 // The folder of the chapter with this name: chapter_named("cosine_sampling") for "cosine_sampling".
 std::string chapter_named(const std::string& name);
 
-// What a chapter can do.
+// What a chapter supports.
 bool samples_lights(const std::string& chapter);
-bool weights_lights(const std::string& chapter);  // light samples and bounces share the light
+bool weights_lights(const std::string& chapter);  // light samples and bounces share the light by weights
 bool handles_dielectrics(const std::string& chapter);
 bool handles_microfacets(const std::string& chapter);
 bool has_option(const std::string& chapter, const std::string& option);
 bool splits_paths(const std::string& chapter);
 bool has_roulette(const std::string& chapter);
-// Whether its random numbers are the generator's: its states decide what they do.
+// Whether its random numbers come straight from the generator, so that the generator's states determine them.
 bool is_pseudorandom(const std::string& chapter);
 
-// What tests.json in its folder says. Whether bounces off a Lambertian surface have the weight of its albedo
-// and no other.
+// From tests.json in its folder. Whether bounces off a Lambertian surface always have the weight of its albedo.
 bool weighs_by_albedo(const std::string& chapter);
-// Whether it is another chapter path by path, but for what it adds, so that tests of that one are enough.
+// Whether it follows the paths of another chapter, apart from what it adds, so that testing that one is enough.
 bool repeats_another(const std::string& chapter);
 
-// The chapters for which all of these hold.
+// The chapters that have all of these abilities.
 template <typename... Abilities>
 std::vector<std::string> chapters_that(const Abilities&... abilities) {
     std::vector<std::string> chapters;
@@ -39,23 +38,23 @@ std::vector<std::string> chapters_that(const Abilities&... abilities) {
     return chapters;
 }
 
-// Chapters may follow the same paths if their seeds are equal: tests that are to be independent of each other
-// begin at this one. A multiple of 1000, below 2^16.
+// First seed of a chapter: chapters may follow the same paths if their seeds are equal, so tests that must be independent of each
+// other start at different ones. A multiple of 1000, below 2^16.
 uint32_t chapter_seed(const std::string& chapter);
 
 // An image that a chapter is compared with: an entry of "references" in tests.json.
 struct ReferenceCase {
     std::string chapter;
     std::string reference;     // in assets/references: scene and maximal path length
-    uint32_t samples;          // of a batch
-    double largest_bias;       // of the image's mean, that may go unnoticed
-    double largest_tile_bias;  // the same of a tile, as part of the image's mean
+    uint32_t samples;          // per batch
+    double largest_bias;       // of the image's mean that may go unnoticed
+    double largest_tile_bias;  // likewise for a tile, relative to the image's mean
     bool has_heavy_tail;       // rare bright samples
     bool runs_with_all;        // only with ./lab test --all
 };
 std::vector<ReferenceCase> reference_cases();
 
-// A chapter that is the one before it where what it adds is left out: "repeats" in tests.json.
+// A chapter that equals the previous one when its addition is left out: "repeats" in tests.json.
 struct Repetition {
     std::string chapter, before;
     std::vector<std::string> without;  // "splitting", "roulette", "glass" or "probe"

@@ -27,7 +27,7 @@ double ulp_of(double number) {
     return std::ldexp(1.0, exponent - 23);
 }
 
-// A function of one or two numbers: in GLSL, in double, where it is looked at, and by how much it may be off.
+// A function of one or two numbers: in GLSL, in double, the range to examine, and the allowed error.
 struct Function {
     const char* name;
     const char* glsl;
@@ -105,7 +105,7 @@ FunctionError measure(const Device& device, const Function& function, size_t cou
     double largest = 0;
     for (size_t i = 0; i < results.size(); ++i) {
         const double x = arguments[i].x, y = arguments[i].y, exact = function.exact(x, y);
-        // A result that is no number is infinitely wrong.
+        // A result that is not a number is infinitely wrong.
         const double error = std::isfinite(results[i]) ? std::abs(results[i] - exact) : unlimited;
         largest = std::max(largest, error);
         worst.ulps = std::max(worst.ulps, error / ulp_of(exact));
@@ -115,7 +115,7 @@ FunctionError measure(const Device& device, const Function& function, size_t cou
     return worst;
 }
 
-// Pairs of numbers as the generator yields them: the corners of the square, and a grid.
+// Pairs of numbers that the generator can return: the corners of the square, and a grid.
 std::vector<std::array<double, 2>> random_numbers() {
     constexpr double below_one = 1 - 0x1p-24;
     std::vector<std::array<double, 2>> numbers;
@@ -136,7 +136,7 @@ double uniform_angles_error(const Device& device) {
     double worst = 0;
     for (size_t i = 0; i < numbers.size(); ++i) {
         const double phi = 2 * pi * numbers[i][0] - pi, theta = 0.5 * pi * numbers[i][1];
-        if (bounces[i].ray_count != 2) continue;  // dropped, as it lies along the surface
+        if (bounces[i].ray_count != 2) continue;  // rejected, since it lies along the surface
         worst = std::max(worst, glm::distance(dvec3(bounces[i].direction), direction(std::cos(theta), std::sin(theta), phi)));
     }
     return worst;
@@ -160,7 +160,7 @@ double light_point_error(const Device& device) {
     std::vector<std::byte> inputs;
     const auto append = [&](std::span<const std::byte> bytes) { inputs.insert(inputs.end(), bytes.begin(), bytes.end()); };
     append(std::as_bytes(std::span(&light, 1)));
-    // The choice of the light takes a step of the generator.
+    // Choosing the light takes one step of the generator.
     for (const auto& u : numbers) {
         const RandomState state = previous_state(state_before(u));
         append(std::as_bytes(std::span(state)));
@@ -178,7 +178,7 @@ double light_point_error(const Device& device) {
     return worst;
 }
 
-// What hit_point.glsl tells of every pixel, with one sample each.
+// The outputs of hit_point.glsl for every pixel, with one sample each.
 struct HitPoints {
     std::vector<vec3> directions, positions, ids;
 };
@@ -222,7 +222,7 @@ HitPointError hit_point_error(const Device& device, const std::string& name, con
     return worst;
 }
 
-// The scene turned, scaled and moved as an instance, and the camera with it.
+// The scene rotated, scaled and moved as an instance, and the camera with it.
 Scene placed(Scene scene, const mat3& linear, const vec3& translation) {
     set_transform(scene, mat4x3(linear[0], linear[1], linear[2], translation));
     scene.camera.position = linear * scene.camera.position + translation;

@@ -1,5 +1,4 @@
-// How exact a device's arithmetic is: largest errors, measured against double over the ranges that the
-// shaders use.
+// How accurate a device's arithmetic is: largest errors against double, over the ranges that the shaders use.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,31 +13,30 @@ struct FunctionError {
     std::string name;
     std::string range;                              // of the arguments
     std::string guaranteed;                         // by Vulkan, "Precision and Operation of SPIR-V Instructions"; "-": nothing
-    std::optional<double> absolute = std::nullopt;  // not where results of all sizes occur
+    std::optional<double> absolute = std::nullopt;  // not for results of all magnitudes
     double ulps = 0;                                // in units in the last place of the exact value
-    double share_of_guarantee = 0;                  // above 1 the device breaks it; 0 where there is none
+    double share_of_guarantee = 0;                  // above 1 the device violates it; 0 if there is none
 };
-// Looks at `count` arguments, spread over the range at random.
+// Examines `count` random arguments spread over the range.
 std::vector<FunctionError> measure_functions(const Device& device, size_t count = 1 << 20);
 
-// The largest distance of what a sampler makes of random numbers from what it should be: directions of unit
-// length, barycentric coordinates.
+// The largest deviation of a sampler's results from what they should be: unit directions, barycentric coordinates.
 struct SamplerError {
     std::string name;
     double absolute = 0;
 };
 std::vector<SamplerError> measure_samplers(const Device& device);
 
-// Where camera rays hit a scene, compared with the intersection of the very same ray and triangle.
+// Where camera rays hit a scene, compared with the exact intersection of the same ray and triangle.
 struct HitPointError {
     Backend backend;
     std::string scene;
-    double off_plane = 0;  // distance to the triangle's plane, in units of the offset of rays that start there
+    double off_plane = 0;  // distance to the triangle's plane, in units of the offset at which rays start
     double off_ray = 0;    // distance to the ray, relative to its length
 };
 std::vector<HitPointError> measure_hit_points(const Device& device);
 
-// What tests take their tolerances from: largest errors of this device. Measured once.
+// The basis of the tests' tolerances: largest errors of this device. Measured once.
 struct Arithmetic {
     double sine;        // absolute, of sin and cos in [-π,π]
     double decoding;    // relative, of x^2.4, which decodes sRGB

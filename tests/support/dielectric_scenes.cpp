@@ -9,7 +9,7 @@ Material dielectric_material(float refractive_index, const vec3& absorption) {
     return material;
 }
 
-// The materials of the room are followed by those of its contents.
+// The materials of the contents follow those of the room.
 static Scene make_room(const std::vector<Material>& content_materials, const std::vector<Quad>& contents) {
     std::vector<Material> materials{diffuse_material({0.7f, 0.5f, 0.3f}), diffuse_material(vec3(0.5f), {2, 3, 4})};
     materials.insert(materials.end(), content_materials.begin(), content_materials.end());

@@ -9,12 +9,11 @@ namespace lab {
 // A smooth dielectric that absorbs `absorption` per unit of length.
 Material dielectric_material(float refractive_index, const vec3& absorption = vec3(0));
 
-// A closed room [-1,1]³ with a large lamp under its ceiling, seen from inside; in it a box of the material,
-// or nothing.
+// A closed room [-1,1]³ with a large lamp under its ceiling, seen from inside; it contains a box of the material, or nothing.
 Scene room_with_box(const Material& box);
 Scene empty_room();
 
-// A box of the material that fills the view, in it a lamp above a floor, and a dim sky around it.
+// A box of the material that fills the view and contains a lamp above a floor, under a dim sky.
 Scene glass_with_lamp(const Material& glass);
 
 }  // namespace lab

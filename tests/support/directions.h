@@ -1,4 +1,4 @@
-// Directions about a normal: where the estimators' directions are, to be compared with their density.
+// Directions about a normal: the distribution of the estimators' directions, to be compared with their density.
 #pragma once
 #include <glm/glm.hpp>
 #include <vector>
@@ -7,11 +7,10 @@
 
 namespace lab {
 
-// Normals along an axis, against it, in between, and where the construction of the frame is delicate.
+// Normals along both directions of each axis, in between, and where constructing the frame is numerically delicate.
 const std::vector<glm::dvec3>& test_normals();
 
-// Angles of a direction with respect to a normal, in double. The azimuth, in [-π,π], counts from an arbitrary
-// direction.
+// Angles of a direction relative to a normal, in double. The azimuth, in [-π,π], starts at an arbitrary direction.
 struct Angles {
     double cos_theta, sin_theta, phi;
 };
@@ -24,9 +23,8 @@ class Frame {
     glm::dvec3 normal_, tangent_, bitangent_;
 };
 
-// Histogram over rows of equal size in cos θ, each with columns of equal size in φ. Of a million directions
-// at most ten may be dropped: those whose cosine is so small that rounding errors bring them below the
-// horizon.
+// Histogram with rows of equal size in cos θ and columns of equal size in φ. Of a million directions at most ten may be dropped:
+// those with so small a cosine that rounding brings them below the horizon.
 std::vector<uint64_t> histogram(const std::vector<Bounce>& bounces, const Frame& frame, size_t rows, size_t columns);
 
 // Probability of each cell of such a histogram: `integral(c)` is the probability of cos θ < c.

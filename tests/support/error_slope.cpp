@@ -8,15 +8,15 @@
 namespace lab {
 namespace {
 
-// The logarithm of the mean square of the difference of two renders with seeds of their own, which is twice
-// the variance of a pixel. The mean over interleaved groups of pixels: a few bright pixels spoil one group
-// but not all, and the spread tells how exact it is.
+// The logarithm of the mean squared difference of two renders with different seeds, which is twice the variance of a pixel.
+// Averages over interleaved groups of pixels: a few bright pixels spoil one group but not all, and the spread gives the standard
+// error.
 MeanEstimate log_error(const FilmImage& first, const FilmImage& second) {
     constexpr size_t groups = 16;
     std::vector<double> sums(groups);
     for (int channel = 0; channel < 3; ++channel) {
         const auto a = pixel_means(first, channel), b = pixel_means(second, channel);
-        // Neighbours belong to different groups; 7 has no factor in common with the width.
+        // Neighbours belong to different groups; 7 is coprime to the width.
         for (size_t i = 0; i < a.size(); ++i) sums[i * 7 % groups] += std::pow(a[i] - b[i], 2);
     }
     for (double& sum : sums) sum = std::log(sum * groups / (3.0 * static_cast<double>(first.pixels.size())));
@@ -26,7 +26,7 @@ MeanEstimate log_error(const FilmImage& first, const FilmImage& second) {
 }  // namespace
 
 ErrorSlope measure_error_slope(const Scene& scene, RenderSettings settings, uint32_t max_samples) {
-    // Least squares of the logarithms of the errors, each weighted by its own variance.
+    // Least-squares fit of the logarithms of the errors, each weighted by its own variance.
     double weights = 0, x_sum = 0, y_sum = 0, xx_sum = 0, xy_sum = 0;
     ErrorSlope slope{};
     SceneRenderer renderer(scene, settings);

@@ -9,7 +9,7 @@
 
 namespace lab {
 
-// Adds a p-value to the file that LAB_TEST_P_VALUES names, for tests/measure/false_alarms.py.
+// Appends a p-value to the file named by LAB_TEST_P_VALUES, for tests/measure/false_alarms.py.
 static void record_p_value(const std::string& what, double p_value) {
     const char* file = std::getenv("LAB_TEST_P_VALUES");
     if (!file) return;
@@ -18,7 +18,7 @@ static void record_p_value(const std::string& what, double p_value) {
                                        << '\n';
 }
 
-// Makes the largest error that may go unnoticed part of the test's report.
+// Adds the largest error that may go unnoticed to the test's report.
 static void record_smallest_error(double error) {
     static const testing::TestInfo* test = nullptr;
     static double largest = 0;
@@ -28,7 +28,7 @@ static void record_smallest_error(double error) {
     record("errors_found_from", "%.2g %%", 100 * largest);
 }
 
-// Numbers that fit better than all but this share of independent ones do are not independent.
+// Numbers that fit better than all but this fraction of independent ones are not independent.
 static constexpr double too_good = 1 - 1e-9;
 
 void expect_no_difference(const std::string& what, std::span<const Difference> relative_differences, double largest_difference,
@@ -43,7 +43,7 @@ void expect_no_difference(const std::string& what, std::span<const Difference> r
         smallest_p_value = p_value;
         worst = difference;
     }
-    // The first alone: p-values of the others are not independent of it.
+    // Only the first: the p-values of the others depend on it.
     if (relative_differences.front().standard_error > 2 * rounding_error)
         record_p_value(what, relative_differences.front().p_value());
     std::printf("  %s: smallest p of %zu = %.2g, there %+.3f %%; finds a bias of %.3f %%\n", what.c_str(),

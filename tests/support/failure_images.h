@@ -1,4 +1,4 @@
-// What is left of an image comparison that failed, for people to look at.
+// Pictures of a failed image comparison, for people to look at.
 #pragma once
 #include <string>
 
@@ -6,8 +6,8 @@
 
 namespace lab {
 
-// Writes image, reference and their difference (EXR) and the map of z-values (PNG: red is too bright, blue
-// too dark, full colour means 5 standard errors) to output/failed/TEST.WHAT, and prints that folder.
+// Writes image, reference and their difference (EXR) and the map of z-values (PNG: red is too bright, blue too dark, saturated at
+// 5 standard errors) to output/failed/TEST.WHAT, and prints that folder.
 void write_failure(const std::string& what, const Image& image, const Image& reference, const ZMap& map);
 
 // How many expectations of the running test have failed.

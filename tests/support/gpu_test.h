@@ -1,4 +1,4 @@
-// Support of tests that use a device: the device with validation layers, and test shaders that fill an array.
+// For tests that use a device: the device with validation layers, and test shaders that fill an array.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -12,32 +12,30 @@
 
 namespace lab {
 
-// The device of this process, created by the first call, with the validation layers on. test_main.cpp lets
-// every test fail in which they complain.
+// The device of this process, created on the first call, with validation layers enabled. test_main.cpp fails every test during
+// which they complain.
 const Device& test_device();
 
-// The seed that stands for this one in this run: LAB_TEST_SEED gives all tests other random numbers.
+// The seed to use for this one in this run: LAB_TEST_SEED gives all tests other random numbers.
 uint32_t test_seed(uint32_t seed);
 
-// A test whose name, or that of its instance, ends in _all runs with ./lab test --all alone: see
-// tests/CMakeLists.txt.
+// A test whose name, or whose instance's name, ends in _all runs only with ./lab test --all: see tests/CMakeLists.txt.
 enum class Run { always, with_all };
 std::string instance_name(const std::string& name, Run run);
 
-// A shader that computes one result in each invocation.
+// A shader that computes one result per invocation.
 struct TestShader {
-    std::string name;  // of the file in tests/shaders
+    std::string name;  // file name in tests/shaders
     std::vector<std::string> defines = {};
     std::map<std::string, std::filesystem::path> named_includes = {};
 };
 
-// Runs at least `invocations` invocations in groups of 128. `results` (binding 0) and `inputs` (binding 1)
-// are storage buffers; invocations beyond the results have to end at once.
+// Runs at least `invocations` invocations in groups of 128. `results` (binding 0) and `inputs` (binding 1) are storage buffers;
+// invocations beyond the results must return at once.
 void run_shader(const TestShader& shader, size_t invocations, std::span<std::byte> results, std::span<const std::byte> inputs,
                 const Device& device = test_device());
 
-// The results of an invocation for each input. The shader declares, in scalar layout, arrays `results` and
-// `inputs` of types that match.
+// One result per input. The shader declares, in scalar layout, arrays `results` and `inputs` of matching types.
 template <typename Result, typename Input>
 std::vector<Result> run_shader(const TestShader& shader, const std::vector<Input>& inputs, const Device& device = test_device()) {
     std::vector<Result> results(inputs.size());
@@ -45,8 +43,8 @@ std::vector<Result> run_shader(const TestShader& shader, const std::vector<Input
     return results;
 }
 
-// Makes a number that a test has measured part of its report, for docs/numerics.md. The name is in
-// snake_case; the value is as printf would write it, with its unit.
+// Adds a measured number to the test's report, for docs/numerics.md. The name is in snake_case; the value is formatted as by
+// printf, with its unit.
 __attribute__((format(printf, 2, 3))) void record(const char* name, const char* format, ...);
 
 }  // namespace lab

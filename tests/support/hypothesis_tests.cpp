@@ -7,8 +7,8 @@
 namespace lab {
 namespace {
 
-// Upper regularised incomplete gamma function Q(a, x), from the series of P = 1 - Q where that converges fast
-// and by Lentz's continued fraction elsewhere (Press et al., "Numerical Recipes", 6.2).
+// Upper regularised incomplete gamma function Q(a, x), from the series of P = 1 - Q where it converges fast and by Lentz's
+// continued fraction elsewhere (Press et al., "Numerical Recipes", 6.2).
 double upper_gamma(double a, double x) {
     if (x <= 0) return 1;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -33,9 +33,8 @@ double upper_gamma(double a, double x) {
     return scale * fraction;
 }
 
-// Probability that a noncentral chi-square variable exceeds x > 0: that of central ones with 2j more degrees
-// of freedom, where j is a Poisson variable. Its mean is half the noncentrality, by which the expectation is
-// larger.
+// Probability that a noncentral chi-square variable exceeds x > 0: that of central ones with 2j more degrees of freedom, where j
+// is Poisson-distributed. Its mean is half the noncentrality, by which the expectation is larger.
 double noncentral_chi_square_p_value(double x, double degrees_of_freedom, double noncentrality) {
     const double mean = 0.5 * noncentrality, range = 10 * std::sqrt(mean) + 30;
     double j = std::floor(std::max(mean - range, 0.0)), sum = 0;
@@ -48,7 +47,7 @@ double noncentral_chi_square_p_value(double x, double degrees_of_freedom, double
     return sum;
 }
 
-// The x > 0 from which on a condition holds, by bisection up to a relative error of 1e-9.
+// The x > 0 above which a condition holds, by bisection to a relative error of 1e-9.
 template <typename Condition>
 double smallest_with(const Condition& holds) {
     double low = 0, high = 1;
@@ -128,7 +127,7 @@ double kolmogorov_smirnov_p_value(std::vector<double> numbers) {
 }
 
 double kolmogorov_smirnov_detectable_distance(size_t count, double significance, double power) {
-    // The asymptotic critical distance, plus as much as a frequency varies, which is most at 1/2.
+    // The asymptotic critical distance, plus the standard deviation of a frequency, which is largest at 1/2.
     return (std::sqrt(-0.5 * std::log(0.5 * significance)) + 0.5 * normal_quantile(power)) /
            std::sqrt(static_cast<double>(count));
 }

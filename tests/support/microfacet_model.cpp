@@ -11,12 +11,12 @@ using std::numbers::pi;
 
 double tangent_of(double cosine) { return std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::abs(cosine); }
 
-// Means over the facets of what `contribution` says of a normal, weighted by D n·m.
+// Averages `contribution`, a function of the facet's normal, over the facets, weighted by D n·m.
 double average(const FacetModel& model, const std::function<double(const dvec3&)>& contribution) {
     constexpr int count = 1500, turns = 200;
     double sum = 0;
     for (int i = 0; i < count; ++i) {
-        // Many facets are level, few are steep, and at grazing angles those count: u close to 1 is sampled densely.
+        // Many facets are nearly level and few are steep, but at grazing angles those matter: u close to 1 is sampled densely.
         const double x = (i + 0.5) / count, u = 1 - (1 - x) * (1 - x) * (1 - x);
         const double square = model.tangent_square(u), cosine = 1 / std::sqrt(1 + square), sine = std::sqrt(square) * cosine;
         double around = 0;

@@ -41,7 +41,7 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
 
 namespace {
 
-// What the chapter of an estimator can do; of other estimators nothing.
+// The abilities of an estimator's chapter; none for other estimators.
 Chapter chapter_of(const Estimator& estimator) {
     const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
     return std::filesystem::exists(folder / "chapter.json") ? load_chapter(folder.filename().string()) : Chapter{};

@@ -11,7 +11,7 @@
 
 namespace lab {
 
-// Where the environment's LAB_TEST_COPY names the folder of a copy of this chapter, that of the copy.
+// The chapter's estimator, or if the environment's LAB_TEST_COPY names a copy of this chapter's folder, that of the copy.
 Estimator chapter_estimator(const std::string& chapter);
 Estimator every_hit_estimator();  // splits at every hit
 Estimator view_estimator(const std::string& view, const std::string& chapter = all_chapters.front());
@@ -19,7 +19,7 @@ Estimator view_estimator(const std::string& view, const std::string& chapter = a
 // For messages.
 inline const std::array<std::string, 3> channel_names{"red", "green", "blue"};
 
-// A scene of assets/scenes by its file name.
+// A scene in assets/scenes, by file name.
 Scene load_shipped_scene(const std::string& file);
 
 struct RenderSettings {
@@ -42,7 +42,7 @@ struct RenderSettings {
 };
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings);
-// Whether an estimator is that of a chapter that samples light probes.
+// Whether an estimator belongs to a chapter that samples light probes.
 bool samples_probe(const Estimator& estimator);
 GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings);
 
@@ -51,13 +51,13 @@ struct Rendering {
     uint64_t rays = 0;
 };
 
-// Renders a scene repeatedly and compiles its shaders once. The settings may differ in everything but
-// estimator, backend, light sampling and the film's window.
+// Renders a scene repeatedly but compiles its shaders only once. The settings may differ in everything but estimator, backend,
+// strategy and the film's window.
 class SceneRenderer {
   public:
     SceneRenderer(const Scene& scene, const RenderSettings& settings);
 
-    // The film after all samples. Fails the test if any of them is invalid.
+    // Returns the film after all samples. Fails the test if any of them is invalid.
     Rendering render(const RenderSettings& settings);
 
   private:
@@ -69,12 +69,12 @@ class SceneRenderer {
 // Renders once.
 FilmImage render(const Scene& scene, const RenderSettings& settings);
 
-// Images rendered with different seeds: independent estimates whose spread tells the error of their mean.
+// Images rendered with different seeds: independent estimates whose spread gives the error of their mean.
 struct Batches {
     uint32_t width = 0;
     uint32_t height = 0;
-    std::vector<std::vector<glm::dvec3>> images;  // mean radiance of each pixel, one image a batch
-    std::vector<double> rays;                     // per sample, one number a batch
+    std::vector<std::vector<glm::dvec3>> images;  // mean radiance of each pixel, one image per batch
+    std::vector<double> rays;                     // per sample, one number per batch
 
     // One number per batch: the mean of a channel over the image or over a rectangle of pixels.
     std::vector<double> means(int channel) const { return means(channel, {0, 0}, {width, height}); }
@@ -87,11 +87,10 @@ Batches render_batches(const Scene& scene, const RenderSettings& settings, uint3
 // Mean radiance of pixels, row by row from the top.
 vec3 radiance_at(const FilmImage& film, uint32_t x, uint32_t y);
 
-// One channel of all pixels' mean radiances. Where all pixels have the same expectation they are independent
-// estimates.
+// One channel of all pixels' mean radiances. If all pixels have the same expectation they are independent estimates.
 std::vector<double> pixel_means(const FilmImage& film, int channel);
 
-// Fixture of tests to be run with each backend that the device has.
+// Fixture of tests to run with each backend that the device supports.
 class OnEachBackend : public testing::TestWithParam<Backend> {
   protected:
     void SetUp() override;
@@ -99,10 +98,9 @@ class OnEachBackend : public testing::TestWithParam<Backend> {
 
 using OnEachChapter = testing::TestWithParam<std::string>;
 
-// For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters. Ray queries ask the
-// structure that the pipeline traces through, and Parity compares their paths: they are left to --all. So are
-// both of the driver's backends where `own_backend_name` gives the names, and chapters that repeat another
-// one where `own_estimator_name` does.
+// For INSTANTIATE_TEST_SUITE_P: names the instances after their backends or chapters. Ray queries use the same structure as the
+// pipeline, and Parity compares their paths, so they run only with --all. So do both of the driver's backends where
+// `own_backend_name` names the instances, and chapters that repeat another one where `own_estimator_name` does.
 std::string backend_name(const testing::TestParamInfo<Backend>& info);
 std::string own_backend_name(const testing::TestParamInfo<Backend>& info);
 std::string chapter_name(const testing::TestParamInfo<std::string>& info);

@@ -14,7 +14,7 @@ void add_vertex_normals(Scene& scene) {
     for (vec3& normal : scene.normals) normal = normal == vec3(0) ? vec3(0, 1, 0) : glm::normalize(normal);
 }
 
-// All materials get the same white one.
+// All materials get the same white texture.
 void add_texture(Scene& scene) {
     constexpr uint32_t size = 64;
     scene.textures = {{size, size, std::vector<uint8_t>(4 * size * size, 255)}};

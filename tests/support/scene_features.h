@@ -1,4 +1,4 @@
-// Switches the features of scenes on, one at a time.
+// Enables the features of scenes, one at a time.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,11 +9,11 @@ namespace lab {
 
 struct SceneFeature {
     std::string name;
-    void (*add)(Scene&);  // to a scene of one mesh and one instance that has none of the features
+    void (*add)(Scene&);  // to a scene of one mesh and one instance without any feature
 };
 
-// What SceneFeatures knows. Absorption brings a dielectric with it, which it needs; both are of the last
-// triangle only, so that paths stay as they are.
+// All features of SceneFeatures. Absorption also adds a dielectric, which it needs; both apply to the last triangle only, so that
+// paths stay the same.
 const std::vector<SceneFeature>& all_scene_features();
 
 }  // namespace lab

@@ -8,7 +8,7 @@
 namespace lab {
 namespace {
 
-// Makes all triangles one mesh with one instance in its place.
+// Makes all triangles one mesh, with one untransformed instance.
 void finish(Scene& scene) {
     scene.file = "test scene";
     scene.triangle_materials.resize(scene.triangles.size(), 0);
@@ -85,7 +85,7 @@ Scene make_sphere(const Material& material, Facing facing) {
         for (const vec3& corner : {a, b, c}) scene.positions.push_back(glm::normalize(corner));
         scene.triangles.emplace_back(first, first + 1, first + 2);
     };
-    // Three corners at a distance of one edge, 2, from each other are a face.
+    // Three corners that are one edge length, 2, apart form a face.
     const auto are_neighbours = [&](size_t i, size_t j) { return glm::distance(corners[i], corners[j]) < 2.1f; };
     for (size_t i = 0; i < corners.size(); ++i)
         for (size_t j = 0; j < i; ++j)
@@ -113,7 +113,7 @@ TriangleMesh bumpy_sphere(uint32_t rings) {
             const double theta = std::numbers::pi * ring / rings;
             const double phi = 2 * std::numbers::pi * segment / rings;
             const double radius = 1 + 0.1 * std::sin(7 * theta) * std::sin(5 * phi);
-            // All vertices of a pole in exactly the same place, else there is a hole of 10^-16 between them.
+            // All vertices at a pole coincide exactly, or there would be a hole of 10^-16 between them.
             const double sine = ring % rings == 0 ? 0 : std::sin(theta);
             mesh.positions.emplace_back(radius * sine * std::cos(phi), radius * std::cos(theta), radius * sine * std::sin(phi));
         }

@@ -1,4 +1,4 @@
-// Small scenes made in memory.
+// Small scenes built in memory.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -18,18 +18,18 @@ struct Quad {
     uint32_t material = 0;
 };
 
-// One mesh and one instance of it. The four positions of a quad follow each other: corner, + edge_u, + both,
-// + edge_v. Quads of dielectrics have to come last.
+// A scene of one mesh and one instance. The four positions of a quad are consecutive: corner, + edge_u, + both, + edge_v.
+// Dielectric quads must come last.
 Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>& quads);
 
 enum class Facing { inwards, outwards };
 std::vector<Quad> box_sides(const vec3& low, const vec3& high, uint32_t material, Facing facing);
 
-// The sides of the box [-1,1]³, with their fronts inside. The camera is inside as well.
+// The sides of the box [-1,1]³, with their fronts inside. The camera is inside, too.
 Scene closed_box(const Material& material);
 
-// An icosahedron around the origin, each triangle divided into four: 80 triangles of circumscribed radius 1.
-// Facing inwards it is closed around the camera, outwards it fills the camera's view.
+// An icosahedron around the origin, each triangle divided into four: 80 triangles of circumscribed radius 1. Facing inwards it
+// encloses the camera, outwards it fills the camera's view.
 Scene make_sphere(const Material& material, Facing facing);
 
 struct TriangleMesh {
@@ -37,17 +37,17 @@ struct TriangleMesh {
     std::vector<uvec3> triangles;
 };
 
-// A closed sphere of about unit radius with 2 * rings * (rings - 1) triangles whose surface is not smooth.
+// A closed, bumpy sphere of about unit radius with 2 * rings * (rings - 1) triangles.
 TriangleMesh bumpy_sphere(uint32_t rings);
 
-// A scene of that mesh under a white sky, seen from +Z, without an instance; the mesh may be empty.
+// A scene with that mesh under a white sky, seen from +Z, without an instance; the mesh may be empty.
 Scene lit_scene(const TriangleMesh& mesh);
 
 // Adds an instance of the scene's first mesh, or makes it the only one.
 void place(Scene& scene, const mat4x3& object_to_world);
 void set_transform(Scene& scene, const mat4x3& object_to_world);
 
-// Files and folders of a folder in the order of their names.
+// Files and folders in a folder, sorted by name.
 std::vector<std::filesystem::path> sorted_entries(const std::filesystem::path& folder);
 
 }  // namespace lab

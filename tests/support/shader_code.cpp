@@ -23,7 +23,7 @@ std::string disassemble(const Words& words) {
     return text;
 }
 
-// All matches of a pattern, each with its groups from number 1.
+// All matches of a pattern, each with its groups starting at number 1.
 std::vector<std::vector<std::string>> find_all(const std::string& text, const std::string& pattern) {
     const std::regex regex(pattern);
     std::vector<std::vector<std::string>> matches;
@@ -32,14 +32,14 @@ std::vector<std::vector<std::string>> find_all(const std::string& text, const st
     return matches;
 }
 
-// Names of functions by their ids; GLSL's have a list of parameter types behind a bracket.
+// Names of functions by their ids; for GLSL functions, parameter types follow after a bracket.
 std::map<std::string, std::string> function_names(const std::string& text) {
     std::map<std::string, std::string> names;
     for (const auto& match : find_all(text, R"re(OpName %(\d+) "(\w+)\()re")) names[match[0]] = match[1];
     return names;
 }
 
-// Forbids to inline the named functions, which would hide them.
+// Prevents the named functions from being inlined, which would hide them.
 void keep_apart(Words& words, const std::set<std::string>& functions) {
     constexpr uint32_t op_function = 54, dont_inline = 2, header_words = 5;
     const auto names = function_names(disassemble(words));
@@ -54,15 +54,15 @@ Words optimise(const Words& words) {
     spvtools::Optimizer optimizer(environment);
     optimizer.RegisterPerformancePasses();
     spvtools::OptimizerOptions options;
-    options.set_run_validator(false);  // it knows no scalar block layout
+    options.set_run_validator(false);  // it does not know scalar block layout
     Words optimised;
     if (!optimizer.Run(words.data(), words.size(), &optimised, options))
         throw std::runtime_error("SPIRV-Tools cannot optimise a shader");
     return optimised;
 }
 
-// The members that are read of a struct in the block at `binding`: through pointers that reach `depth`
-// indices deep, or of a copy of the whole struct.
+// The members of a struct that are read from the block at `binding`: through pointers with `depth` indices, or from a copy of the
+// whole struct.
 std::set<std::string> members_read(const std::string& text, const std::string& name, uint32_t binding, int depth) {
     std::map<std::string, std::string> members, constants;
     std::set<std::string> read;
@@ -83,7 +83,7 @@ std::set<std::string> members_read(const std::string& text, const std::string& n
     return read;
 }
 
-// Lines between the heads and the ends of functions.
+// Lines between the heads and ends of functions.
 size_t count_instructions(const std::string& text) {
     std::istringstream lines(text);
     std::string line;

@@ -1,4 +1,4 @@
-// What the code of a shader does, read from its SPIR-V.
+// What a shader's code does, according to its SPIR-V.
 #pragma once
 #include <set>
 #include <string>
@@ -7,22 +7,21 @@
 
 namespace lab {
 
-// The code after the optimiser of SPIRV-Tools has removed what cannot be reached, as drivers do; glslang
-// keeps it.
+// The code after SPIRV-Tools' optimiser has removed what cannot be reached, as drivers do; glslang keeps it.
 struct ShaderCode {
-    std::set<uint32_t> bindings;              // of all resources, also of those that are declared only
-    std::set<std::string> functions;          // those of the asked ones that can be reached
+    std::set<uint32_t> bindings;              // of all resources, even those only declared
+    std::set<std::string> functions;          // those asked for that are reachable
     std::set<std::string> material_members;   // those of Material that are read
     std::set<std::string> parameter_members;  // those of RenderParameters that are read
     bool reads_images = false;                // textures or a light probe
-    bool has_samplers = false;                // of which some devices allow sixteen
+    bool has_samplers = false;                // some devices allow only sixteen
     size_t instructions = 0;                  // in the bodies of all functions
 
-    // Adds what another shader of the same pipeline does.
+    // Adds another shader of the same pipeline.
     void merge(const ShaderCode& other);
 };
 
-// `functions`: names that are looked for.
+// `functions`: names to look for.
 ShaderCode read_code(const ShaderSource& source, const std::set<std::string>& functions = {});
 
 }  // namespace lab

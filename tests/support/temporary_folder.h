@@ -1,4 +1,4 @@
-// A folder for the time that a test needs it.
+// A folder that exists while a test needs it.
 #pragma once
 #include <atomic>
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace lab {
 
-// A new empty folder in `parent`, removed with its contents at the end of its scope.
+// A new empty folder in `parent`, removed with its contents when it goes out of scope.
 class TemporaryFolder {
   public:
     explicit TemporaryFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {

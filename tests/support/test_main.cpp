@@ -8,8 +8,8 @@
 namespace lab {
 namespace {
 
-// Lets a test fail if the validation layers complained while it ran. The driver's own messages are only
-// shown: nobody here can mend them.
+// Fails a test if the validation layers complained while it ran. The driver's own messages are only shown: we cannot fix the
+// driver.
 class ValidationListener : public testing::EmptyTestEventListener {
     void OnTestEnd(const testing::TestInfo&) override {
         const auto& complaints = test_device().validation_messages();
@@ -20,7 +20,7 @@ class ValidationListener : public testing::EmptyTestEventListener {
             std::printf("[  DRIVER  ] %s\n", messages[driver_count_].c_str());
     }
 
-    // Which device the report of the tests is about.
+    // States the device in the report of the tests.
     void OnTestIterationEnd(const testing::UnitTest&, int) override {
         const DeviceDescription& device = test_device().description();
         testing::Test::RecordProperty("device", device.name);
@@ -32,8 +32,8 @@ class ValidationListener : public testing::EmptyTestEventListener {
     size_t driver_count_ = 0;
 };
 
-// Ends a test at its first failure if LAB_TEST_STOP_AT_VERDICT is set: seeded mistakes need no more. A test
-// that finds itself too weak or a misuse of Vulkan is no verdict.
+// If LAB_TEST_STOP_AT_VERDICT is set, ends a test at its first failure: that is all that seeded mistakes need. A test that finds
+// itself too weak or a misuse of Vulkan is not a verdict.
 class StoppingListener : public testing::EmptyTestEventListener {
     void OnTestPartResult(const testing::TestPartResult& result) override {
         const std::string message = result.message();
@@ -49,6 +49,6 @@ int main(int argument_count, char** arguments) {
     testing::InitGoogleTest(&argument_count, arguments);
     auto& listeners = testing::UnitTest::GetInstance()->listeners();
     listeners.Append(new lab::ValidationListener);
-    if (std::getenv("LAB_TEST_STOP_AT_VERDICT")) listeners.Append(new lab::StoppingListener);  // has to be the last
+    if (std::getenv("LAB_TEST_STOP_AT_VERDICT")) listeners.Append(new lab::StoppingListener);  // must be the last one
     return RUN_ALL_TESTS();
 }

@@ -14,8 +14,7 @@ std::vector<vec3> albedo_at(Backend backend, const std::vector<Texture>& texture
                             const vec3& factor) {
     std::vector<Material> materials(textures.size(), diffuse_material(factor));
     for (size_t i = 0; i < textures.size(); ++i) materials[i].albedo_texture = static_cast<int>(i);
-    // Each quad fills three pixels, of which the middle one is read: a ray through the edge of a pixel may
-    // meet the quad beside it.
+    // Each quad fills three pixels, and the middle one is read: a ray through the edge of a pixel may hit the adjacent quad.
     constexpr uint32_t width = 3;
     std::vector<Quad> quads;
     for (size_t i = 0; i < coordinates.size(); ++i)

@@ -16,9 +16,9 @@
 namespace lab {
 namespace {
 
-constexpr long double quantum = 1 / 4294967296.0L;  // 2^-32: of a threshold
+constexpr long double quantum = 1 / 4294967296.0L;  // 2^-32, the resolution of thresholds
 
-// The probability of each item. Entries are equally probable, as shaders choose them by 64 digits; only sums are rounded.
+// The probability of each item. Entries are equally probable, as shaders choose them with 64 bits; only sums are rounded.
 template <typename Entry>
 std::vector<long double> probabilities_of(const std::vector<Entry>& entries) {
     std::vector<long double> probabilities(entries.size());
@@ -31,7 +31,7 @@ std::vector<long double> probabilities_of(const std::vector<Entry>& entries) {
     return probabilities;
 }
 
-// Weights of several kinds; the random ones cover 24 orders of magnitude and hold zeros.
+// Weights of several kinds; the random ones span 24 orders of magnitude and include zeros.
 struct WeightKind {
     const char* name;
     double (*weight)(size_t i, size_t n, std::mt19937_64& random);
@@ -88,7 +88,7 @@ TEST(AliasTable, HasTheProbabilitiesOfItsWeights) {
     RecordProperty("largest_error_of_a_probability", text);
 }
 
-// Triangles (0,0,0), (size,0,0), (0,2,0) in a row, each with a material of its own.
+// Triangles (0,0,0), (size,0,0), (0,2,0) in a row, each with its own material.
 Scene make_lights(const std::vector<float>& sizes, const std::vector<vec3>& emissions) {
     Scene scene;
     for (uint32_t i = 0; i < sizes.size(); ++i) {
@@ -107,7 +107,7 @@ void add_instance(Scene& scene, const mat4x3& object_to_world) {
     scene.instance_meshes.push_back(0);
 }
 
-// The probability of light i of the table times its inverse density, which must be its area.
+// The probability of light i in the table times its inverse density, which must be its area.
 double area_in_table(const std::vector<LightTriangle>& lights, size_t i) {
     return static_cast<double>(probabilities_of(lights)[i] * lights[i].inverse_density);
 }
@@ -117,7 +117,7 @@ TEST(LightTable, ChoosesByAreaTimesLuminance) {
     Scene scene = lights_of_one_mesh;
     add_instance(scene, mat4x3(1));
     const auto lights = build_light_table(scene).triangles;
-    ASSERT_EQ(lights.size(), 4u);  // without the one that does not emit
+    ASSERT_EQ(lights.size(), 4u);  // without the one that emits nothing
     const std::vector<uint32_t> triangles{0, 2, 3, 4};
     const std::vector<double> areas{1, 1, 2, 0.5}, powers{1, 0.7152 * 2, 2 * (0.2126 * 4 + 0.0722), 0.5 * 0.0722 * double{1e-6f}};
     const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
@@ -165,7 +165,7 @@ TEST(LightTable, IsEmptyWithoutLights) {
     EXPECT_TRUE(build_light_table(scene).triangles.empty());
 }
 
-// Refuses by their number, before it allocates anything.
+// Refuses them by their number, before allocating anything.
 TEST(LightTable, RefusesMoreLightsThanItCanHold) {
     Scene scene = make_lights(std::vector<float>(1000, 1), std::vector<vec3>(1000, vec3(1)));
     for (int i = 0; i < (1 << 24) / 1000 + 1; ++i) add_instance(scene, mat4x3(1));

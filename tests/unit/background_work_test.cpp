@@ -1,4 +1,4 @@
-// Background work of the window, and the messages that its errors become.
+// The window's background work, and the messages that its errors turn into.
 #include "viewer/background_work.h"
 
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 namespace lab {
 namespace {
 
-// Wider bounds would keep the tree valid and make it a little worse.
+// Wider bounds would keep the tree valid but make it slightly worse.
 void expect_padded(const Bounds& inside, const Bounds& bounds) {
     const vec3 largest = glm::max(glm::abs(inside.low), glm::abs(inside.high));
     const float padding = bvh_padding * std::max({largest.x, largest.y, largest.z});
@@ -52,15 +52,14 @@ class TreeWalk {
         return size.x * size.y + size.y * size.z + size.z * size.x;
     }
 
-    // `stack_entries` before the children are pushed. Returns the bounds of the triangles below, without
-    // padding.
+    // `stack_entries` is the count before the children are pushed. Returns the bounds of the triangles below, without padding.
     Bounds visit(uint32_t index, size_t stack_entries) {
         ++visited_nodes_;
         const BvhNode& node = bvh_.nodes.at(index);
         size_t child_count = 0;
         for (const uint32_t child : node.children) child_count += child != 0;
         EXPECT_TRUE(child_count > 1 || index == 0) << "a node with one child is a wasted visit";
-        // The child that is visited first leaves the others on the stack.
+        // The child visited first leaves the others on the stack.
         const size_t entries = stack_entries + std::max<size_t>(child_count, 1) - 1;
         deepest_stack_ = std::max(deepest_stack_, entries);
         Bounds all;
@@ -99,7 +98,7 @@ class TreeWalk {
     double cost_ = 0;  // areas of children times the nodes and triangles to visit in them
 };
 
-// Every triangle of the input is in the tree, whole and with its id.
+// Expects every input triangle in the tree, complete and with its id.
 void expect_valid(const std::vector<BvhTriangle>& input, const Bvh& bvh) {
     TreeWalk walk(bvh);
     ASSERT_EQ(bvh.triangles.size(), input.size());
@@ -137,14 +136,12 @@ TEST(BvhBuilder, HalvesWhatHasNoExtent) {
     for (const auto& triangles : {duplicates, points}) {
         const Bvh bvh = build_bvh(triangles);
         expect_valid(triangles, bvh);
-        // A complete binary tree has 15 levels above leaves of four, so eight levels of nodes with four
-        // children.
+        // A complete binary tree has 15 levels above leaves of four, hence eight levels of nodes with four children.
         EXPECT_LE(bvh.max_stack_entries, 3 * 9u + 1);
     }
 }
 
-// Sizes are powers of two, so the cheapest split always cuts off the largest triangles: 240 levels if nothing
-// stopped it.
+// Sizes are powers of two, so the cheapest split always cuts off the largest triangles: 240 levels if nothing stops it.
 TEST(BvhBuilder, BoundsTheDepth) {
     std::vector<BvhTriangle> triangles;
     for (size_t i = 0; i < 2400; ++i) {
@@ -158,14 +155,14 @@ TEST(BvhBuilder, BoundsTheDepth) {
 }
 
 TEST(BvhBuilder, StatesTheDeepestStack) {
-    for (const size_t count : {10'000, 150'000}) {  // the larger one is built in parts
+    for (const size_t count : {10'000, 150'000}) {  // the larger one is built in parallel
         const Bvh bvh = build_bvh(random_triangles(count, 0.1f));
         EXPECT_EQ(TreeWalk(bvh).deepest_stack(), bvh.max_stack_entries);
     }
 }
 
-// Bounds near what the same algorithm gave when it was checked against a full sweep over all splits, which is
-// 3 % better. A builder that is subtly wrong builds valid trees that cost twice as much.
+// Bounds close to what the same algorithm gave when it was checked against a full sweep over all splits, which is 3 % better. A
+// builder that is subtly wrong builds valid trees that cost twice as much.
 TEST(BvhBuilder, FindsGoodSplits) {
     EXPECT_LT(TreeWalk(build_bvh(height_field(200))).surface_area_cost(), 15);
     EXPECT_LT(TreeWalk(build_bvh(random_triangles(50'000, 0.01f))).surface_area_cost(), 50);

@@ -1,4 +1,4 @@
-// Triangles to build trees of, and whether two trees are the same.
+// Triangles to build trees from, and comparison of two trees.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The viewer's camera: how it moves, and its text as flags and JSON.
+// The viewer's camera: its motion, and its text as flags and JSON.
 #include "viewer/camera_control.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(CameraControl, DraggingTurnsTheHeadInPlace) {
     const CameraPose turned = make_control().move(start, {.drag = {quarter, 0}});
     expect_near(turned.position, start.position);
     expect_near(turned.target, {6, 2, 8});
-    // Down the picture is down in the scene.
+    // Down in the picture is down in the scene.
     EXPECT_LT(make_control().move(start, {.drag = {0, 0.1f}}).target.y, start.target.y);
 }
 

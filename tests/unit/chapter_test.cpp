@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// Text of a chapter's shaders and of those of other chapters that it includes.
+// Text of a chapter's shaders, including those that it takes from other chapters.
 std::string shader_text(const Chapter& chapter) {
     std::string text;
     for (const auto& file : shader_files(estimator_of(chapter)))
@@ -47,7 +47,7 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
 TEST(Chapter, MistakesAreNamed) {
     const TestFolder folder;
     const auto load = [&] { load_chapter(folder.path().string()); };
-    EXPECT_USER_ERROR(load(), "chapter.json");  // there is none
+    EXPECT_USER_ERROR(load(), "chapter.json");  // the file does not exist
     const std::pair<const char*, const char*> mistakes[] = {
         {"{\"title\": \"A\",}", "chapter.json:1: "},
         {"[]", "chapter.json: the chapter must be an object"},

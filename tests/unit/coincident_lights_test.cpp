@@ -1,4 +1,4 @@
-// Coincident triangles of which at least one emits: which ones are dropped, paired or warned about.
+// Coincident triangles, at least one of which emits: which ones are dropped, paired or warned about.
 #include "scene/light_table.h"
 #include "scene/scene.h"
 #include "test_files.h"
@@ -6,7 +6,7 @@
 namespace lab {
 namespace {
 
-const std::string corners = "v 0 0 0\nv 1 0 0\nv -0 1 0\nv 0 -0 0\n";  // the last is the first
+const std::string corners = "v 0 0 0\nv 1 0 0\nv -0 1 0\nv 0 -0 0\n";  // the last equals the first
 
 class CoincidentLights : public testing::Test {
   protected:
@@ -16,7 +16,7 @@ class CoincidentLights : public testing::Test {
                      "newmtl glass\nd 0\nNi 1.5\n");
     }
 
-    // A mesh with these faces, all of the same triangle.
+    // A mesh with these faces, all using the same triangle.
     std::filesystem::path mesh(const std::string& name, const std::string& faces) const {
         return folder.write(name, "mtllib a.mtl\n" + corners + faces);
     }

@@ -1,4 +1,4 @@
-// The film as a file.
+// The film file.
 #include "film/film_file.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace lab {
 namespace {
 
 TEST(FilmFile, GoesOnWithTheWholeSum) {
-    // A mean times a number of samples takes more digits than a float has.
+    // A mean times a number of samples needs more digits than a float has.
     constexpr uint32_t samples = 11;
     std::mt19937 generator(1);
     std::uniform_real_distribution<float> radiance(0, 2);
@@ -43,7 +43,7 @@ TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
     };
     const uint32_t half = 0x80000000;
     const auto first = write(0, half), rest = write(half, half - 1);
-    // In any order, and a pixel counts its samples in 32 bits.
+    // In any order; and a pixel's sample count needs all 32 bits.
     const FilmFile merged = merge_films({rest, first});
     EXPECT_EQ(merged.record.first_sample, 0u);
     EXPECT_EQ(merged.image.min_samples(), 0xffffffffu);
@@ -52,7 +52,7 @@ TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
     EXPECT_USER_ERROR(merge_films({first, write(half - 1, 7)}), "without overlap or gap");
 }
 
-// A sample that is no number adds nothing, but it is counted, and its pixel is magenta.
+// An invalid sample adds nothing but is counted, and its pixel is magenta.
 TEST(FilmFile, KeepsAndShowsInvalidSamples) {
     const TestFolder folder;
     for (const uint32_t first : {0u, 5u}) {

@@ -1,4 +1,4 @@
-// Malicious files: a small file must not cost much memory or time, and a name must lead to a regular file.
+// Malicious files: a small file must not cost much memory or time, and a name must refer to a regular file.
 #include <cstdlib>
 
 #include "files/file.h"
@@ -24,7 +24,7 @@ std::string repeated(const std::string& text, int count) {
 
 TEST(HostileImages, AllocateNoMoreThanTheirSizeExplains) {
     const TestFolder folder;
-    // Runs make a file small: 17 MB are enough for 16384 x 16384 pixels, which take 3 GiB.
+    // Run-length encoding keeps a file small: 17 MB are enough for 16384 x 16384 pixels, which take 3 GiB.
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n";
     EXPECT_USER_ERROR(read_radiance(folder.write("a.hdr", header + std::string(17 << 20, '\0'))), "its pixels need 3072 MiB");
 
@@ -35,7 +35,7 @@ TEST(HostileImages, AllocateNoMoreThanTheirSizeExplains) {
     exr.replace(exr.find(name) + name.size(), sizeof window, reinterpret_cast<const char*>(window), sizeof window);
     EXPECT_USER_ERROR(read_exr(folder.write("a.exr", exr + std::string(4 << 20, '\0'))), "its pixels need 3072 MiB");
 
-    // 16 bits a channel are 2 GiB before they become 8.
+    // 16 bits per channel are 2 GiB before they are reduced to 8.
     write_png(folder / "small.png", picture(1, 1, 0));
     std::string png = file_bytes(folder / "small.png");
     png.replace(16, 9, std::string("\0\0\x40\0\0\0\x40\0\x10", 9));
@@ -72,7 +72,7 @@ TEST(HostileMeshes, AllocateNoMoreThanTheirSizeExplains_all) {
                       "far more memory");
 }
 
-// A scene may refer to files anywhere, as those in assets/scenes do, but only to regular files.
+// A scene may refer to files anywhere, as those in assets/scenes do, but only to regular ones.
 TEST(HostileNames, LeadToAnyRegularFile) {
     const TestFolder folder, elsewhere;
     write_png(elsewhere / "a.png", picture(1, 1, 7));
@@ -98,7 +98,7 @@ TEST(HostileNames, LeadToAnyRegularFile) {
     }
 }
 
-// Messages contain no escape sequences, which a terminal would obey, and no line breaks.
+// Messages contain neither escape sequences, which a terminal would obey, nor line breaks.
 TEST(HostileNames, AreSafeToPrint) {
     EXPECT_EQ(printable("a\nb\x1b[2J\x7f\u00e9"), "a?b?[2J?\u00e9");
     const TestFolder folder;

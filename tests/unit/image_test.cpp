@@ -31,12 +31,12 @@ Texture gradient_texture(uint32_t width, uint32_t height) {
     return texture;
 }
 
-// Replaces bytes of a header: makes files that our writers cannot make.
+// Replaces bytes of a header, to make files that our writers cannot make.
 std::string patched(std::string bytes, size_t position, const std::string& replacement) {
     return bytes.replace(position, replacement.size(), replacement);
 }
 
-// An uncompressed 2 x 2 image with rows from the bottom, as .bmp files have them.
+// An uncompressed 2 x 2 image with rows from the bottom, as in .bmp files.
 std::string bmp_bytes() {
     std::string bytes = "BM";
     const auto add = [&](uint32_t value, int count) {
@@ -126,15 +126,15 @@ TEST(Exr, RefusesTrapsOfTheLibrary) {
     const auto read = [&](const std::string& bytes) { read_exr(folder.write("b.exr", bytes)); };
     EXPECT_USER_ERROR(read("v/1 no such thing"), "not an OpenEXR file");
     EXPECT_USER_ERROR(read(patched(valid, 5, "\x02")), "scan lines");  // tiled
-    // It aborts for a type that it does not know, and would allocate as many chunks as a file claims to have.
+    // It aborts on an unknown type, and would allocate as many chunks as a file claims to have.
     EXPECT_USER_ERROR(read(patched(valid, valid.find("typo"), "type")), "flat OpenEXR images");
     EXPECT_NO_THROW(read(patched(valid, valid.find("chunkCoun_"), "chunkCount")));
-    // 16384 x 16384 pixels cannot be in these few bytes; 40 x 16385 and negative sizes are never allowed.
+    // 16384 x 16384 pixels do not fit into these few bytes; 40 x 16385 and negative sizes are never allowed.
     const size_t window = valid.find("box2i") + 6 + 4;
     EXPECT_USER_ERROR(read(patched(valid, window + 8, std::string("\xff\x3f\0\0\xff\x3f\0\0", 8))), "ends too early");
     EXPECT_USER_ERROR(read(patched(valid, window + 12, std::string("\x00\x40\0\0", 4))), "40 x 16385");
     EXPECT_USER_ERROR(read(patched(valid, window + 8, std::string("\xf0\xff\xff\xff", 4))), "width and height");
-    // Channels for every second pixel only.
+    // Channels with only every second pixel.
     const size_t channel = valid.find("chlist") + 7 + 4 + 2;
     EXPECT_USER_ERROR(read(patched(valid, channel + 8, "\x02")), "a value for every pixel");
     EXPECT_USER_ERROR(read(patched(valid, channel, std::string(1, '\0'))), "16 or 32-bit floats");
@@ -185,7 +185,7 @@ TEST(Hdr, RefusesWhatItCannotRead) {
 TEST(Textures, PngRoundTripIsExact) {
     const TestFolder folder;
     const Texture smooth = gradient_texture(61, 43);
-    Texture noise = smooth;  // in which the distances to the neighbours are equal now and then
+    Texture noise = smooth;  // the distances to the neighbours are now and then equal
     std::mt19937 random(1);
     for (uint8_t& byte : noise.pixels) byte = static_cast<uint8_t>(random() % 16);
     for (const Texture& written : {smooth, noise}) {
@@ -239,7 +239,7 @@ TEST(ImageFiles, PathsThatCannotBeRead) {
     }
     EXPECT_USER_ERROR(read_radiance(folder / "a.png"), ".hdr or .exr");
     folder.write("large", "");
-    std::filesystem::resize_file(folder / "large", max_image_file_bytes + 1);  // sparse: takes no space
+    std::filesystem::resize_file(folder / "large", max_image_file_bytes + 1);  // sparse: needs no space
     EXPECT_USER_ERROR(read_texture(folder / "large"), "limit");
 }
 

@@ -1,4 +1,4 @@
-// Projecting paths into the picture, and instrumenting a shader so that it records its variables.
+// Projecting paths into the picture, and instrumenting a shader to record its variables.
 #include <gtest/gtest.h>
 
 #include <algorithm>

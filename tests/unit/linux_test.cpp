@@ -16,7 +16,7 @@
 namespace lab {
 namespace {
 
-// Large enough that all threads share the first splits.
+// Large enough for all threads to share the first splits.
 TEST(BvhBuilder, DoesNotDependOnTheNumberOfThreads) {
     const auto triangles = height_field(300);
     const Bvh parallel = build_bvh(triangles);

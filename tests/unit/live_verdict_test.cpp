@@ -13,9 +13,9 @@ namespace lab {
 namespace {
 
 constexpr uint32_t extent = 32;
-constexpr double hit_probability = 0.02;  // each sample finds radiance 1 with it
+constexpr double hit_probability = 0.02;  // with which a sample has radiance 1
 
-// A reference of constant radiance, without noise.
+// A noise-free reference of constant radiance.
 Reference flat_reference(double mean = hit_probability) {
     Reference reference{{extent, extent, std::vector<float>(3 * extent * extent, static_cast<float>(mean))},
                         Image{extent, extent, std::vector<float>(3 * extent * extent, 1e-9f)},
@@ -23,8 +23,7 @@ Reference flat_reference(double mean = hit_probability) {
     return reference;
 }
 
-// A progressive render in which pixel (x,y) finds light with the probability `probability(x, y)`, each
-// channel on its own.
+// A progressive render in which pixel (x,y) finds light with probability `probability(x, y)`, independently per channel.
 class FakeRender {
   public:
     FakeRender(uint32_t seed, std::function<double(uint32_t, uint32_t)> probability, uint32_t scale = 1)
@@ -49,7 +48,7 @@ class FakeRender {
     FilmImage film_;
 };
 
-// Tests whenever the verdict asks for it, as a viewer does, up to that many samples per pixel.
+// Tests whenever the verdict asks for it, as a viewer does, up to this many samples per pixel.
 void watch(LiveVerdict& verdict, FakeRender render, uint32_t samples) {
     while (verdict.next_samples() <= samples) verdict.add(render.advance(verdict.next_samples()));
 }
@@ -57,7 +56,7 @@ void watch(LiveVerdict& verdict, FakeRender render, uint32_t samples) {
 double unbiased(uint32_t, uint32_t) { return hit_probability; }
 
 TEST(LiveVerdict, RaisesFalseAlarmsAsRarelyAsDesigned) {
-    // Chances of a whole render, watched all the time: five tests, the last with tiles of 8 pixels.
+    // For a whole render, tested five times, the last time with tiles of 8 pixels.
     constexpr double false_alarms = 0.2;
     constexpr uint32_t renders = 150;
     uint32_t alarms = 0;
@@ -77,8 +76,8 @@ TEST(LiveVerdict, FindsTheBiasThatItSaysItWouldFind) {
     ASSERT_TRUE(honest.verdict());
     EXPECT_FALSE(honest.verdict()->is_biased) << honest.text();
     const double smallest = honest.verdict()->smallest_detectable[1];
-    // The mean of n hits of probability p is known to √((1-p)/(np)); a test of this level and power finds 6.4
-    // times that.
+    // The mean of n hits of probability p has a relative standard error of √((1-p)/(np)); a test of this level and power finds
+    // 6.4 times that.
     const double standard_error = std::sqrt((1 - hit_probability) / (hit_probability * 1024 * extent * extent));
     EXPECT_NEAR(honest.verdict()->differences[1].standard_error / standard_error, 1, 0.4);
     EXPECT_GT(smallest, 5 * standard_error);
@@ -94,7 +93,7 @@ TEST(LiveVerdict, FindsTheBiasThatItSaysItWouldFind) {
 }
 
 TEST(LiveVerdict, SaysHowLargeTheBiasIsAndWhere) {
-    // The left half is 30 % too dark, so that the image is by 15 %.
+    // The left half is 30 % too dark, so the whole image is 15 % too dark.
     const auto left_too_dark = [](uint32_t x, uint32_t) { return (x < extent / 2 ? 0.7 : 1) * hit_probability; };
     LiveVerdict verdict(flat_reference(), glm::uvec2(extent));
     watch(verdict, {1, left_too_dark}, 2048);
@@ -178,7 +177,7 @@ TEST(LiveVerdict, WaitsForEnoughPaths) {
 
 TEST(LiveVerdict, SeesABlackImage) {
     Reference reference = flat_reference();
-    reference.attributes["samples"] = "65536";  // whose variance a sample then has is 6.6e-5
+    reference.attributes["samples"] = "65536";  // a sample then has a variance of 6.6e-5
     LiveVerdict verdict(std::move(reference), glm::uvec2(extent));
     watch(verdict, {1, [](uint32_t, uint32_t) { return 0.0; }}, 128);
     EXPECT_TRUE(verdict.verdict()->is_biased);

@@ -222,7 +222,7 @@ TEST_F(MeshFile, MaterialsThatAreNowhereAreGrey) {
         EXPECT_EQ(count_warnings(scene, what + grey), 1u) << text;
         EXPECT_EQ(count_warnings(scene, "a.obj:"), 2u) << text << "the white sky is the other";
     }
-    // A face that has its material keeps it.
+    // A face whose material exists keeps it.
     const Scene partly = load("mtllib a.mtl" + named + unnamed);
     EXPECT_EQ(partly.materials.at(partly.triangle_materials.at(0)).diffuse_albedo, vec3(1));
     EXPECT_EQ(partly.materials.at(partly.triangle_materials.at(1)).diffuse_albedo, vec3(0.5f));

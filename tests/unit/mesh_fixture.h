@@ -13,7 +13,7 @@ class MeshFile : public testing::Test {
   protected:
     Scene load(const std::string& obj, bool specular = false) const { return load_scene(folder.write("a.obj", obj), specular); }
 
-    // A triangle of the material that the lines describe.
+    // A triangle of the material that these lines describe.
     Scene load_material(const std::string& lines, bool specular = false) const {
         folder.write("a.mtl", "newmtl m\n" + lines + "\n");
         return load("mtllib a.mtl\nusemtl m\n" + corners_of_a_square + "f 1 2 3\n", specular);

@@ -106,7 +106,7 @@ TEST_F(MeshFile, TheFrontIsTheSideOfTheVertexNormals) {
     EXPECT_EQ(face_normal(load(corners_of_a_square + "f 1 2 3\n"), 0), vec3(0, 0, 1));
     EXPECT_EQ(face_normal(load(corners_of_a_square + normals + "f 1//1 2//1 3//1\n"), 0), vec3(0, 0, -1));
     EXPECT_EQ(face_normal(load(corners_of_a_square + normals + "f 3//2 2//2 1//2\n"), 0), vec3(0, 0, 1));
-    // One corner against two, and one corner alone.
+    // One corner against two, and a single corner.
     EXPECT_EQ(face_normal(load(corners_of_a_square + normals + "f 1//1 2//1 3//2\n"), 0), vec3(0, 0, -1));
     EXPECT_EQ(face_normal(load(corners_of_a_square + normals + "f 1//1 2 3\n"), 0), vec3(0, 0, -1));
 }

@@ -1,4 +1,4 @@
-// Shaders as C++: what the translator makes of GLSL, compiled and run, gives the numbers that GLSL defines.
+// Shaders as C++: compiled and run, the translator's output gives the numbers that GLSL defines.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// The numbers that a shader writes to results[]. `code` stands before main(), `body` in it.
+// The numbers that a shader writes to results[]. `code` precedes main(), `body` is inside.
 std::vector<float> run_shader(const std::string& code, const std::string& body) {
     const std::string glsl =
         "#line 1 \"test.glsl\"\n" + code +
@@ -48,7 +48,7 @@ TEST(Native, OutArgumentsAreCopiedInAndOut) {
     // The global keeps its value until the call returns: 1 + 2 + 1.
     EXPECT_EQ(run_shader(code, "add(held, 2.0); give(held);"), (Numbers{4}));
     EXPECT_EQ(run_shader(code, "vec3 v = vec3(2, 4, 8); halve(v.zx); give(v.x); give(v.y); give(v.z);"), (Numbers{1, 4, 4}));
-    // Neither parameter sees what the other one does: 1 + 1 or 1 + 2, but not 4.
+    // Neither parameter sees the other one's changes: 1 + 1 or 1 + 2, but not 4.
     const Numbers alias = run_shader(code, "float x = 1.0; both(x, x); give(x);");
     EXPECT_TRUE(alias == Numbers{2} || alias == Numbers{3}) << alias.front();
     EXPECT_EQ(run_shader(code,

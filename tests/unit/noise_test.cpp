@@ -9,7 +9,7 @@ namespace lab {
 namespace {
 
 TEST(Noise, IsThatOfTheMean) {
-    // Samples are 0 or 1 with probability 1/4, so that their standard deviation is √3/4.
+    // Samples are 1 with probability 1/4 and 0 otherwise, so their standard deviation is √3/4.
     constexpr uint32_t extent = 64, samples = 63;
     FilmImage film{extent, extent, std::vector<FilmPixel>(extent * extent)};
     std::mt19937 generator(1);

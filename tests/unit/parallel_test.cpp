@@ -1,4 +1,4 @@
-// Loops and sums over all threads.
+// Parallel loops and sums.
 #include "parallel.h"
 
 #include <gtest/gtest.h>

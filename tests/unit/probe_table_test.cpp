@@ -1,4 +1,4 @@
-// The table of cells from which light samples of a probe are drawn.
+// The table of cells from which light samples on a probe are drawn.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ void set_texel(Image& probe, uint32_t x, uint32_t y, float radiance) {
     for (size_t channel = 0; channel < 3; ++channel) probe.pixels[3 * (size_t{y} * probe.width + x) + channel] = radiance;
 }
 
-// The integral of the density over all directions, after a check of its size.
+// The integral of the density over all directions, after checking the table's size.
 double total(const std::vector<ProbeCell>& cells, uint32_t columns, uint32_t rows) {
     EXPECT_EQ(cells.size(), size_t{columns} * rows);
     double sum = 0;
@@ -44,7 +44,7 @@ TEST(ProbeTable, DensitiesIntegrateToTheProbabilityOfTheProbe) {
 }
 
 TEST(ProbeTable, FollowsTheMeanOfTheFilteredRadiance) {
-    // One texel shines into its neighbours, across the seam, and at a pole into itself.
+    // One texel spreads into its neighbours, across the seam, and at a pole into itself.
     Image probe = make_probe(16, 8, 0);
     set_texel(probe, 0, 0, 80);
     const auto cells = build_probe_table(probe);
@@ -62,7 +62,7 @@ TEST(ProbeTable, OfABlackProbeIsUniform) {
 }
 
 TEST(ProbeTable, HasLargerCellsWhereThereAreVeryManyTexels) {
-    // No whole number of texels goes into a cell, and each one that a cell overlaps counts.
+    // A cell does not cover a whole number of texels, and every texel that it overlaps counts.
     Image probe = make_probe(MAX_PROBE_CELL_COLUMNS + 1000, 3, 0);
     set_texel(probe, 1500, 1, 1);
     const auto cells = build_probe_table(probe);

@@ -24,7 +24,7 @@ class SceneFile : public testing::Test {
         return load_scene(folder.write("scene.json", json), specular);
     }
 
-    // The instance that these transformation keys make.
+    // The instance that these transformation keys produce.
     Instance instance(const std::string& keys) const {
         return load(R"({"meshes": [{"file": "a.obj", )" + keys + "}]}").instances.at(0);
     }
@@ -226,7 +226,7 @@ TEST_F(SceneFile, PathsThatAreNoScenes) {
     std::filesystem::create_directory(folder / "folder.obj");
     EXPECT_USER_ERROR(load_scene(folder / "folder.obj"), "not a regular file");
     folder.write("large.json", "");
-    std::filesystem::resize_file(folder / "large.json", uint64_t{1} << 30);  // sparse: takes no space
+    std::filesystem::resize_file(folder / "large.json", uint64_t{1} << 30);  // sparse: needs no space
     EXPECT_USER_ERROR(load_scene(folder / "large.json"), "limit");
 }
 

@@ -1,6 +1,5 @@
-// The hypothesis tests that other tests rest on: their values against mpmath and SciPy; and where they are
-// approximations, by simulation, that they reject what is right no more often than their level says and find
-// the smallest error that they state.
+// The hypothesis tests that other tests rely on: their values against mpmath and SciPy; and if they are approximations, by
+// simulation, that they reject the truth no more often than their level says and find the smallest error that they state.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,8 +21,7 @@ void expect_relative(double value, double expected, double tolerance) {
     pair[1] = second;
 }
 
-// Tests compare float with double results. Without the flag that tests/CMakeLists.txt sets, GCC 12 drops this
-// rounding.
+// Tests compare float with double results. Without the flag set in tests/CMakeLists.txt, GCC 12 optimises this rounding away.
 TEST(Compiler, RoundsToFloatAndBack) {
     volatile const double number = 0.1;  // unknown to the compiler
     double pair[] = {number, number};
@@ -104,14 +102,12 @@ TEST(Correlation, OfLinesAndOfOrthogonalSeries) {
     EXPECT_NEAR(correlation(rising, symmetric), 0, 1e-15);
 }
 
-// Levels are simulated at one that occurs, powers at the level and power of all tests, see
-// expect_statistics.h.
+// Levels are simulated at one that occurs often, powers at the level and power of all tests, see expect_statistics.h.
 constexpr double level = 0.01, significance = 1e-6, power = 0.99;
 
 using Generator = std::mt19937_64;
 
-// The share of the trials in which a test rejects lies between two bounds. Five standard deviations are
-// allowed.
+// Expects the fraction of trials in which a test rejects to lie between two bounds. Allows five standard deviations.
 void expect_share(const std::string& what, int trials, double lowest, double highest,
                   const std::function<bool(Generator&)>& rejects) {
     Generator generator(1);
@@ -176,7 +172,7 @@ TEST(WelchTest, HasItsLevelAndItsPower) {
 }
 
 TEST(ChiSquareTest, KnowsTheNoncentralDistribution) {
-    // Noncentralities of SciPy. With one degree of freedom it is the test of a normal number.
+    // Noncentralities from SciPy. With one degree of freedom it is the test of a normal variable.
     ChiSquareTest test;
     test.sample_count = 1;
     for (const auto& [freedom, alpha, beta, expected] : {std::tuple{1.0, 1e-3, 0.99, 31.54928033427846},
@@ -190,7 +186,7 @@ TEST(ChiSquareTest, KnowsTheNoncentralDistribution) {
 
 TEST(KolmogorovSmirnov, HasItsLevelAndItsPower) {
     std::uniform_real_distribution<double> uniform;
-    // The share `distance` of the numbers lies below 1/2 instead of above.
+    // The fraction `distance` of the numbers lies below 1/2 instead of above.
     const auto p_value = [&](Generator& generator, size_t count, double distance) {
         std::vector<double> numbers(count);
         for (double& number : numbers) {

@@ -1,4 +1,4 @@
-// Renders that stop as soon as their error is small enough: that they are no less exact than they say, and not biased.
+// Renders that stop once their error is small enough: as accurate as they claim, and unbiased.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,9 +12,9 @@
 namespace lab {
 namespace {
 
-constexpr uint32_t width = 24;  // of a picture, and its height
+constexpr uint32_t width = 24;  // and height of a picture
 
-// A picture whose samples are 1/p with probability p and 0 otherwise, in all channels, so that its mean is 1. It renders on until
+// A picture whose samples are 1/p with probability p and 0 otherwise, in all channels, so that its mean is 1. It renders until
 // its error is at most `target`.
 class Picture {
   public:
@@ -56,7 +56,7 @@ class Picture {
 };
 
 TEST(Stopping, NeitherBiasesThePictureNorItsError) {
-    // The smaller the picture and the rarer the light, the more chance decides when it stops.
+    // The smaller the picture and the rarer the light, the more its stopping depends on chance.
     constexpr double p = 1.0 / 64, target = 0.5;
     constexpr uint32_t pictures = 1500;
     std::vector<double> means, squares, reported, needed;
@@ -74,7 +74,7 @@ TEST(Stopping, NeitherBiasesThePictureNorItsError) {
     const MeanEstimate mean = estimate_mean(means);
     const double bias = (mean.mean - 1) / std::sqrt(mean.variance), uncertainty = 1 / std::sqrt(static_cast<double>(pictures));
     const double ratio = std::sqrt(estimate_mean(squares).mean / estimate_mean(reported).mean);
-    const double fewest = (1 / p - 1) / (target * target);  // that the target takes
+    const double fewest = (1 / p - 1) / (target * target);  // number of samples that the target takes
     std::printf(
         "  bias %+.3f ± %.3f standard deviations, actual over reported error %.3f, %.1f %% within the error bar,\n"
         "  samples x %.2f, %.1f looks\n",

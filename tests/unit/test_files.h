@@ -1,4 +1,4 @@
-// Temporary files, and errors caught as text.
+// Temporary files, and errors as text.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ inline std::string file_bytes(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// The message of the UserError that a call must throw: one line, not too long.
+// The message of the UserError that a call must throw: a single line, not too long.
 inline std::string user_error(const std::function<void()>& call) {
     try {
         call();
@@ -52,8 +52,8 @@ inline std::string user_error(const std::function<void()>& call) {
 
 #define EXPECT_USER_ERROR(call, part) EXPECT_PRED_FORMAT2(::testing::IsSubstring, part, user_error([&] { call; }))
 
-// Reads a valid file truncated at 200 places and, 200 times, with a few bytes changed. Each read must succeed
-// or throw a UserError; a truncated file must be refused if `cut_is_error`.
+// Reads a valid file truncated at 200 places and, 200 times, with a few bytes changed. Each read must succeed or throw a
+// UserError; truncated files must be refused if `cut_is_error`.
 inline void damage(const TestFolder& folder, const std::string& name, const std::string& valid, bool cut_is_error,
                    const std::function<void(const std::filesystem::path&)>& read) {
     std::mt19937 random(20240229);
@@ -63,7 +63,7 @@ inline void damage(const TestFolder& folder, const std::string& name, const std:
         const bool cut = i < 200;
         std::string bytes = valid;
         if (cut) bytes.resize(below(valid.size()));
-        // Headers are where damage does most: half of the changes go there.
+        // Headers are most sensitive: half of the changes go there.
         for (size_t changes = cut ? 0 : 1 + below(4); changes > 0; --changes)
             bytes[below(below(2) ? valid.size() : std::min<size_t>(valid.size(), 400))] = static_cast<char>(below(256));
         bool refused = false;

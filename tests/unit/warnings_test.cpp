@@ -1,5 +1,4 @@
-// What the loader warns about: dielectrics that mean more than is computed, and scenes that 32 bits hold
-// badly.
+// What the loader warns about: dielectrics that suggest more than is computed, and scenes that exceed the precision of 32 bits.
 #include "scene/warnings.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +27,7 @@ class DielectricWarnings : public testing::Test {
             folder.write("cube_" + material + ".obj", "mtllib all.mtl\nusemtl " + material + "\n" + cube(1));
     }
 
-    // The faces of a cube of 8 further vertices.
+    // The faces of a cube of 8 more vertices.
     static std::string cube(int half_width) {
         const std::string one = std::to_string(half_width);
         std::string text;
@@ -51,7 +50,7 @@ class DielectricWarnings : public testing::Test {
                std::to_string(x) + ", 0, 0]}";
     }
 
-    // The only warning is of this kind, and names these files.
+    // Expects a single warning, of this kind, that names these files.
     static void expect_only(const std::vector<std::string>& warnings, const std::string& kind, const std::string& inner,
                             const std::string& outer) {
         ASSERT_EQ(warnings.size(), 1u) << kind;
@@ -75,7 +74,7 @@ TEST_F(DielectricWarnings, NameAnOpaqueObjectInsideAbsorbingGlass) {
 
 TEST_F(DielectricWarnings, NameAnOpaqueObjectPartlyInsideAbsorbingGlass) {
     expect_only(warnings(entry("teal", 1) + "," + entry("wall", 0.5, 1.2)), reaching, "wall", "teal");
-    // A straw through the glass, and a table into which it has sunk: no corner of either is inside.
+    // A straw through the glass, and a table it has sunk into: no corner of either is inside the other.
     expect_only(warnings(entry("teal", 1) + R"(,{"file": "cube_wall.obj", "scale": [0.1, 5, 0.1]})"), reaching, "wall", "teal");
     expect_only(warnings(entry("teal", 1) + R"(,{"file": "cube_wall.obj", "scale": [5, 1, 5],
                          "translation": [0, -1.9, 0]})"),
@@ -101,7 +100,7 @@ TEST_F(DielectricWarnings, NameGlassThatIsNotClosed) {
     EXPECT_EQ(count(closed.substr(0, closed.rfind("f "))), "4") << "a box without its lid";
     EXPECT_EQ(count(closed.substr(0, closed.rfind("f ")) + "f -7 -3 -1 -5\n"), "4") << "its lid inside out";
     EXPECT_EQ(count(closed.substr(0, closed.rfind("f ")) + "usemtl wall\nf -7 -5 -1 -3\n"), "4") << "of wood";
-    // Each face with corners of its own, and -0 is 0.
+    // Each face with its own corners, and -0 equals 0.
     EXPECT_EQ(count("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -0 0 0\nf 1 3 2\nf 5 2 4\nf 2 3 4\nf 1 4 3\n"), "none");
 }
 
@@ -122,7 +121,7 @@ TEST_F(DielectricWarnings, AreNotForWhatIsComputed) {
     const std::string right_scenes[] = {
         entry("clear", 2) + "," + entry("wall", 1),                            // opaque in clear glass
         entry("wall", 5) + "," + entry("teal", 1),                             // glass in a room
-        entry("teal", 1) + "," + entry("clear", 1, 3),                         // beside each other
+        entry("teal", 1) + "," + entry("clear", 1, 3),                         // side by side
         entry("teal", 2) + "," + entry("clear", 1, 1.5),                       // partly inside
         entry("teal", 1) + "," + entry("clear", 1) + "," + entry("clear", 1),  // in the same place
         entry("wall", 2) + "," + entry("wall", 1),                             // no glass at all
@@ -169,12 +168,12 @@ class PrecisionWarnings : public testing::Test {
 TEST_F(PrecisionWarnings, TellHowFarFromTheOriginASceneIs) {
     EXPECT_TRUE(warnings("").empty());
     EXPECT_TRUE(warnings(R"(, "translation": [1000, 1000, 0])").empty());
-    // 8 · 2^-24 (20000 + 1) over the diagonal √3.
+    // 8 · 2^-24 (20000 + 1) relative to the diagonal √3.
     const auto far = warnings(R"(, "translation": [20000, 0, 0])");
     ASSERT_EQ(far.size(), 1u);
     EXPECT_NE(far.front().find("blur 0.55 % of its size"), std::string::npos) << far.front();
     EXPECT_NE(far.front().find("s.json"), std::string::npos);
-    // What counts is the distance compared with the size.
+    // What counts is the distance relative to the size.
     EXPECT_TRUE(warnings(R"(, "scale": 1000, "translation": [20000, 0, 0])").empty());
     EXPECT_EQ(warnings(R"(, "scale": 1e-5, "translation": [1, 0, 0])").size(), 1u);
 }

@@ -17,7 +17,7 @@ class InsideTest : public ViewerTest {
 };
 
 TEST_F(InsideTest, TheVerdictFollowsTheShader) {
-    // A chapter of its own, so that the sources stay as they are.
+    // A private chapter, so that the sources stay untouched.
     const fs::path shader = folder_.path() / "path_trace.glsl";
     const std::string good = text_of(project_folder() / "chapters" / chapter_.name / "path_trace.glsl");
     const std::string mistaken_line = "throughput /= survival_probability;";
@@ -31,7 +31,7 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
 
     EXPECT_EQ(session().verdict_state(), VerdictState::agrees);
 
-    // What is rendered while the shader does not compile is the one before.
+    // While the shader does not compile, the previous one is rendered.
     write(shader, "x" + good);
     wait_until("an error", [&] { return !session().message().empty(); });
     EXPECT_EQ(session().verdict_state(), VerdictState::outdated);
@@ -158,7 +158,7 @@ TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage_all) {
     EXPECT_LT(std::abs(difference->z()), 5) << difference->value;
     ASSERT_TRUE(comparison.speedup(session()));
 
-    // The second follows the camera, and equal time means equal time.
+    // The second render follows the camera, and equal time means equal time.
     comparison.equal = Equal::time;
     CameraPose pose = session().camera();
     pose.position.z += 1;
@@ -185,10 +185,10 @@ TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
     wait_until("both", [&] { return viewer_->comparison().is_active(); });
 }
 
-// At the sizes that screens have.
+// At common screen sizes.
 TEST_F(InsideTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
     open(options_with_reference(), {900, 700});
-    // A point of the picture, 0 to 1, as the pointer has it.
+    // A point of the picture, 0 to 1, in pointer coordinates.
     const auto point_of_picture = [&](const vec2& position) {
         const Rectangle where = viewer_->picture_rectangle();
         return vec2(where.corner) + position * vec2(where.size - 1);
@@ -202,7 +202,7 @@ TEST_F(InsideTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
         wait_until("resized", [&] { return viewer_->screen().size() == size; });
         run_frames(2);
     };
-    resize({320, 240});  // little room, but the window works
+    resize({320, 240});  // cramped, but the window works
     for (const uvec2 size : {uvec2(900, 700), uvec2(1280, 800)}) {
         resize(size);
         take_screenshot("viewer_path_" + std::to_string(size.x));

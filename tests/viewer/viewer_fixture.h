@@ -1,4 +1,4 @@
-// Drives the window of a chapter as a user would: under a virtual display in continuous integration.
+// Operates a chapter's window as a user would: on a virtual display in continuous integration.
 #pragma once
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -52,7 +52,7 @@ class ViewerTest : public testing::Test {
         return options;
     }
 
-    // Of the same size and path length as a reference.
+    // With the size and path length of a reference.
     Options options_with_reference() const {
         Options options = make_options();
         options.image.width = options.image.height = 128;
@@ -62,7 +62,7 @@ class ViewerTest : public testing::Test {
 
     void open(const Options& options, uvec2 window_size = {900, 640}) {
         window_ = std::make_unique<Window>("test", window_size);
-        // A virtual display may be out of a GPU's reach, but not of the CPU's.
+        // A virtual display may be inaccessible to a GPU, but not to the CPU.
         for (const char* choice : {"", "llvmpipe"}) {
             device_ = std::make_unique<Device>(
                 DeviceOptions{.choice = choice,
@@ -86,7 +86,7 @@ class ViewerTest : public testing::Test {
         for (int i = 0; i < count; ++i) ASSERT_TRUE(viewer_->frame());
     }
 
-    // Runs frames until something is so; fails if that takes far too long.
+    // Runs frames until a condition holds; fails if that takes far too long.
     void wait_until(const char* what, const std::function<bool()>& is_so) {
         const auto start = Clock::now();
         while (!is_so()) {
@@ -100,7 +100,7 @@ class ViewerTest : public testing::Test {
         wait_until("built", [&] { return !session().is_building(); });
     }
 
-    // Events as GLFW would report them, through whatever callbacks are installed.
+    // Events as GLFW would report them, through the installed callbacks.
     void press(int key, bool is_down = true) {
         GLFWwindow* window = window_->handle();
         const auto callback = glfwSetKeyCallback(window, nullptr);
@@ -127,8 +127,8 @@ class ViewerTest : public testing::Test {
         glfwSetMouseButtonCallback(window, callback);
         callback(window, GLFW_MOUSE_BUTTON_LEFT, is_down ? GLFW_PRESS : GLFW_RELEASE, 0);
     }
-    // GLFW reports no motion that a program asks for, but Dear ImGui from 1.87 on is told of motions; before,
-    // it asked for the position in each frame.
+    // GLFW reports no motion caused by a program, but Dear ImGui from 1.87 on relies on such reports; before, it polled the
+    // position every frame.
     void move_pointer(float x, float y) {
         GLFWwindow* window = window_->handle();
         glfwSetCursorPos(window, x, y);
@@ -136,7 +136,7 @@ class ViewerTest : public testing::Test {
         glfwSetCursorPosCallback(window, callback);
         if (callback) callback(window, x, y);
     }
-    // Moves the pointer and waits until the window knows.
+    // Moves the pointer and waits until the window has noticed.
     void point_at(float x, float y) {
         move_pointer(x, y);
         wait_until("pointed at", [&] { return std::abs(ImGui::GetIO().MousePos.x - x) < 1.5f; });
@@ -150,8 +150,8 @@ class ViewerTest : public testing::Test {
         run_frames(2);
     }
 
-    // Moves the pointer with the button held down. GLFW reports a button once, but Dear ImGui before 1.87
-    // asks it for the state in each frame.
+    // Moves the pointer with the button held down. GLFW reports a button once, but Dear ImGui before 1.87 polls its state every
+    // frame.
     void drag(const vec2& from, const vec2& to) {
         point_at(from.x, from.y);
         for (int step = 0; step <= 10; ++step) {
@@ -170,7 +170,7 @@ class ViewerTest : public testing::Test {
         return read_film(file).image;
     }
 
-    // Keeps what the window shows as a picture.
+    // Saves the window's contents as a picture.
     void take_screenshot(const std::string& name) {
         viewer_->screen().capture_next();
         run_frames(1);

@@ -1,4 +1,4 @@
-// The window: what it shows, saves and does on input.
+// The window: what it shows, saves and does in response to input.
 #include <thread>
 
 #include "error.h"
@@ -13,7 +13,7 @@ TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
     options.appearance.sample_count = 24;
     options.samples.seed = 7;
     open(options);
-    // Nothing that happens on the way may matter in the end.
+    // Nothing that happens in between may matter in the end.
     glfwSetWindowSize(window_->handle(), 1000, 500);
     hold(GLFW_KEY_W, 3);
     session().change(options);
@@ -38,7 +38,7 @@ TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
 
 TEST_F(ViewerTest, KeysMoveTheCameraAndRestartWithinAFrame) {
     Options options = make_options();
-    options.image.width = options.image.height = 512;  // too large to be finished while the camera moves
+    options.image.width = options.image.height = 512;  // too large to finish while the camera moves
     open(options);
     wait_until("samples", [&] { return session().samples() > 0.2; });
     const vec3 before = session().camera().position;
@@ -64,7 +64,7 @@ TEST_F(ViewerTest, DraggingThePictureTurnsTheCameraButDraggingTheControlsDoesNot
     drag({600, 300}, {700, 300});
     const vec3 turned = session().camera().target;
     EXPECT_GT(glm::distance(turned, before), 0.1f);
-    drag({100, 20}, {250, 20});  // the title of the controls
+    drag({100, 20}, {250, 20});  // the title bar of the controls
     EXPECT_EQ(session().camera().target, turned);
 }
 
@@ -72,7 +72,7 @@ TEST_F(ViewerTest, TypingIntoAFieldDoesNotMoveTheCamera) {
     open(make_options());
     const CameraPose before = session().camera();
     EXPECT_FALSE(ImGui::GetIO().WantTextInput) << "no field has the focus at first";
-    // The field moves while what stands above it appears.
+    // The field moves as long as controls above it appear.
     for (int attempt = 0; attempt < 5 && !ImGui::GetIO().WantTextInput; ++attempt) {
         const vec2 field = viewer_->controls().seed_field();
         click(field.x, field.y);
@@ -157,7 +157,7 @@ TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
 }
 
 TEST_F(ViewerTest, AChangedShaderIsShownAndABrokenOneReported) {
-    // A chapter of its own, so that the sources stay as they are.
+    // A private chapter, so that the sources stay untouched.
     const fs::path shader = folder_.path() / "path_trace.glsl";
     chapter_ = {.name = folder_.path().string(), .title = "Reload"};
     const auto constant = [](const char* colour) {
@@ -191,13 +191,13 @@ TEST_F(ViewerTest, AChangedShaderIsShownAndABrokenOneReported) {
     write(folder_.path() / "colour.glsl", "const vec3 included = vec3(0.5);\n");
     wait_until("the changed include", [&] { return shows(0.5, 0.5, 0.5); });
 
-    // A new file that is written after the line that includes it.
+    // A new file, written after the line that includes it.
     write(shader, "#include \"new.glsl\"\n" + constant("added"));
     wait_until("an error", [&] { return !session().message().empty(); });
     write(folder_.path() / "new.glsl", "const vec3 added = vec3(0.25);\n");
     wait_until("the new include", [&] { return shows(0.25, 0.25, 0.25); });
 
-    // Writing the text that runs already back ends the complaint.
+    // Restoring the text that is already running ends the complaint.
     const std::string good = text_of(shader);
     write(shader, "broken");
     wait_until("an error", [&] { return !session().message().empty(); });
@@ -223,12 +223,12 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken_all) {
 
     const auto press_tab = [&] { press(GLFW_KEY_TAB), press(GLFW_KEY_TAB, false), run_frames(1); };
     const auto expect_picture = [&] {
-        press_tab();  // nothing lies on the picture
+        press_tab();  // nothing covers the picture
         take_screenshot("window_without_controls");
         const Texture& shown = viewer_->screen().captured();
         const Texture picture = to_display(saved_film("picture.exr"), DisplayTransform::exposure, 0);
         const Rectangle where = viewer_->picture_rectangle();
-        ASSERT_GT(where.size.x, 256);  // pixels are repeated
+        ASSERT_GT(where.size.x, 256);  // so pixels are enlarged
         size_t different = 0;
         for (int y = 0; y < where.size.y; ++y)
             for (int x = 0; x < where.size.x; ++x) {
@@ -239,7 +239,7 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken_all) {
                 for (size_t channel = 0; channel < 3; ++channel)
                     different += std::abs(int{shown.pixels[to + channel]} - int{picture.pixels[from + channel]}) > 1;
             }
-        // Where a pixel ends is a matter of rounding.
+        // Where exactly an enlarged pixel ends is a matter of rounding.
         EXPECT_LT(different, picture.pixels.size() / 100);
         press_tab();
     };
@@ -254,7 +254,7 @@ TEST_F(ViewerTest, ShowsThePictureAlsoWhileTheShaderIsBroken_all) {
     take_screenshot("window_broken_shader");
     expect_picture();
 
-    // Repaired, but not as it was: it has to be compiled.
+    // Repaired, but differently from before: it must be compiled.
     const auto start = Clock::now();
     const std::string division = "/= survival_probability";
     ASSERT_NE(text.find(division), std::string::npos);

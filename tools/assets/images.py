@@ -5,7 +5,7 @@ from colorsys import hsv_to_rgb
 
 from assets.shapes import add, cross, dot, normalize, scale
 
-# Digits of three columns and five rows, row by row from the top.
+# 3 x 5 pixel digits, row by row from the top.
 DIGITS = ["111101101101111", "010110010010111", "111001111100111", "111001111001111", "101101111001001",
           "111100111001111", "111100111101111", "111001001001001", "111101111101111", "111101111001111"]
 
@@ -56,7 +56,7 @@ def sky(d):
 
 
 def clear_sky(d):
-    """A clear sky with a small sun, 10^5 times as bright: its few texels bring half of the light."""
+    """A clear sky with a small sun, 10^5 times as bright: its few texels contribute half of the light."""
     up = max(0, d[1])**0.5
     above = tuple((1 - up) * horizon + up * zenith for horizon, zenith in zip((0.5, 0.6, 0.72), (0.08, 0.2, 0.55)))
     below = (0.2, 0.18, 0.15)

@@ -66,7 +66,8 @@ def encode_png(width, height, pixel):
 
 
 def encode_hdr(width, height, radiance):
-    """Radiance's RGBE format, equirectangular: the centre of the image is towards -Z, its right half towards +X, its top +Y."""
+    """Radiance's RGBE format, equirectangular: the centre of the image points towards -Z, its right half towards +X, its top
+    +Y."""
     content = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
     for y in range(height):
         pixels = []
@@ -90,7 +91,8 @@ def make_files():
 
 
 def is_same(file, content):
-    """Whether a file has this content. PNG files are compared by their pixels, since compressed bytes depend on zlib's version."""
+    """Whether a file has this content. PNG files are compared by their pixels, since the compressed bytes depend on zlib's
+    version."""
     if file.suffix == ".png" and file.is_file():
         return np.array_equal(*(np.asarray(Image.open(stream).convert("RGB")) for stream in (file, io.BytesIO(content))))
     return file.is_file() and file.read_bytes() == content

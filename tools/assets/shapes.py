@@ -19,15 +19,15 @@ def direction(theta, phi):
 
 @dataclass
 class Part:
-    """Triangles of one material. Normals, if any, go with positions; texture coordinates have triangles of
-    their own, because a texture has a seam where the surface has none."""
+    """Triangles of one material. Normals, if any, correspond to positions; texture coordinates have their own triangles, because
+    a texture has a seam where the surface has none."""
     material: str
     positions: list = field(default_factory=list)
     triangles: list = field(default_factory=list)
     normals: list = field(default_factory=list)
     texture_coordinates: list = field(default_factory=list)
     texture_triangles: list = field(default_factory=list)
-    times_around: int = 0  # of the texture; 0 where there is none
+    times_around: int = 0  # of the texture; 0 without one
 
 
 def globe(material, columns, rows, point):
@@ -84,7 +84,7 @@ def torus(material):
 
 
 def row_of_balls(materials, radius, distance, z):
-    """Balls of these materials from left to right on the floor."""
+    """A row of balls of these materials, from left to right, on the floor."""
     parts = [sphere(material, columns=48) for material in materials]
     for i, part in enumerate(parts):
         centre = (distance * (i - (len(parts) - 1) / 2), radius, z)
@@ -93,7 +93,7 @@ def row_of_balls(materials, radius, distance, z):
 
 
 def smooth(part):
-    """The same part with normals: the mean of the triangles at a vertex, weighted by their angles."""
+    """The same part with vertex normals: the mean of the adjacent triangles' normals, weighted by their angles."""
     sums = [(0, 0, 0)] * len(part.positions)
     for triangle in part.triangles:
         corners = [part.positions[v] for v in triangle]

@@ -12,9 +12,9 @@ from book.pages import Page, source_page
 from project import CHAPTERS, ROOT, Parser, UserError, read_json, run_program
 
 HERE = Path(__file__).parent
-KATEX = Path("/usr/share/javascript/katex")  # of Debian's libjs-katex
+KATEX = Path("/usr/share/javascript/katex")  # from Debian's libjs-katex
 SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.js"
-SECTIONS = {  # of the navigation; pages that do not exist are left out
+SECTIONS = {  # of the navigation; missing pages are left out
     "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
     "Explore": ["docs/window.md", "docs/debugging.md", "docs/scenes.md"],
@@ -33,7 +33,7 @@ def title_of(path):
 
 
 def navigation(is_teacher):
-    """[title, paths] of each section; the first has no title. Pages of docs/ in no section come before those for teachers."""
+    """[title, paths] of each section; the first has no title. Pages of docs/ in no section precede those for teachers."""
     sections = {"": START} | {title: list(paths) for title, paths in SECTIONS.items()}
     known = {path for paths in sections.values() for path in paths}
     others = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").glob("*.md"))]
@@ -49,8 +49,8 @@ def write(folder, path, text):
 
 
 def collect(folder, sections, is_teacher):
-    """Writes the pages, the files that they link to, and their pictures, at their paths in the project. Returns the pages, and the
-    names of the sources in the site."""
+    """Writes the pages, the files they link to, and their pictures, at the paths they have in the project. Returns the pages, and
+    the names of the sources on the site."""
     def is_included(path):
         return (ROOT / path).is_file() and (is_teacher or "solutions" not in Path(path).parts)
 
@@ -75,7 +75,7 @@ def collect(folder, sections, is_teacher):
 
 
 def write_settings(file, folder, sections):
-    """The settings of MkDocs, with the folder's pages and their order."""
+    """Writes MkDocs' settings, with the folder's pages and their order."""
     nav = []
     for title, paths in sections:
         entries = [{"Start" if path == START[0] else title_of(path): path} for path in paths]
@@ -86,8 +86,8 @@ def write_settings(file, folder, sections):
 
 
 def finish(site, sources):
-    """Turns the search index into a script, which pages from the disk may load, and removes files that only servers need. Version 8
-    of the theme (Debian 12) looks for the index in __search, later ones in __index."""
+    """Turns the search index into a script, which pages on disk may load, and removes files that only servers need. Version 8 of
+    the theme (Debian 12) looks for the index in __search, later ones in __index."""
     index = read_json(site / SEARCH_INDEX)
     index["docs"] = [entry for entry in index["docs"] if entry["location"].split("#")[0] not in sources]
     write(site, SEARCH_SCRIPT, f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index)}};\n")

@@ -33,7 +33,7 @@ def excerpt(text, first, last, name):
 
 
 def fill(text, page):
-    """The text of a page with its blocks as the sources are now. `page` is for messages."""
+    """The text of a page with its blocks updated from the sources. `page` is for messages."""
     def filled(block):
         marker, file, first, last, fence, _, end = block.groups()
         if not (ROOT / file).is_file():

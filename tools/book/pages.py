@@ -19,11 +19,11 @@ class Page:
     """A page of the book. `path` is relative to the project."""
 
     def __init__(self, path, is_included):
-        """is_included(path) tells whether a page of this path may be linked."""
+        """is_included(path) tells whether a page with this path may be linked."""
         self.path, self.is_included = Path(path), is_included
         self.linked = []  # pages and sources
         text = re.sub(r"<!-- .*? -->\n?|^\[!\[.*\]\(\.\./\.\./actions/.*\n", "", (ROOT / path).read_text(encoding="utf-8"), flags=re.MULTILINE)  # no badges
-        text = text.replace("<details>", '<details markdown="1">')  # else MkDocs leaves its text as it is
+        text = text.replace("<details>", '<details markdown="1">')  # or MkDocs would leave its text unformatted
         self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
         self.text = self.with_comparison(with_lists(LINK.sub(self.link, text)))
 
@@ -31,7 +31,7 @@ class Page:
         return Path(os.path.normpath(self.path.parent / target))
 
     def link(self, match):
-        """A link to a page or to a source, which becomes a page; other links become their text."""
+        """A link to a page or to a source, which becomes a page; any other link becomes plain text."""
         code, text, target = match.groups()
         name, hash_sign, anchor = (target or "").partition("#")
         if code or not name or "://" in target:
@@ -48,7 +48,7 @@ class Page:
         return f"[{text}]({name}{'' if path.suffix == '.md' else '.md'}{hash_sign}{anchor})"
 
     def with_comparison(self, text):
-        """If the chapter before renders the same scene, replaces the chapter's picture by a slider between both."""
+        """If the previous chapter renders the same scene, replaces the chapter's picture by a slider that compares both."""
         names = list(CHAPTERS.values())
         index = names.index(self.path.parent.name) if self.path.parent.name in names else 0
         before, now = (Path(f"docs/pictures/{names[i]}.png") for i in (max(index - 1, 0), index))
@@ -65,7 +65,7 @@ class Page:
 
 
 def is_source(path):
-    """Whether this is a text file for readers. MkDocs leaves out hidden files."""
+    """Whether this is a text file worth reading. MkDocs omits hidden files."""
     file = ROOT / path
     if any(part.startswith(".") for part in path.parts):
         return False
@@ -82,7 +82,7 @@ def source_page(path):
 
 
 def with_lists(text):
-    """Indents the content of list items by four spaces, and puts an empty line before a list and after an item of several
+    """Indents the content of list items by four spaces, and inserts an empty line before a list and after an item of several
     paragraphs. MkDocs needs both, GitHub neither."""
     lines, width, is_code, has_paragraphs, before = [], 0, False, False, ""
     for line in text.split("\n"):

@@ -8,7 +8,7 @@ from pathlib import Path
 from statistics import median
 
 MEDIAN_GOAL, LONGEST_GOAL = 17, 40  # words per sentence
-LABEL = 2  # a sentence with at most so many words is a label, as "Fill in."
+LABEL = 2  # a sentence of at most this many words is a label, such as "Fill in."
 NO_TEXT = [r"^( *)(```|~~~)(?s:.*?)^\1\2 *$", r"<!--(?s:.*?)-->", r"^ *\$\$(?s:.*?)\$\$ *$", r"^#.*$", r"^ *\|.*$",
            r"^!\[.*?\]\(.*?\)$", r"(?<=\n\n)(?: {4}.*\n|\n(?= {4}))+"]
 ONE_WORD = [r"`[^`]+`", r"\$[^$\n]+\$"]
@@ -34,12 +34,12 @@ def count_words(sentence):
 
 
 def length(text):
-    """The words of all sentences of a page."""
+    """The number of words in all sentences of a page."""
     return sum(map(count_words, sentences(text)))
 
 
 def measure(text):
-    """(median of the words per sentence, [(words, sentence) above the goal]) of a page; the median of no sentences is 0."""
+    """(median of the words per sentence, [(words, sentence) above the goal]) of a page; 0 for a page without sentences."""
     counted = [(count_words(sentence), sentence) for sentence in sentences(text)]
     long = sorted((pair for pair in counted if pair[0] > LONGEST_GOAL), reverse=True)
     return median([words for words, _ in counted] or [0]), long

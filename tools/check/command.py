@@ -58,7 +58,7 @@ def parse():
 
 
 def refuse(options):
-    """UserError where a check cannot begin."""
+    """Raises UserError if a check cannot start."""
     if options.chapter not in SCENES:
         raise UserError(f"there is no chapter {options.chapter} to be checked: ./lab check N FILE grades a file as chapter N's")
     if options.samples and DESCRIPTIONS[options.chapter].get("low_discrepancy"):
@@ -68,8 +68,8 @@ def refuse(options):
 
 
 def check(options, file, picture=None):
-    """The result of a check; UserError where there is none. What is not correct has a picture, others only where `picture` is
-    the file for it."""
+    """Returns the result of a check; raises UserError if there is none. Incorrect shaders always get a picture, others only if
+    `picture` is a file for it."""
     if not file.is_file():
         raise UserError(f"{printable(file)}: no such file")
     watch = (lambda cases: None) if options.is_quiet else tell_early
@@ -85,30 +85,30 @@ def check(options, file, picture=None):
             for mistake in result["diagnosis"]["mistakes"]:
                 del mistake["name"]
     if picture or not is_correct:
-        from check.pictures import draw  # only here: Matplotlib takes longer to begin than all other modules together
+        from check.pictures import draw  # imported late: Matplotlib takes longer to load than everything else
         name = f"check_{options.chapter}.png"
         try:
             path = draw(result, pictures, picture or ROOT / "output" / name)
-        except OSError:  # a checkout that is read-only, for instance
+        except OSError:  # in a read-only checkout, for instance
             path = draw(result, pictures, Path(tempfile.mkdtemp()) / name)
         result["picture"] = relative(path)
     return result
 
 
 def own_file(chapter):
-    """The chapter's shader in which something is still to be written, or else its estimator."""
+    """The chapter's shader that still has a TODO, or else its estimator."""
     folder = ROOT / "chapters" / CHAPTERS[chapter]
     return next(filter(find_todo, sorted(folder.glob("*.glsl"))), folder / "path_trace.glsl")
 
 
 def find_todo(file):
-    """Number of the first line that is still to be written, or None."""
+    """Number of the first line with a TODO, or None."""
     lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
     return next((number for number, line in enumerate(lines, 1) if "TODO" in line), None)
 
 
 def report(options, result):
-    """Prints a result, or {"error": …} where there is none, in the form that was asked for."""
+    """Prints a result, or {"error": …} if there is none, in the requested form."""
     if options.form == "json":
         print(json.dumps(result, indent=1))
     elif options.form == "gradescope":
@@ -129,14 +129,14 @@ def main():
     try:
         options = parse()
         refuse(options)
-        if options.backend != "native":  # a submission's shader stays in the driver, unless asked for
+        if options.backend != "native":  # a submission's shader stays in the driver, unless requested otherwise
             os.environ["LAB_WITHOUT_NATIVE"] = "1"
         file = options.file or own_file(options.chapter)
         options.chapter = original(options.chapter)
         if options.folder:
             sys.exit(grade_all(options, check))
         result = check(options, file)
-    except SystemExit as end:  # of the parser
+    except SystemExit as end:  # by the parser
         if isinstance(end.code, str):
             print(end.code, file=sys.stderr)
             sys.exit(UNGRADED)

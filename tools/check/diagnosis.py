@@ -14,17 +14,17 @@ from check.facts import Fact, common_value, constant, fact, number, readings
 from check.grading import DESCRIPTIONS, knowledge_file, make_tree
 from project import CHAPTERS, ROOT, UserError, read_json
 
-# Another student's shader has the same mistake but not quite the same numbers: parts of them, and the least.
+# Another student's shader has the same mistake but not quite the same numbers: relative tolerance, and its minimum.
 LOOSENESS, LEAST = 0.03, 0.01
-FITS, EXCLUDED = 3.5, 5.0  # standard errors: what fits, and what is so far from it that it is another mistake
+FITS, EXCLUDED = 3.5, 5.0  # standard errors: within the first it fits, beyond the second it is a different mistake
 NOISE_LOOSENESS, RAYS_LOOSENESS = 0.25, 0.08  # of their logarithms
 MOST_NAMES = 2
 FIRST_SEED, REPEATS = 7001, 3
-PATIENCE = 15.0  # seconds for the picture of a point, of which an idle core takes a tenth of one
+PATIENCE = 15.0  # seconds per point's picture, which takes an idle core a tenth of a second
 
 
 def known_sights(entry):
-    """What the chapter's own shader shows, a list of Sight, from lists in knowledge.json."""
+    """What the chapter's own shader shows, as a list of Sight, from lists in knowledge.json."""
     return [Sight(*values, typical=values[0]) for values in zip(*(entry[key] for key in ("mean", "error", "noise", "noise_error", "rays")))]
 
 
@@ -33,12 +33,12 @@ def numbers(text):
 
 
 def repeats_of(chapter):
-    """Pictures of each point: where the samples of a pixel depend on each other, those of pixels may do so, too."""
+    """Number of pictures per point: if the samples of a pixel are correlated, those of different pixels may be, too."""
     return REPEATS if DESCRIPTIONS[chapter].get("low_discrepancy") else 1
 
 
 def is_called_for(experiment, facts):
-    """Whether what it asks for is known, and so."""
+    """Whether the facts that its condition asks for are known and as required."""
     return all(name not in facts or facts[name].is_right == is_right for name, is_right in experiment.when.items())
 
 
@@ -58,7 +58,7 @@ def look_at(program, points, settings, seed, pool, repeats, expected):
 
 
 def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIRST_SEED):
-    """Name -> Fact, of the experiments of a chapter, and name -> list of Sight."""
+    """Name -> Fact and name -> list of Sight, for the experiments of a chapter."""
     facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
     with ThreadPoolExecutor(JOBS) as pool:
         for name, experiment in experiments_of(chapter).items():
@@ -67,15 +67,15 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
             try:
                 sights[name] = look_at(program, experiment.points, settings, seed, pool, repeats_of(chapter), known_sights(expected[name]))
                 facts[name] = fact(experiment, sights[name], known_sights(expected[name]))
-            except UserError as error:  # an endless loop, for instance, that only this scene comes to
+            except UserError as error:  # for example an endless loop that only this scene triggers
                 facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {error}")
     return facts, sights
 
 
 # ---------------------------------------------------------------------------------------------- names
 def distance(shown, facts):
-    """How far what a mistake of the catalogue shows (name of an experiment -> text) is from the facts, in standard errors at the point
-    that contradicts it most."""
+    """How far what a mistake of the catalogue shows (name of an experiment -> text) is from the facts, in standard errors at the
+    point that contradicts it most."""
     far = 0.0 if all(seen.readings for seen in facts.values()) else math.inf
     for name, seen in facts.items():
         for reading, known in zip(seen.readings, numbers(shown[name]) if name in shown else [r.expected for r in seen.readings]):
@@ -85,7 +85,7 @@ def distance(shown, facts):
 
 
 def noise_distance(entry, ratios):
-    """The same of noise and rays, as multiples of those of the chapter's own shader."""
+    """The same for noise and rays, as multiples of those of the chapter's own shader."""
     far = 0.0
     for kind, looseness in (("noise", NOISE_LOOSENESS), ("rays", RAYS_LOOSENESS)):
         for name, seen in ratios[kind].items():
@@ -95,7 +95,7 @@ def noise_distance(entry, ratios):
 
 
 def ratios_of(sights, expected):
-    """Noise and rays of what was seen, as multiples of the chapter's own, with errors; where it has none, 1."""
+    """Noise and rays of what was seen, as multiples of the chapter's own, with errors; 1 where it has none."""
     found = {"noise": {}, "rays": {}}
     for name, seen in sights.items():
         pairs = list(zip(seen, known_sights(expected[name])))
@@ -106,8 +106,8 @@ def ratios_of(sights, expected):
 
 
 def names_of(facts, sights, known, expected):
-    """The names of the mistakes of the catalogue that the facts leave: those that fit and those that are not far enough away to be
-    excluded, the nearest first; empty where none fits."""
+    """The names of the catalogue's mistakes that the facts leave: those that fit and those not far enough away to be excluded,
+    nearest first; empty if none fits."""
     far = {name: distance(entry["shows"], facts) for name, entry in known.items() if "shows" in entry}
     if all(seen.is_right for seen in facts.values()):
         ratios = ratios_of(sights, expected)
@@ -118,7 +118,8 @@ def names_of(facts, sights, known, expected):
 
 # ---------------------------------------------------------------------------------------------- words
 def sentences(facts):
-    """What is wrong, in the order of the experiments. What is wrong by the same factor in all its points is said together."""
+    """What is wrong, in the order of the experiments. Experiments that are wrong by the same factor at all points are reported
+    together."""
     groups, others = [], []
     for name, seen in facts.items():
         lit = [reading for reading in seen.readings if not reading.is_dark]
@@ -144,14 +145,14 @@ def sentences(facts):
 
 
 def right_ones(facts):
-    """What is right: subjects, or what does not matter to one of which not everything is."""
+    """What is right: subjects, or if a subject is only partly right, what it does not depend on."""
     not_right = {seen.experiment.subject for seen in facts.values() if not seen.is_surely_right}
     right = [seen.experiment for seen in facts.values() if seen.is_surely_right]
     return list(dict.fromkeys(f"{each.subject}, whatever {each.varies}" if each.subject in not_right else each.subject for each in right))
 
 
 def noise_sentences(facts, sights, expected):
-    """Where a shader has more noise or traces more rays than the chapter's own."""
+    """Where a shader is noisier or traces more rays than the chapter's own."""
     told = []
     for kind, words in (("noise", "the variance of"), ("rays", "the rays of")):
         for name, seen in ratios_of(sights, expected)[kind].items():
@@ -163,7 +164,7 @@ def noise_sentences(facts, sights, expected):
 
 
 def next_step(chapter, facts):
-    """What the student can do to see the first thing that is wrong: the scene's file, which is written, and a command."""
+    """How the student can see the first wrong thing: writes a scene file and returns it with a command."""
     seen = next((seen for seen in facts.values() if not seen.is_right and seen.readings), None)
     if not seen:
         return None
@@ -172,14 +173,14 @@ def next_step(chapter, facts):
     try:
         folder.mkdir(parents=True, exist_ok=True)
         scene = write_scene(point.scene, folder, seen.experiment.name)
-    except OSError:  # a checkout that is read-only, for instance
+    except OSError:  # in a read-only checkout, for instance
         return None
     return f"./lab run {chapter} {scene.relative_to(ROOT)} {point.options}".rstrip()
 
 
 def reason(chapter, facts, sights, known, is_correct):
-    """What facts say: sentences of what is wrong, subjects that are right, mistakes of the catalogue that fit, and a command that shows
-    the first of the facts."""
+    """What the facts say: sentences about what is wrong, subjects that are right, mistakes of the catalogue that fit, and a
+    command that shows the first of the facts."""
     told = sentences(facts) or ([] if is_correct else noise_sentences(facts, sights, known["experiments"]))
     names = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
     return {"facts": told, "right": right_ones(facts), "next": next_step(chapter, facts),
@@ -190,7 +191,7 @@ def reason(chapter, facts, sights, known, is_correct):
 
 
 def diagnose(chapter, file, settings, shader=None, is_correct=False):
-    """What experiments show of a shader, see reason(). Of one whose pictures are correct only those run that decide as well."""
+    """What experiments show about a shader, see reason(). If its pictures are correct, only those run that can decide as well."""
     known, started = {"experiments": {}} | read_json(knowledge_file(chapter)), time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         program, _ = make_tree(CHAPTERS[chapter], file, Path(folder), shader)

@@ -16,10 +16,10 @@ from references.images import read_rgb
 from report.measurement import new_case, run_case
 
 EXPERIMENTS = "experiments.json"  # in the chapters' folders
-OF_THE_SCENE = ("specular", "multiple_scattering")  # keys of a scene's file that an experiment may have, too
-SIZE = 32  # pixels in a row and a column
+OF_THE_SCENE = ("specular", "multiple_scattering")  # keys of a scene file that an experiment may also have
+SIZE = 32  # pixels per row and per column
 CAMERA = {"from": [0.0, 1.2, 1.2], "to": [0.0, 0.0, 0.0], "fov": 3.0}
-BLOCKS = 16  # of pixels: their spread tells the error of a variance
+BLOCKS = 16  # of pixels: their spread gives the error of a variance
 JOBS = 2
 
 
@@ -28,21 +28,21 @@ class Point:
     """One scene of an experiment, and how it is rendered."""
     scene: dict
     at: str  # what distinguishes it, in words
-    x: float = None  # the same as a number, if it is one
+    x: float = None  # the same as a number, if there is one
     options: str = ""
     samples: int = 64
-    channel: int = None  # of the colours, or all together
+    channel: int = None  # of the colours, or all of them
 
 
 @dataclass
 class Experiment:
     name: str
-    subject: str  # what light it shows
+    subject: str  # the light that it shows
     varies: str  # what distinguishes its points
     points: list
     quantity: dict = field(default_factory=dict)  # functions of x that a law may follow, in words
     when: dict = field(default_factory=dict)  # name of another experiment -> whether it must have been right
-    decides: bool = False  # whether it runs for shaders, too, in whose pictures nothing is wrong
+    decides: bool = False  # whether it also runs for shaders whose pictures look right
 
 
 @dataclass
@@ -53,12 +53,12 @@ class Sight:
     noise: float  # variance of a single sample
     noise_error: float
     rays: float  # of a sample
-    typical: float  # the median of the pixels
+    typical: float  # median of the pixels
     invalid: int = 0  # samples that are infinite or not a number
 
 
 def merged(base, change):
-    """A dictionary with what `change` says otherwise, at any depth; None takes an entry away."""
+    """A dictionary with the changes of `change`, at any depth; None removes an entry."""
     result = dict(base)
     for key, value in change.items():
         result[key] = merged(result.get(key, {}), value) if isinstance(value, dict) else value
@@ -66,13 +66,13 @@ def merged(base, change):
 
 
 def experiment_files():
-    """Chapter -> its experiments.json, of chapters that have one."""
+    """Chapter -> its experiments.json, for chapters that have one."""
     files = {chapter: ROOT / "chapters" / CHAPTERS[chapter] / EXPERIMENTS for chapter in course()}
     return {chapter: read_json(file) for chapter, file in files.items() if file.exists()}
 
 
 def experiments_of(chapter):
-    """Name -> Experiment, of those that a chapter uses, in its order. An experiment is described in one chapter only."""
+    """Name -> Experiment, for those that a chapter uses, in its order. Each experiment is described in one chapter only."""
     files = experiment_files()
     if chapter not in files:
         return {}
@@ -90,7 +90,7 @@ def experiment(name, says, samples):
 
 # ---------------------------------------------------------------------------------------------- scenes
 def basis(normal):
-    """Two unit vectors that with a normal make a right-handed frame."""
+    """Two unit vectors that form a right-handed frame with a normal."""
     normal = np.array(normal, float) / np.linalg.norm(normal)
     tangent = np.cross([0.0, 0.0, 1.0] if abs(normal[2]) < 0.9 else [1.0, 0.0, 0.0], normal)
     tangent /= np.linalg.norm(tangent)
@@ -98,7 +98,8 @@ def basis(normal):
 
 
 def plate(says):
-    """The corners of a rectangle. Given by angles (polar, azimuth in degrees) and a distance, it faces the origin, or is turned."""
+    """The corners of a rectangle. If given by angles (polar, azimuth in degrees) and a distance, it faces the origin, unless it
+    is turned."""
     if "polar" in says:
         polar, azimuth = math.radians(says["polar"]), math.radians(says.get("azimuth", 0.0))
         away = np.array([math.sin(polar) * math.cos(azimuth), math.cos(polar), math.sin(polar) * math.sin(azimuth)])
@@ -113,7 +114,7 @@ def plate(says):
 
 
 def box(says):
-    """The six faces of a box, turned about the z-axis by so many degrees."""
+    """The six faces of a box, rotated about the z-axis by an angle in degrees."""
     size, centre, angle = np.array(says["box"], float), np.array(says.get("centre", [0, 0, 0]), float), math.radians(says.get("turn", 0.0))
     turn = np.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
     faces = []
@@ -126,7 +127,7 @@ def box(says):
 
 
 def ball(says, rows=8, columns=16):
-    """The faces of a ball that is seen from within."""
+    """The faces of a ball seen from inside."""
     def corner(row, column):
         theta, phi = math.pi * row / rows, 2 * math.pi * column / columns
         return says["ball"] * np.array([math.sin(theta) * math.cos(phi), math.cos(theta), math.sin(theta) * math.sin(phi)])
@@ -181,7 +182,7 @@ def write_scene(scene, folder, name):
 
 # ---------------------------------------------------------------------------------------------- measuring
 def look(image, report, samples, channel=None):
-    """What a picture shows of a shader. Where a few bright pixels decide the variance, its upper bound counts."""
+    """What a picture shows of a shader. If a few bright pixels dominate the variance, its upper bound is used."""
     pixels = (image.mean(axis=2) if channel is None else image[..., channel]).ravel()
     variance = float(pixels.var(ddof=1))
     spread = float(np.std([block.var(ddof=1) for block in np.array_split(pixels, BLOCKS)], ddof=1) / math.sqrt(BLOCKS))
@@ -190,7 +191,8 @@ def look(image, report, samples, channel=None):
 
 
 def together(sights):
-    """What several pictures of a point show. Their spread counts where it is larger than that of the pixels: pixels may err together."""
+    """What several pictures of a point show. Uses their spread if it exceeds that of the pixels, whose errors may be
+    correlated."""
     def mean(key):
         return float(np.mean([getattr(sight, key) for sight in sights]))
 
@@ -200,9 +202,15 @@ def together(sights):
                  mean("rays"), mean("typical"), sum(sight.invalid for sight in sights))
 
 
+<<<<<<< HEAD
 def pictures(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
     """What a program shows at each of some points, in each of `repeats` pictures with `factor` times as many samples as the points say:
     a list of Sight for each point."""
+=======
+def measure(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
+    """What a program shows at each of these points: a list of Sight. Takes `factor` times as many samples as the points say, in
+    each of `repeats` pictures."""
+>>>>>>> docs
     with tempfile.TemporaryDirectory() as folder:
         files = [write_scene(point.scene, Path(folder), f"point_{index}") for index, point in enumerate(points)]
 

@@ -1,21 +1,22 @@
-"""What an experiment has shown, as a fact: true whatever the mistake is. Sentences are for people who do not know this program."""
+"""What an experiment has shown, as a fact: true whatever the mistake is. The sentences are for people who do not know this
+program."""
 import math
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
-SURE = 4.0  # standard errors by which a difference must exceed the tolerance to be called one
-BEYOND_DOUBT = 6.0  # standard errors, where a verdict of a shader depends on it
-TOLERANCE = 0.01  # of what is expected
-CLOSE = 0.05  # what surely differs by less is told to be right
-INTERVAL = 2.0  # standard errors on both sides of a number that is told
-DARK = 1e-3  # of the brightest point of an experiment: what is expected to have less is dark
+SURE = 4.0  # standard errors by which a difference must exceed the tolerance to count
+BEYOND_DOUBT = 6.0  # standard errors, if a shader's verdict depends on it
+TOLERANCE = 0.01  # relative to what is expected
+CLOSE = 0.05  # what certainly differs by less is reported as right
+INTERVAL = 2.0  # standard errors on both sides of a reported number
+DARK = 1e-3  # relative to an experiment's brightest point: below this, the expected value counts as dark
 CONSTANTS = {"π²": math.pi**2, "2π": 2 * math.pi, "4": 4.0, "π": math.pi, "3": 3.0, "2": 2.0, "π/2": math.pi / 2, "3/2": 1.5,
              "2/3": 2 / 3, "2/π": 2 / math.pi, "1/2": 0.5, "1/3": 1 / 3, "1/π": 1 / math.pi, "1/4": 0.25, "1/(2π)": 0.5 / math.pi,
              "1/π²": math.pi**-2}
-FEW_PARTS = 0.03  # a named constant is told only where the interval is narrower than this part of it
-FIT = 0.04  # parts by which the points of a law may miss it, as lamps have a size
+FEW_PARTS = 0.03  # a named constant is reported only if the interval is narrower than this fraction of it
+FIT = 0.04  # relative deviation allowed for the points of a law, as lamps have a size
 POWERS = {-3: "the third power of 1 / {}", -2: "the square of 1 / {}", -1: "1 / {}", -0.5: "the root of 1 / {}", 0.5: "the root of {}",
           1: "{}", 2: "the square of {}", 3: "the third power of {}"}
 FUNCTIONS = {"value": lambda x: x, "rest": lambda x: 1 - x, "per": math.exp, "cos": lambda x: math.cos(math.radians(x)), "sin": lambda x: math.sin(math.radians(x))}
@@ -23,8 +24,8 @@ FUNCTIONS = {"value": lambda x: x, "rest": lambda x: 1 - x, "per": math.exp, "co
 
 @dataclass
 class Reading:
-    """A point of an experiment: what a shader shows there, as a multiple of what is right, or where nothing is, of what is right at the
-    brightest point."""
+    """A point of an experiment: what a shader shows there, relative to the right value, or if that is zero, to the right value at
+    the brightest point."""
     at: str
     value: float
     error: float
@@ -44,7 +45,7 @@ class Reading:
 
     @property
     def is_beyond_doubt(self):
-        """Whether it is wrong by so much that a verdict may rest on it."""
+        """Whether it is wrong by so much that a verdict may rely on it."""
         return abs(self.value - self.expected) > BEYOND_DOUBT * self.error + 2 * TOLERANCE
 
 
@@ -52,8 +53,8 @@ class Reading:
 class Fact:
     """What an experiment has shown."""
     experiment: object
-    readings: list  # empty where the shader cannot be rendered
-    sentence: str = ""  # empty where all is right
+    readings: list  # empty if the shader cannot be rendered
+    sentence: str = ""  # empty if all is right
     invalid: int = 0  # samples that are infinite or not a number
 
     @property
@@ -66,7 +67,7 @@ class Fact:
 
 
 def readings(points, sights, expected):
-    """Of Sights of a shader and of the chapter's own one."""
+    """Compares the Sights of a shader with those of the chapter's own."""
     brightest = max(sight.mean for sight in expected)
     found = []
     for point, now, right in zip(points, sights, expected):
@@ -78,7 +79,7 @@ def readings(points, sights, expected):
 
 
 def number(value, error):
-    """A number with its interval, rounded up, with the digits that the interval allows."""
+    """A number with its interval, rounded up, to as many digits as the interval allows."""
     width = INTERVAL * error
     if value == 0 and width == 0:
         return "0"
@@ -88,14 +89,14 @@ def number(value, error):
 
 
 def constant(value, error):
-    """The name of the only well-known constant that a number can be, with brackets; or nothing."""
+    """The name of the only well-known constant that a number can be, in brackets; or nothing."""
     width = INTERVAL * error + 0.003 * value
     fitting = [name for name, known in CONSTANTS.items() if abs(value - known) <= width]
     return f" (as by a factor {fitting[0]})" if len(fitting) == 1 and width <= FEW_PARTS * value else ""
 
 
 def common_value(those):
-    """The mean of readings that agree, with its error; or None."""
+    """The mean of readings that agree, with its error; otherwise None."""
     weights = np.array([1 / (reading.error**2 + (0.004 * reading.value)**2 + 1e-9) for reading in those])
     values = np.array([reading.value for reading in those])
     mean = float(weights @ values / weights.sum())
@@ -104,7 +105,7 @@ def common_value(those):
 
 
 def power_law(experiment, those):
-    """(factor, its error, words for the power) where readings follow a power of the experiment's quantity; or None."""
+    """(factor, its error, words for the power) if readings follow a power of the experiment's quantity; otherwise None."""
     points = {point.at: point.x for point in experiment.points}
     values = np.array([reading.value for reading in those])
     if len(those) < 3 or not experiment.quantity or values.min() <= 0:
@@ -113,7 +114,7 @@ def power_law(experiment, those):
     arguments = {function: np.log([FUNCTIONS[function](points[reading.at]) for reading in those]) for function in experiment.quantity}
     if "per" in arguments:
         powers = [(float(np.polyfit(arguments["per"], np.log(values), 1, w=1 / errors)[0]),)]
-    else:  # the simplest first
+    else:  # simplest first
         powers = sorted(product([0, *POWERS], repeat=len(arguments)), key=lambda those: (sum(map(bool, those)), sum(map(abs, those))))
     for those_powers in powers:
         expected = sum(power * x for power, x in zip(those_powers, arguments.values()))
@@ -131,7 +132,7 @@ def power_law(experiment, those):
 
 
 def sentence(experiment, those):
-    """What readings of which some are wrong say."""
+    """What readings say if some of them are wrong."""
     subject, varies = experiment.subject, experiment.varies
     lit = [reading for reading in those if not reading.is_dark]
     leaks = [reading for reading in those if reading.is_dark and not reading.is_right]

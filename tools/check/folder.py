@@ -18,7 +18,7 @@ from project import CHAPTERS, ROOT, UserError, printable, read_json, write_json
 from report.measurement import digest_of_sources
 
 UNGRADED = 2  # exit code
-MOST_COMMON = 5  # facts that sum up a class
+MOST_COMMON = 5  # number of facts that sum up a class
 COLUMNS = ["submission", "verdict", "unfinished_line", "facts", "mistakes", "questions", "error", "seconds"]
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
@@ -37,7 +37,7 @@ def submissions(folder):
 
 
 def digest(options, sources, file):
-    """A digest of a shader and of what it is graded with: a result with the same one stays. `sources` are digests of what
+    """A digest of a shader and everything it is graded with: results with the same digest are kept. `sources` are digests of what
     is the same for all."""
     settings = [sources, options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
     return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes()).hexdigest()
@@ -52,13 +52,13 @@ def grade_one(options, check, name, file, folder):
                "text": explain(result), "questions": " ".join(text for head, text in hint_lines(result) if head in ("ask yourself", "or")),
                "wrong": found.get("wrong", []), "facts": " | ".join(found.get("facts", [])), "mistakes": " ".join(each.get("name", "") for each in found.get("mistakes", [])),
                "error": ""}
-    except Exception as error:  # whatever it is, the next submission is graded
+    except Exception as error:  # whatever it is, grading continues with the next submission
         row = {"verdict": "not graded", "error": printable(str(error)), "text": printable(str(error))}
     return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1)}
 
 
 def in_a_table(value):
-    """Spreadsheets take a text that begins like this for a formula."""
+    """Spreadsheets interpret a text that begins like this as a formula."""
     return f"'{value}" if str(value)[:1] in ("=", "+", "-", "@") else value
 
 
@@ -73,8 +73,8 @@ def write_page(options, rows, path):
 
 
 def common_facts(chapter, rows):
-    """What of a chapter's experiments is wrong in the most submissions, as lines: how many, what, and the chapter whose page and
-    exercises are about it."""
+    """What most submissions get wrong in a chapter's experiments, as lines: how many, what, and the chapter whose page and
+    exercises cover it."""
     experiments = experiments_of(chapter)
     owners = {name: number for number, file in experiment_files().items() for name in file.get("experiments", {})}
     counts = Counter(name for row in rows for name in row.get("wrong", []) if name in experiments)
@@ -83,7 +83,7 @@ def common_facts(chapter, rows):
 
 
 def grade_all(options, check):
-    """Grades what has not been graded yet and writes the table and the page after each shader. Returns the exit code."""
+    """Grades everything not graded yet and updates the table and the page after each shader. Returns the exit code."""
     folder = (options.output or ROOT / f"output/check_{options.chapter}").resolve()
     folder.mkdir(parents=True, exist_ok=True)
     record = folder / "results.json"

@@ -5,8 +5,8 @@ PART = {"correct": 1.0, "noisy": 0.5, "expensive": 0.5, "biased": 0.0}  # of a s
 
 
 def as_gradescope(scenes, hints, points):
-    """What Gradescope reads from /autograder/results/results.json: a test with points for each scene, with what it found, and the
-    hints as the output of all. `scenes` are triples of name, verdict and words; without any, the submission has no points."""
+    """What Gradescope reads from /autograder/results/results.json: one test with points per scene, with what was found there, and
+    the hints as overall output. `scenes` are triples of name, verdict and words; without scenes, the submission has no points."""
     each = points / max(len(scenes), 1)
     tests = [{"name": name, "score": round(each * PART[verdict], 3), "max_score": round(each, 3),
               "status": "passed" if verdict == "correct" else "failed", "output": f"{verdict}: {words}", "visibility": "visible"}
@@ -18,17 +18,17 @@ def as_gradescope(scenes, hints, points):
 
 
 def escaped(text):
-    """Text for a workflow command of GitHub's actions, in which these characters have a meaning."""
+    """Escapes text for a workflow command of GitHub Actions, in which these characters are special."""
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
 def escaped_property(text):
-    """Text for a part of such a command that is not its message."""
+    """Escapes text for parts of such a command other than its message."""
     return escaped(text).replace(":", "%3A").replace(",", "%2C")
 
 
 def as_github(verdict, file, line, hints):
-    """Workflow commands that show as annotations of a commit: an error where the shader is not correct, at the file."""
+    """Workflow commands that show up as annotations of a commit: an error in the file if the shader is not correct."""
     if verdict == "correct":
         return "::notice title=./lab check::correct\n"
     of_compiler = re.search(rf"{re.escape(str(file))}:(\d+):", hints[0]) if hints else None

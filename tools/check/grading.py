@@ -22,30 +22,29 @@ from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
 KNOWLEDGE = "knowledge.json"  # in the chapters' folders
 DESCRIPTIONS = {number: description(folder) for number, folder in CHAPTERS.items()}
-# Of each chapter: samples of a run, and references that show what its shader does.
+# Per chapter: samples of a run, and references that show what its shader can do.
 SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in DESCRIPTIONS.items() if "check" in says}
-# Roulette from the first bounce on and with a cap that matters: otherwise both hardly show. With a lower cap few samples
-# would decide a picture, since survivors of eight bounces count 1/cap^8, and no interval would hold.
+# Roulette from the first bounce on and with a cap that matters, since otherwise both hardly show. With a lower cap few samples
+# would dominate a picture, since survivors of eight bounces have weight 1/cap^8, and no interval would hold.
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
 OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) else [] for number, says in DESCRIPTIONS.items()}
 TILE = 16  # pixels
-FALSE_ALARMS = 0.001  # of all checks of correct shaders
+FALSE_ALARMS = 0.001  # over all checks of correct shaders
 TOO_MUCH = 1.5  # times the error of a sample or its rays
-# Of what the technique gains, on the scale of the error's logarithm, a shader may lose so much; an error so many times as large
-# is never too much.
+# The fraction of the technique's gain, on the scale of the error's logarithm, that a shader may lose; and a factor of the error
+# that is never too much.
 LOST_PART, LITTLE = 0.25, 1.1
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
-EARLY_RUNS = 4  # after which a first verdict is worth telling
-JOBS = 2  # renders at a time: while one starts, another renders
-PATIENCE = 10  # a check of RUNS runs may take so many times the limit of a single render
-VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first of any scene counts
+EARLY_RUNS = 4  # after these a first verdict is worth reporting
+JOBS = 2  # concurrent renders: while one starts, another renders
+PATIENCE = 10  # a check of RUNS runs may take this many times the limit of a single render
+VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first one that any scene has wins
 
 
 def first_seed(seed):
-    """The seed of the first run of a check with this --seed. Checks with different ones share no render. None has the seeds
-    from MOST_RUNS + 1 to SEED_STEP: with those the signatures of mistakes were measured. The chapters' levels have the seeds
-    of --seed 0, so that a shader which calls for random numbers in the same order as the chapter's own is compared render by
-    render."""
+    """The seed of the first run of a check with this --seed. Checks with different ones share no render. None uses the seeds from
+    MOST_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the seeds of --seed
+    0, so that a shader which draws random numbers in the same order as the chapter's own is compared render by render."""
     return seed * SEED_STEP + 1
 
 
@@ -58,7 +57,7 @@ def functions_in(shader):
 
 
 def shader_like(chapter, file):
-    """The shader of a chapter's folder that a file is graded as: one all of whose functions it defines, the estimator before others; or
+    """The shader in a chapter's folder that a file is graded as: one whose functions it all defines, preferably the estimator; or
     else the one with its name, or the estimator."""
     estimator, functions = ROOT / "chapters" / chapter / "path_trace.glsl", functions_in(file)
     for shader in (estimator, *sorted(estimator.parent.glob("*.glsl"))):
@@ -68,8 +67,8 @@ def shader_like(chapter, file):
 
 
 def make_tree(chapter, file, tree, shader=None):
-    """Copies what a chapter's program reads, with `file` in place of a shader that it includes or that has its name; returns the
-    program there and the file's copy. With a file from a chapter's folder, a copy of this chapter's, come all that lie beside it."""
+    """Copies what a chapter's program reads, with `file` replacing the included shader that it stands for; returns the program
+    there and the file's copy. A file from a chapter's folder, or a copy of this chapter's, brings everything next to it."""
     shutil.copytree(ROOT / "shaders", tree / "shaders")
     for source in (*ROOT.glob("chapters/*/*.glsl"), *ROOT.glob("chapters/*/chapter.json")):
         (tree / source.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
@@ -79,21 +78,21 @@ def make_tree(chapter, file, tree, shader=None):
                         dirs_exist_ok=True)
     copy = Path(shutil.copy(file, tree / (shader or shader_like(chapter, file)).relative_to(ROOT)))
     share(ROOT / "assets", tree / "assets")
-    if (libraries := BINARIES.parent / "lib").exists():  # of an archive that ./lab package made
+    if (libraries := BINARIES.parent / "lib").exists():  # from an archive by ./lab package
         share(libraries, tree / "lib")
     (tree / "bin").mkdir()
-    return shutil.copy(program_file(chapter), tree / "bin"), copy  # a program looks for shaders above itself
+    return shutil.copy(program_file(chapter), tree / "bin"), copy  # a program looks for shaders in parent folders
 
 
 def share(folder, place):
-    """Windows lets few people make links."""
+    """Windows allows few people to make links."""
     place.symlink_to(folder) if os.name == "posix" else shutil.copytree(folder, place)
 
 
 @contextmanager
 def program_with(chapter, text, shader=None):
-    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as one of its shaders: as
-    its estimator, unless said otherwise."""
+    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as one of its shaders,
+    by default the estimator."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "path_trace.glsl"
         file.write_text(text, encoding="utf-8")
@@ -107,8 +106,8 @@ def regions(image):
 
 
 def reference_regions(file):
-    """The regions of a reference, as biases() wants them. Pixels and channels of the reference have errors of
-    their own; those of channels may go together, at worst completely."""
+    """The regions of a reference, in the form that biases() needs. Pixels and channels of the reference have their own errors;
+    those of channels may be correlated, at worst completely."""
     reference = read_reference(file)
     height, width, _ = reference.mean.shape
     deviation = np.sqrt(reference.variance).mean(axis=2, keepdims=True)
@@ -129,14 +128,14 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
                  for pair in find_references(scenes or own_scenes)]
         for case in cases:
             case |= {"invalid_samples": 0, "picture": 0}
-        # The last scene first: the first two often are one, and renders that start together would compile its shader twice.
+        # The last scene first: the first two are often the same, and renders that start together would compile its shader twice.
         work = [(run, i) for run in range(settings["runs"]) for i in reversed(range(len(cases)))]
 
         limit, has_failed = PATIENCE * settings["time_limit"] * max(settings["runs"] / RUNS, 1), threading.Event()
 
         def render_one(item):
             run, i = item
-            if has_failed.is_set():  # another one: what is waiting need not begin
+            if has_failed.is_set():  # another one did: waiting ones need not start
                 raise UserError("ended")
             try:
                 if time.monotonic() - started > limit:
@@ -168,7 +167,7 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
 
 
 def level(case):
-    """What the technique needs: rel_mse of a single sample, for the seed of each run, and rays of a sample."""
+    """What the technique costs: rel_mse of a single sample, for the seed of each run, and rays per sample."""
     rows = {run["seed"]: run["rows"][-1] for run in case["runs"]}
     samples = next(iter(rows.values()))["samples"]
     return {"rel_mse": {str(seed): float(f"{row['rel_mse'] * samples:.4g}") for seed, row in rows.items()},
@@ -176,13 +175,13 @@ def level(case):
 
 
 def most_noise(recorded):
-    """So many times the error of the chapter's own shader, of which this is recorded, is not too much yet. Where its lesson is less
-    noise, a shader without it may have less than TOO_MUCH."""
+    """How many times the recorded error of the chapter's own shader is still acceptable. If the lesson is less noise, a shader
+    without it may have less than TOO_MUCH."""
     return min(TOO_MUCH, max(recorded["gain"]**LOST_PART, LITTLE)) if "gain" in recorded else TOO_MUCH
 
 
 def grade(case, recorded, comparisons):
-    """The verdict on a scene, with the numbers that it follows from."""
+    """The verdict on a scene, with the numbers it is based on."""
     reference, now = reference_regions(ROOT / case["reference_file"]), level(case)
     comparisons *= len(reference["mean"]) * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS
     tests = biases(case["runs"], reference, comparisons)
@@ -190,7 +189,7 @@ def grade(case, recorded, comparisons):
     is_paired = len(now["rel_mse"]) > 1 and now["rel_mse"].keys() <= recorded["rel_mse"].keys()
     noise = paired_ratio(*errors) if is_paired else ratio(*errors)
     rays = now["rays"] / recorded["rays"]
-    # Noise that is paid for by fewer rays is no fault, and rays that pay by less noise are none either.
+    # Noise compensated by fewer rays is not a fault, and neither are rays compensated by less noise.
     if case["invalid_samples"] or any(test["is_biased"] for test in tests):
         verdict = "biased"
     elif noise[1] is not None and noise[1] * min(rays, 1) > most_noise(recorded):
@@ -214,8 +213,8 @@ def read_levels(chapter):
 
 
 def early_bias(cases):
-    """The largest difference from the reference that is sure after a few runs: the name of a scene and the difference as part of
-    the reference, or None and the smallest that would be."""
+    """The largest difference from the reference that is certain after a few runs: the name of a scene and the relative
+    difference, or None and the smallest difference that would be certain."""
     tests = [(test, case["scene"]) for case in cases
              for test in biases(case["runs"], reference_regions(ROOT / case["reference_file"]),
                                 len(cases) * 3 * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS)[:3]]
@@ -227,7 +226,7 @@ def early_bias(cases):
 
 
 def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None):
-    """The verdict on a shader and on each scene, and the mean picture of each scene; UserError where there is none."""
+    """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none."""
     levels = levels or read_levels(chapter)
     cases = render(chapter, file, settings, scenes, watch, shader)
     results = [grade(case, levels[case["scene"]], len(cases)) for case in cases]

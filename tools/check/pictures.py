@@ -1,4 +1,4 @@
-"""Pictures of a check: what a shader has rendered, and where that differs from the reference."""
+"""Pictures of a check: what a shader rendered, and where that differs from the reference."""
 import matplotlib
 
 matplotlib.use("agg")
@@ -8,8 +8,8 @@ from report.plots import encode_srgb, save_figure
 
 
 def draw(result, pictures, path):
-    """For each scene its mean picture, and below it each tile's difference from the reference; those that are sure have a
-    frame. Returns the path of the file."""
+    """For each scene its mean picture, and below it each tile's difference from the reference; certain ones are framed. Returns
+    the path of the file."""
     scenes = result["scenes"]
     figure, axes = pyplot.subplots(2, len(scenes), figsize=(3.6 * len(scenes), 7), layout="constrained", squeeze=False)
     limit = min(1, max(abs(tile["value"]) for scene in scenes for tile in scene["tiles"]))

@@ -1,4 +1,4 @@
-"""What a check tells about a shader, in words."""
+"""What a check reports about a shader, in words."""
 from check.grading import early_bias
 from project import CHAPTERS
 
@@ -12,7 +12,7 @@ def percent(value):
 
 
 def tell_early(cases):
-    """What is sure after the first runs."""
+    """What is certain after the first runs."""
     scene, value = early_bias(cases)
     if scene:
         words = f"{scene} is too {'bright' if value > 0 else 'dark'} ({percent(value)})"
@@ -22,7 +22,7 @@ def tell_early(cases):
 
 
 def scene_words(scene):
-    """What was found in a scene, as a list of words."""
+    """The findings in a scene, as a list of words."""
     worst = max(scene["image"], key=lambda test: abs(test["value"]))
     biased = [tile for tile in scene["tiles"] if tile["is_biased"]]
     words = [f"mean {' '.join(percent(test['value']) for test in scene['image'])} (red, green, blue)"]
@@ -44,7 +44,7 @@ def scene_words(scene):
 
 
 def hint_lines(result):
-    """Pairs of a word and what leads to the mistake: what the experiments have shown, and questions where few mistakes do that."""
+    """Pairs of a word and a lead to the mistake: what the experiments have shown, and questions if few mistakes can cause it."""
     if result["unfinished_line"]:
         return [("unfinished", f"line {result['unfinished_line']} says TODO")]
     found = result["diagnosis"]
@@ -65,7 +65,7 @@ def hint_lines(result):
 
 
 def explain(result):
-    """The result as text, a line for each scene."""
+    """The result as text, one line per scene."""
     lines = [(scene["scene"], f"{scene['verdict']}: {', '.join(scene_words(scene))}") for scene in result["scenes"]]
     lines += [("where", result["picture"])] if result["picture"] else []
     lines += [*hint_lines(result), (f"chapter {result['chapter']}", f"{result['verdict']}: {result['file']}")]

@@ -23,8 +23,8 @@ from references.images import averaged, find_references, read_rgb, scene_file
 from report.measurement import new_case, run_case
 from report.numbers import batches, biases, last_rows, mean_of, runs_in_batches
 
-SCALE = 2  # pixels in a row for each of the reference's
-SCRAMBLES = 4  # of low-discrepancy points
+SCALE = 2  # pixels per row for each of the reference's
+SCRAMBLES = 4  # with low-discrepancy points
 COLOURS = ("red", "green", "blue")
 
 
@@ -41,7 +41,7 @@ def parse():
 
 
 def find_scene(word):
-    """A scene's file and its reference, or None where there is none."""
+    """A scene's file and its reference, or None if there is none."""
     try:
         return find_references([word])[0]
     except UserError:
@@ -51,14 +51,14 @@ def find_scene(word):
 
 
 def new_render(chapter, scene, program):
-    """What is to be rendered: with the path length of the reference, and SCALE times as large."""
+    """What to render: with the path length of the reference, and SCALE times as large."""
     file, reference = find_scene(scene)
     case = new_case(file, reference, f"chapter {chapter}", program, OPTIONS[chapter])
     return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE if reference else 1}
 
 
 def render(case, samples, options):
-    """Adds runs to a case; returns the mean image. Where samples depend on each other, several runs tell the error."""
+    """Adds runs to a case; returns the mean image. With correlated samples, several runs are needed for the error."""
     runs = min(SCRAMBLES, samples) if has_low_discrepancy(case["program"]) else 1
     case |= {"runs": [], "invalid_samples": 0}
     pictures = []
@@ -73,7 +73,8 @@ def render(case, samples, options):
 
 
 def telling_scene(chapter, programs, options):
-    """The scene of ./lab check whose picture the bug changes most, by the means of tiles with a single sample per pixel."""
+    """The scene of ./lab check whose picture the bug changes most, judged by the means of tiles with a single sample per
+    pixel."""
     def change(scene):
         right, wrong = (averaged(render(new_render(chapter, scene, program), 1, options), SCALE * TILE) for program in programs)
         return np.abs(wrong - right).mean() / right.mean()
@@ -82,14 +83,14 @@ def telling_scene(chapter, programs, options):
 
 
 def as_reference(case):
-    """The mean of a render for scenes that have no reference, as biases() wants it."""
+    """The mean of a render in the form that biases() needs, for scenes without a reference."""
     counts, means = batches(runs_in_batches(case))
     mean, freedom = counts @ means / counts.sum(), len(counts) - 1
     return {"mean": mean, "variance": counts @ (means - mean) ** 2 / freedom / counts.sum(), "freedom": freedom}
 
 
 def verdict(right, wrong):
-    """What shows of two cases with so many samples, in a line."""
+    """How two cases with these sample counts differ, in one line."""
     if wrong["invalid_samples"]:
         return f"broken: {wrong['invalid_samples']} samples infinite or not a number"
     tests = biases(runs_in_batches(wrong), wrong["reference"] or as_reference(right), len(COLOURS))
@@ -99,13 +100,13 @@ def verdict(right, wrong):
         return f"biased: {means}"
     for key, text in (("rel_mse", "noisy: {:.1f} times the error of the right picture"), ("rays", "expensive: {:.1f} times its rays")):
         now, own = (mean_of(last_rows(case["runs"]), key) for case in (wrong, right))
-        if (now or 0) > TOO_MUCH * (own or math.inf):  # a picture without noise has none to compare with
+        if (now or 0) > TOO_MUCH * (own or math.inf):  # a noise-free picture has no noise to compare with
             return f"{text.format(now / own)}, the mean agrees: {means}"
     return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would show"
 
 
 def show(bug, index, scene, programs, options):
-    """Renders with the right shader and with the wrong one, and says what is to be seen."""
+    """Renders with the right shader and with the wrong one, and says what to look for."""
     samples, started = options.samples or 2 * SCENES[bug.chapter][0], time.monotonic()
     cases = [new_render(bug.chapter, scene, program) for program in programs]
     images = []
@@ -114,7 +115,7 @@ def show(bug, index, scene, programs, options):
         show_progress(f"{('right', 'wrong')[len(images) - 1]} picture of {case['scene']}", len(images), len(cases), started)
     path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
     path.parent.mkdir(exist_ok=True)
-    from report.plots import right_and_wrong  # only here: Matplotlib takes longer to begin than all other modules together
+    from report.plots import right_and_wrong  # imported late: Matplotlib takes longer to load than everything else
     right_and_wrong(path, *images)
     taken = sum(row["samples"] for row in last_rows(cases[0]["runs"]))
     for name, text in (("scene", f"{cases[0]['scene']}, {taken} samples per pixel"), ("verdict", verdict(*cases)),
@@ -123,7 +124,7 @@ def show(bug, index, scene, programs, options):
 
 
 def open_window(bug, scene, program, options):
-    """The chapter with the bug, until its window is closed."""
+    """Shows the chapter with the bug, until its window is closed."""
     case = new_render(bug.chapter, scene, program)
     length = ["--max-path-length", case["max_path_length"]] if case["reference"] else []
     command = [program, ROOT / case["scene_file"], "--window", *length, *OPTIONS[bug.chapter], "--backend", options.backend,
@@ -134,13 +135,13 @@ def open_window(bug, scene, program, options):
 
 
 def caught_by(bug):
-    """The test that has been seen to fail because of the bug, or None, and a command that finds it."""
+    """The test known to fail because of the bug, or None, and a command that finds it."""
     test = bug.mistake.get("test")
     return test, f"./lab test -R mistakes.{bug.mistake['name']}" if test else f"./lab check {bug.chapter}"
 
 
 def changes(bug):
-    """Rows of the difference from the chapter's own shader, for lesson.diff."""
+    """Rows of the difference from the chapter's own shader, as lesson.diff shows them."""
     own = bug.file.read_text(encoding="utf-8")
     return diff.compare(own.splitlines(), bug.text.splitlines())[0]
 

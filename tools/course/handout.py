@@ -17,7 +17,7 @@ from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, nu
 HERE = Path(__file__).parent
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
-# What only teachers need: it holds or names solutions, or makes what belongs to the whole course.
+# For teachers only: these contain or name solutions, or belong to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/debugging.md", "docs/extending.md", "docs/results/check.md", "docs/numerics.md", "docs/measuring.md", "docs/bugs*", "docs/pictures/bug*",
             "docs/records/check", "docs/grading", "chapters/*/exercise.json", "chapters/*/mistakes.json",
             "chapters/*/tests.json", "chapters/*/solutions", "chapters/*/variants", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
@@ -25,7 +25,7 @@ EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
 def few(chapter):
-    """Options of a check: enough to tell a TODO from its solution."""
+    """Options of a check: enough runs to tell a TODO from its solution."""
     return ["--runs", "8"] + ([] if description(CHAPTERS[chapter]).get("low_discrepancy") else ["--samples", "4"])
 
 
@@ -40,7 +40,7 @@ def find_once(text, piece, exercise):
 
 
 def take_out(text, exercise):
-    """The shader with the placeholder in place of the solution, and the solution."""
+    """The shader with the placeholder instead of the solution, and the solution."""
     begin = find_once(text, exercise["first"], exercise)
     end = find_once(text, exercise["last"], exercise) + len(exercise["last"])
     if begin >= end:
@@ -50,7 +50,7 @@ def take_out(text, exercise):
 
 
 def write_handout(chapter, folder):
-    """The student's tree in `folder`, which must not exist."""
+    """Writes the student's tree to `folder`, which must not exist."""
     kept = [name for n, name in CHAPTERS.items() if n <= chapter]
     ignore = shutil.ignore_patterns("__pycache__")
     for name in [*FOLDERS, *(f"chapters/{name}" for name in kept)]:
@@ -71,7 +71,7 @@ def write_handout(chapter, folder):
 
 
 def verify(chapter, folder):
-    """Proves what the help says of one chapter. The programs are those of this tree: only shaders differ."""
+    """Verifies what the help says, for one chapter. The programs are those of this tree: only shaders differ."""
     tree = folder / f"handout_{chapter}"
     write_handout(chapter, tree)
     missing = [name for name in CHAPTERS.values() if name > CHAPTERS[chapter] and (tree / "chapters" / name).exists()]

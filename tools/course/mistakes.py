@@ -11,17 +11,17 @@ from project import CHAPTERS, ROOT, UserError, course, original, read_json, shad
 
 NO_QUESTION = "Where do the two pictures differ, and which line decides that?"
 SAID_ONCE = ("explanation", "hint", "slide", "test")
-# Of shaders that no chapter teaches.
+# In shaders that no chapter teaches.
 ENGINE = ROOT / "tests/mistakes/engine.json"
 
 
 class Stale(UserError):
-    """A piece of text to be replaced is not where it was."""
+    """A piece of text to be replaced is no longer where it was."""
 
 
 @dataclass
 class Bug:
-    """A mistake in a chapter: its record, and one of the chapter's shaders with it."""
+    """A mistake in a chapter: its record, and one of the chapter's shaders containing it."""
     chapter: int
     mistake: dict
     file: Path
@@ -43,20 +43,20 @@ def plant(text, find, replace, what):
 
 
 def records():
-    """The mistakes of each chapter as they stand in its file, and as those of None the engine's. Of chapters with the same title
-    only the first one counts."""
+    """The mistakes of each chapter as its file lists them, and the engine's under None. Of chapters with the same title only the
+    first one counts."""
     files = {chapter: own_shader(chapter).with_name("mistakes.json") for chapter in course()} | {None: ENGINE}
     return {chapter: read_json(file) for chapter, file in files.items() if file.exists()}
 
 
 def complete(record, everything):
-    """A record with what is said in others of the same mistake; the first one that says it counts."""
+    """A record completed from other records of the same mistake; the first one with an entry counts."""
     same = [other for others in everything.values() for other in others if other["name"] == record["name"]]
     return {key: other[key] for other in reversed(same) for key in SAID_ONCE if key in other} | record
 
 
 def shader_of(chapter, record):
-    """The shader that has the text to be replaced, or else the estimator."""
+    """The shader that contains the text to be replaced, or else the estimator."""
     if "file" in record:
         folders = [own_shader(chapter).parent, ROOT] if chapter else [ROOT]
         return next((folder / record["file"] for folder in folders if (folder / record["file"]).exists()), ROOT / record["file"])
@@ -64,15 +64,15 @@ def shader_of(chapter, record):
 
 
 def planted(chapter, mistake):
-    """The bug that a record makes of a chapter's shaders."""
+    """The bug that a record makes in a chapter's shaders."""
     file = shader_of(chapter, mistake)
     what = f"{mistake['name']} in {file.relative_to(ROOT)}"
     return Bug(chapter, mistake, file, plant(file.read_text(encoding="utf-8"), mistake["find"], mistake["replace"], what))
 
 
 def bugs_of(chapter):
-    """The bugs of a chapter, or of the one that it is a copy of, in the order of its file. One that stands there under two names
-    counts once."""
+    """The bugs of a chapter, or of the one it is a copy of, in the order of its file. A bug listed under two names counts
+    once."""
     everything, bugs = records(), {}
     for record in everything.get(original(chapter), []):
         if "file" not in record:
@@ -82,5 +82,5 @@ def bugs_of(chapter):
 
 
 def catalogue():
-    """The bugs that ./lab check is to know, of all chapters."""
+    """The bugs that ./lab check should know, of all chapters."""
     return [bug for chapter in records() if chapter for bug in bugs_of(chapter) if "hint" in bug.mistake]

@@ -1,4 +1,5 @@
-"""The pages of a student's tree: without what its exercise asks for, code of later chapters, and what needs the tests."""
+"""The pages of a student's tree: without the solution of its exercise, code of later chapters, and anything that needs the
+tests."""
 import re
 from itertools import takewhile
 
@@ -6,14 +7,14 @@ from book.code_blocks import BLOCK
 
 FENCED = re.compile(r"^ *```\w+\n.*?^ *```$", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"(?<!!)\[(`[^`]+`|[^\[\]]+)\]\(([^()\s]+)\)")
-PIECE = re.compile(r"`([^` \n]+( [^` \n]+){2,})`")  # of code, in at least three words
-NAME = re.compile(r"`\w+(\(\))?`")  # alone it gives nothing away
+PIECE = re.compile(r"`([^` \n]+( [^` \n]+){2,})`")  # of code, at least three words
+NAME = re.compile(r"`\w+(\(\))?`")  # on its own it gives nothing away
 SHADERS = {".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".h"}
 TODO_LINE = "// TODO"
 
 
 def hide_lines(block, secret):
-    """A block of code with TODO in place of what is secret."""
+    """A block of code with TODO in place of secret lines."""
     lines = []
     for line in block.split("\n"):
         if line.strip() not in secret:
@@ -24,13 +25,13 @@ def hide_lines(block, secret):
 
 
 def source_of(target):
-    """What stands for code of a file that stays out."""
+    """What represents code of a file that is left out."""
     chapter = re.search(r"\b(\d\d)_", target)
     return f"code of chapter {int(chapter[1])}" if chapter else "code of a later chapter"
 
 
 def end_before_secrets(text, secret):
-    """The sections of a page up to the first one whose code has something secret."""
+    """The sections of a page before the first one whose code contains a secret."""
     sections = re.split(r"^(?=## )", text, flags=re.MULTILINE)
     kept = list(takewhile(lambda section: secret.isdisjoint(map(str.strip, section.splitlines())), sections))
     return text if len(kept) == len(sections) else "".join(kept) + "The next steps are your exercise.\n"
@@ -48,7 +49,7 @@ def leave_out_commands(text, missing):
 
 
 def clean_pages(folder, solution):
-    """Cleans all pages of the tree, in which everything else is as it will be."""
+    """Cleans all pages of the tree, which is otherwise in its final state."""
     shaders = "\n".join(shader.read_text(encoding="utf-8") for shader in folder.rglob("*.glsl"))
     secret = {line.strip() for line in solution.splitlines()} - set(map(str.strip, shaders.splitlines()))
     needs_tests = re.search(r"^needs_tests='(.*)'$", (folder / "lab").read_text(encoding="utf-8"), re.MULTILINE)[1]

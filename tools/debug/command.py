@@ -16,7 +16,7 @@ from pathlib import Path
 from project import CHAPTERS, ROOT, Parser, UserError, number, program_file
 
 SETTINGS = ["set breakpoint pending on", "set print thread-events off", "set debuginfod enabled off",
-            # Steps do not enter the functions that stand for GLSL's own.
+            # Stepping does not enter the functions that implement GLSL's own.
             "skip -gfi */glm/*", "skip -gfi */native/glsl.h"]
 PRINTERS = "tools/debug/printers.py"
 
@@ -38,11 +38,11 @@ def partition(words, separator):
 
 
 def command_for(debugger, program, arguments, extra):
-    """The debugger's command line: it has stopped in path_trace() when it takes `extra`."""
+    """The debugger's command line: it has stopped in path_trace() when it processes `extra`."""
     if debugger.endswith("lldb"):
         return [debugger, *extra, "-o", "breakpoint set --name path_trace", "-o", "process launch", "--", program, *arguments]
     start = [word for line in [*SETTINGS, f"source {ROOT / PRINTERS}", "break path_trace", "run"] for word in ("-ex", line)]
-    batch = [word for word in extra if word == "-batch"]  # before what it is to run
+    batch = [word for word in extra if word == "-batch"]  # must precede what it is to run
     return [debugger, "-q", *batch, *start, *(word for word in extra if word != "-batch"), "--args", program, *arguments]
 
 

@@ -1,4 +1,4 @@
-"""For gdb: vectors and arrays of shaders as GLSL writes them."""
+"""For gdb: shows vectors and arrays of shaders in GLSL's notation."""
 import gdb
 import gdb.printing
 
@@ -22,7 +22,7 @@ class Matrix:
 
 
 class Buffer:
-    """The array at the end of a buffer: how many elements there are, and the first ones."""
+    """The array at the end of a buffer: its number of elements, and the first ones."""
 
     def __init__(self, value):
         self.value = value

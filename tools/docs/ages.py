@@ -13,7 +13,7 @@ from report.sources import changed_since, measured
 
 
 def when(record):
-    """Date and commit of a record, as far as it tells them."""
+    """Date and commit of a record, as far as it states them."""
     told = record.get("environment", record)
     return ", ".join(filter(None, [told.get("date", "")[:10], told.get("commit") and f"commit {told['commit']}"]))
 
@@ -33,14 +33,14 @@ def ages(stem="*"):
 
 
 def age_table(page):
-    """The lines of a page of results: on the records of its device if there are some, or else on all."""
+    """The lines for a page of results: on its device's records if there are any, or else on all."""
     found = ages(page.stem)
     return table(["record", "measured", "and now"], [
         [f"[{file.relative_to(RECORDS).with_suffix('')}]({os.path.relpath(file, page.parent)})", told, words] for file, told, words in found or ages()], left=3)
 
 
 def stamped(record):
-    """A record with what it measured, and with the date and the commit if it has none."""
+    """A record with a digest of what it measured, and with date and commit if it has none."""
     told = record.setdefault("environment", {}) if "environment" in record else record
     told.setdefault("commit", commit())
     told.setdefault("date", datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"))

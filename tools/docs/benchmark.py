@@ -22,7 +22,7 @@ from report.studies import measures
 GOES_ON = True
 SCENES = ["cornell_box", "heart_light", "glass"]
 CHAPTER, OPTIONS = next((folder, measure["benchmark"].split()) for folder, measure in measures().items() if "benchmark" in measure)
-GPU_SIZE = 1024  # of the pictures without a reference
+GPU_SIZE = 1024  # for pictures without a reference
 RUNS = 5
 
 
@@ -53,7 +53,7 @@ def backends_of(device):
 
 
 def benchmark_cases(scenes, backends, is_cpu):
-    """For each scene and backend, a case with the reference for the error, and on a GPU a large one for the speed."""
+    """For each scene and backend, a case with the reference for the error, and on GPUs a large one for the speed."""
     cases = []
     for scene, reference in scenes:
         for backend in backends:
@@ -66,7 +66,7 @@ def benchmark_cases(scenes, backends, is_cpu):
 
 
 def summarize(cases):
-    """A row for each scene and backend that has been measured."""
+    """One row for each scene and backend that was measured."""
     rows = []
     for error in (case for case in cases if case["reference"]):
         key = (error["scene"], error["backend"])

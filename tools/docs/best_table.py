@@ -1,4 +1,4 @@
-"""For each scene, the chapter that reaches the same error in the least time."""
+"""For each scene, the chapter that reaches a given error in the least time."""
 from docs.peer_table import gains_of
 from project import load_records, scene_of, table
 from report.numbers import errors, paired_ratio, with_interval

@@ -1,17 +1,17 @@
-"""The bugs in docs/bugs.md, with the texts of the catalogue of mistakes."""
+"""The bugs in docs/bugs.md, with texts from the catalogue of mistakes."""
 import textwrap
 
 from course.bug import caught_by, changes
 from course.mistakes import bugs_of, records
 from project import UserError
 
-# Name of the mistake: chapter and reference.
+# Name of the mistake -> chapter and reference.
 GALLERY = {mistake["name"]: (chapter, mistake["gallery"]) for chapter, mistakes in records().items()
            for mistake in mistakes if "gallery" in mistake}
 
 
 def find_bug(name):
-    """The bug of the gallery with this name, and its number in the chapter."""
+    """The bug of the gallery with this name, and its number within the chapter."""
     if name not in GALLERY:
         raise UserError(f"there is no bug '{name}' in the gallery: {', '.join(GALLERY)}")
     chapter, _ = GALLERY[name]
@@ -19,7 +19,8 @@ def find_bug(name):
 
 
 def bug_block(name):
-    """The picture and the question, and the start of a folded answer: the changed lines, the explanation, and the test that catches it."""
+    """The picture and the question, and the start of a collapsed answer: the changed lines, the explanation, and the test that
+    catches it."""
     bug, index = find_bug(name)
     rows = [(mark, line) for mark, line, _ in changes(bug) if mark != " "]
     lines = textwrap.dedent("\n".join(line for _, line in rows)).split("\n")

@@ -1,4 +1,5 @@
-"""The tables of docs/results/check.md on ./lab check: how often it finds mistakes, and whether what it says of them is true."""
+"""The tables of docs/results/check.md on ./lab check: how often it finds mistakes, and whether what it says about them is
+true."""
 from project import CHAPTERS, RECORDS, name_of, read_json, table
 from scipy.stats import binomtest
 
@@ -8,8 +9,8 @@ LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
 
 class Rate:
-    """Counts of trials. `alone` counts those with a single name, `right` those where it is the mistake, `among` those where the mistake
-    is one of the names that fit, and `told` those with facts or names."""
+    """Counts of trials. `alone` counts those with a single name, `right` those where that is the mistake, `among` those where the
+    mistake is among the names that fit, and `told` those with facts or names."""
 
     def __init__(self, trials):
         large = [trial for trial in trials if trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE]
@@ -44,7 +45,7 @@ def row(words, rate):
 
 
 def submission_row(words, submissions):
-    """Of shaders from outside. Whether what is told points at the mistake was judged by a person."""
+    """Row for shaders from outside. Whether the report points at the mistake was judged by a person."""
     wrong = [row for row in submissions if not row["is_right"]]
     found = [row for row in wrong if row["verdict"] != "correct"]
     alone = [row for row in found if len(row["named"]) == 1]
@@ -55,7 +56,7 @@ def submission_row(words, submissions):
 
 
 def submission_table():
-    """A table of the shaders that were written without a look at the catalogue, and a list of what was told of each."""
+    """A table of the shaders written without looking at the catalogue, and a list of what was reported about each."""
     records = {key: RECORDS / f"check/{key}.json" for key in SUBMISSIONS}
     rows, told = [], []
     for key, file in records.items():
@@ -70,7 +71,7 @@ def submission_table():
 
 
 def confusion_table(record):
-    """A table of rates by condition, one by chapter, and a list of mistakes that were missed or misnamed."""
+    """A table of rates by condition, one by chapter, and a list of missed or misnamed mistakes."""
     head = ["tried", "large ones found", "found", "not silent", "the mistake is one of the names that fit", "a single name is right"]
     conditions = rates(record)
     correct = conditions.pop("correct", Rate([]))

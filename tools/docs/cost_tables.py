@@ -1,4 +1,4 @@
-"""The part of docs/results/ on the cost of features and its growth, from records of build/bin/cost_record."""
+"""The part of docs/results/ about the cost of features and its growth, from records of build/bin/cost_record."""
 import math
 from statistics import linear_regression, median
 
@@ -64,7 +64,7 @@ def memory_of(row):
 
 
 def exponent(rows, quantity):
-    """Slope of the logarithms, for quantities above 0."""
+    """Slope in log-log coordinates, for quantities above 0."""
     counts = [math.log(row["count"]) for row in rows]
     if len(rows) < 2:
         return "-"

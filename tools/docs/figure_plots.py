@@ -1,4 +1,4 @@
-"""Draws the figures of the pages from images, reports and points of samplers."""
+"""Draws the pages' figures from images, reports and sampler points."""
 import math
 import shutil
 
@@ -30,7 +30,7 @@ TONES = {"srgb": encode_srgb, "linear": lambda image: image, "relative": lambda 
 
 
 def labelled(render):
-    """The label and the pixels of a render's tile."""
+    """The label and pixels of a render's tile."""
     facts = {"number": int(render.chapter[:2]), "scene": render.scene, "samples": render.report["rows"][-1]["samples"],
              "mean": render.image.mean(), "largest": render.image.max()}
     return render.label.format(**facts), TONES[render.tone](render.image)
@@ -48,7 +48,7 @@ def sheet_of(name):
 
 
 def chapters(folder, renders):
-    """One picture for each chapter."""
+    """One picture per chapter."""
     for render in renders:
         image.imsave(folder / f"{render.name}.png", bytes_of(render.image), pil_kwargs={"optimize": True})
 
@@ -59,7 +59,7 @@ def thumbnails(folder, renders):
 
 
 def hero(folder, renders):
-    """The picture at the head of the README, a little darker for its glowing heart."""
+    """The picture at the top of the README, slightly darker because of its glowing heart."""
     image.imsave(folder / "hero.jpg", encode_srgb(0.66 * renders[0].image), pil_kwargs=QUALITY)
 
 
@@ -190,7 +190,7 @@ def random_numbers(folder, renders):
 
 
 def window(output, renders):
-    """Screenshots by the test of the window: a chapter, and the same chapter after a mistake in its shader."""
+    """Screenshots taken by the window's test: a chapter, and the same chapter after a mistake in its shader."""
     command = ["tests/support/with_display.sh", BINARIES / "viewer_tests", "--gtest_filter=ViewerTest.ShowsThePicture*"]
     process = run_program(command)
     if process.returncode != 0 or "SKIPPED" in process.stdout:

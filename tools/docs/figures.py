@@ -21,9 +21,9 @@ from report.studies import measures, named
 
 GOES_ON = True
 PICTURES = ROOT / "docs/pictures"
-CACHE = ROOT / "output/figures"  # renders, in a folder for each state of the sources
-RAYS_PER_PIXEL = 400  # of the chapters' pictures
-SECONDS = 2  # of the renders that are compared at equal time
+CACHE = ROOT / "output/figures"  # renders, one folder per state of the sources
+RAYS_PER_PIXEL = 400  # for the chapters' pictures
+SECONDS = 2  # for renders compared at equal time
 MEASURES = measures()
 
 
@@ -34,9 +34,9 @@ class Render:
     name: str
     chapter: str
     scene: str
-    size: int  # width, and height unless that is given
+    size: int  # width, and height unless specified
     options: tuple
-    rays_per_pixel: int = 0  # decides on the number of samples, if not 0
+    rays_per_pixel: int = 0  # determines the number of samples, if not 0
     height: int = 0
     shader: str = ""  # its text, instead of the chapter's own
     row: int = field(default=0, repr=False)  # of a sheet
@@ -72,7 +72,7 @@ class Render:
 
 
 def renders_of_tiles(folder, figure):
-    """The renders of a figure in a chapter's measure.json. Tiles add their own options, and "chapter" counts from this one."""
+    """The renders of a figure in a chapter's measure.json. Tiles add their own options, and "chapter" is relative to this one."""
     renders, names = [], list(CHAPTERS.values())
     look = {key: figure[key] for key in ("label", "tone", "rays_per_pixel") if key in figure}
     width, height = figure.get("size", (320, 320))
@@ -87,12 +87,12 @@ def renders_of_tiles(folder, figure):
 
 
 def renders_of_pictures(key, size, name_of):
-    """A picture of each chapter whose measure.json names its scene, for the same number of rays."""
+    """A picture for each chapter whose measure.json names its scene, with the same number of rays."""
     return [Render(name_of(folder), folder, measure[key], size, (), RAYS_PER_PIXEL) for folder, measure in MEASURES.items() if key in measure]
 
 
 def renders_of_bugs():
-    """Each bug of the gallery and the right picture, as ./lab bug renders them but with less noise."""
+    """Each bug of the gallery and the right picture, as ./lab bug renders them, but with less noise."""
     renders = []
     for name, (chapter, scene) in GALLERY.items():
         bug, _ = find_bug(name)
@@ -112,7 +112,7 @@ def renders_of_noise_and_bias():
 
 
 def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
-    """As many samples as fit into SECONDS according to the first record in docs/records/chapters, whatever else runs now."""
+    """As many samples as fit into SECONDS according to the first record in docs/records/chapters, whatever the current load."""
     renders = []
     for case in load_records("chapters")[0]["cases"]:
         if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):
@@ -132,7 +132,7 @@ def renders_of_convergence():
 
 
 def renders_of_first_steps():
-    """The tiles of each step's picture, named step_NUMBER_WHAT. Those that are noisy have 256 samples."""
+    """The tiles of each step's picture, named step_NUMBER_WHAT. Noisy ones have 256 samples."""
     shaders = first_steps.shaders(first_steps.PAGE.read_text(encoding="utf-8"))
     chapter, close = next(iter(CHAPTERS.values())), ("--camera-target", "-0.2,0.6,0", "--vertical-fov", 7)
 
@@ -147,7 +147,7 @@ def renders_of_first_steps():
             tile(8, "_1_sample", 1), tile(8, "_16_samples", 16), tile(8, "_256_samples"), tile(8, "_broken", 16)]
 
 
-# Name -> (function for its renders, function of figure_plots that draws them).
+# Name -> (function that makes its renders, function of figure_plots that draws them).
 FIGURES = {
     "chapters": (lambda: renders_of_pictures("picture", 320, str), figure_plots.chapters),
     "thumbnails": (lambda: renders_of_pictures("thumbnail", 120, lambda folder: folder[:2]), figure_plots.thumbnails),

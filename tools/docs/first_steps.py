@@ -10,7 +10,7 @@ BREAK_IT = re.compile(r"\*Break it:\* change `([^`]+)` to `([^`]+)`")
 
 
 def shaders(text):
-    """Name -> shader in the text of the page: "N" for step N, and "N broken" with the mistake that this step asks for."""
+    """Name -> shader in the page's text: "N" for step N, and "N broken" with the mistake that this step suggests."""
     found = {}
     for number, step in STEP.findall(text):
         blocks = SHADER.findall(step)

@@ -1,4 +1,4 @@
-"""The tables of hard cases and of device arithmetic in docs/numerics.md."""
+"""The tables of hard cases and device arithmetic in docs/numerics.md."""
 import re
 
 from project import ROOT, load_records, read_json, table
@@ -7,7 +7,7 @@ SMALLEST_ERROR = "errors_found_from"  # recorded by tests/support/expect_statist
 
 
 def load_cases():
-    """The hard cases in the order of section 3 of our research; those that are not in it come last."""
+    """The hard cases in the order of section 3 of our research; those it does not list come last."""
     cases = read_json(ROOT / "tests/hard_cases/cases.json")
 
     def order(case):
@@ -22,7 +22,7 @@ def short_name(record):
 
 
 def label(instance):
-    """A short name for the parameter of a test: "chapter 5" for "chapter_05_russian_roulette"."""
+    """A short name for a test's parameter: "chapter 5" for "chapter_05_russian_roulette"."""
     chapter = re.fullmatch(r"chapter_0?(\d+)_.*", instance)
     return f"chapter {chapter[1]}" if chapter else instance
 
@@ -33,7 +33,7 @@ def figures(instances):
     for instance, properties in instances.items():
         for name, value in properties.items():
             if name == SMALLEST_ERROR:
-                continue  # measured_text() gives the largest of a case
+                continue  # measured_text() gives a case's largest one
             values.setdefault(name, {}).setdefault(value, []).append(label(instance))
     texts = []
     for name, by_value in values.items():
@@ -45,7 +45,7 @@ def figures(instances):
 
 
 def measured_text(case, record):
-    """The cell of a case and a device."""
+    """The table cell for a case and a device."""
     texts, percents = [], []
     for test in case["tests"]:
         instances = record["tests"].get(test, {})

@@ -21,7 +21,7 @@ def samplers(scenes):
 
 
 def sampler_text(scenes):
-    """Names Mitsuba's best sampler among those that were measured."""
+    """Names the best of Mitsuba's samplers that were measured."""
     found = samplers(scenes)
     if not found:
         return "\nMitsuba's sampler is `independent`.\n"

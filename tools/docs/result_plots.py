@@ -16,16 +16,16 @@ from report.plots import svg_text
 from scipy.stats import binomtest
 
 GREY = "#787d83"
-# Blue, orange, purple, green and grey: seen on white and on black, and told apart by their lightness or by their markers.
+# Blue, orange, purple, green and grey: visible on white and on black, and distinguishable by lightness or marker.
 COLOURS, MARKERS = ["#2f7de1", "#c96a00", "#9b62d6", "#2c8f4e", GREY], "osD^X"
-WIDTH, ROW, FONT = 640, 19, 12  # pixels: of a plot, of a row with bars, of letters
+WIDTH, ROW, FONT = 640, 19, 12  # pixels: width of a plot, height of a row with bars, font size
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "lab", "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans", "Verdana"],
          "font.size": FONT, "figure.constrained_layout.w_pad": 0.16, "savefig.transparent": True, "legend.frameon": False, "legend.fontsize": FONT - 1} | {
              f"{name}color": GREY for name in ("text.", "axes.edge", "axes.label", "xtick.", "ytick.", "grid.")}
 
 
 def new_figure(height, rows=1, columns=1, **options):
-    """A figure of the pages' width; lengths are in pixels."""
+    """A figure as wide as the pages; lengths are in pixels."""
     pyplot.rcParams.update(STYLE)
     return pyplot.subplots(rows, columns, figsize=(WIDTH / 72, height / 72), layout="constrained", **options)
 
@@ -54,7 +54,7 @@ def lines(axis, x, values, index, label):
 
 
 def forest(axis, rows, series):
-    """A row for each name, with a bar of each series {name of the row: [value, low, high]} in it. A row that is None is a gap."""
+    """One row per name, with a bar for each series {name of the row: [value, low, high]}. A row of None is a gap."""
     places = {name: -place for place, name in enumerate(rows) if name is not None}
     for index, (label, values) in enumerate(series.items()):
         offset = (index - (len(series) - 1) / 2) * -0.7 / len(series)
@@ -82,12 +82,12 @@ def devices(folder):
 
 
 def short_device(name):
-    """The device without its driver, and with what counts for its rays."""
+    """The device without its driver, and with what matters for its rays."""
     return name.split(" (")[0] + without_cores(name, " (without ray tracing cores)")
 
 
 def without_cores(name, text):
-    """The text if this device traces rays in software."""
+    """The text if this device traces rays in software, else ""."""
     return text if re.search(r"\b[AH][12]00\b", name) else ""
 
 
@@ -217,7 +217,7 @@ PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba,
 
 # ---------------------------------------------------------------------------------------------- files
 def digest(numbers):
-    """Of the numbers of a plot, to six digits: other versions of SciPy round the last ones differently."""
+    """Digest of a plot's numbers, to six digits: other versions of SciPy round the last ones differently."""
     text = json.dumps(numbers, default=str)
     return hashlib.sha256(re.sub(r"-?\d+\.\d+(?:e-?\d+)?", lambda match: f"{float(match[0]):.6g}", text).encode()).hexdigest()[:16]
 
@@ -230,7 +230,7 @@ def write_plot(file, name):
 
 
 def is_fresh(file, name):
-    """Whether a plot shows the numbers of the records."""
+    """Whether a plot shows the current numbers of the records."""
     figure, numbers = PLOTS[name]()
     pyplot.close(figure)
     return file.is_file() and f"<desc>numbers {digest(numbers)}</desc>" in file.read_text(encoding="utf-8")

@@ -18,7 +18,7 @@ GREY = "#787d83"
 
 
 def read_rooms():
-    """The rooms that exist, from the top to the bottom of the table."""
+    """The existing rooms, from the top to the bottom of the table."""
     return [name for name in TABLE_ROW.findall((ROOT / "common/README.md").read_text(encoding="utf-8")) if (ROOT / name).is_dir()]
 
 
@@ -28,14 +28,14 @@ def files_of(rooms):
 
 
 def included_files(path):
-    """The files that a source includes, where they can be."""
+    """The files that a source includes, at every place they may be."""
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".py":
         return [ROOT / "tools" / name for name in IMPORT.findall(text)]
     found = []
     for name in INCLUDE.findall(text):
         places = [path.parent / name, *(ROOT / folder / name for folder in ("common", "shaders", "chapters", "."))]
-        # A chapter's files, and files of other rooms of shaders/, are included by their names alone.
+        # A chapter's files, and files in other rooms of shaders/, are included by name only.
         places += [place for folder in ("shaders", "chapters") for place in sorted((ROOT / folder).glob(f"*/{name}"))]
         found += [place.resolve() for place in places if place.is_file()][:1]
     return found
@@ -54,7 +54,7 @@ def includes():
 
 
 def upward():
-    """What includes a room above its own, and chapters that include a later one."""
+    """Sources that include a room above their own, and chapters that include a later one."""
     rooms = read_rooms()
     wrong = [text for (room, other), text in includes().items() if rooms.index(room) > rooms.index(other)]
     for path in sorted((ROOT / "chapters").glob("*/*.glsl")):

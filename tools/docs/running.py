@@ -14,19 +14,19 @@ from pathlib import Path
 from docs.ages import stamped
 from project import RECORDS, ROOT, Parser, UserError, commit, load_records, run_to_end, show_progress, table, write_json
 
-# Each is what a reader would type. The first one builds the renderer, others what they need beyond it.
+# What a reader would type. The first one builds the renderer, others what they need in addition.
 COMMANDS = ["run 1 --headless", "run 1 --headless --seed 2", "run 10 --headless", "check 1", "sample cosine", "report cornell_box 1 3", "book",
             "package linux"]
 LONG = ["test --quick", "test"]
 
 
 def size_of(folder):
-    """Bytes on the disk of all files of a folder."""
+    """Disk usage of all files in a folder, in bytes."""
     return sum(path.lstat().st_blocks * 512 for path in folder.rglob("*") if not path.is_symlink())
 
 
 def measured(command, clone):
-    """Runs ./lab in a process of its own, whose children's use the system adds up."""
+    """Runs ./lab in a separate process, so that the system sums up its children's usage."""
     before, started = size_of(clone), time.monotonic()
     child = os.fork()
     if child == 0:

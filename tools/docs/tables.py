@@ -32,12 +32,12 @@ TABLE = re.compile(r"(<!-- table: ([^\n]+?) -->\n).*?(<!-- end of table -->)", r
 
 
 def kind_of(case):
-    """The cases of a kind and a scene stand in a table: their names differ in the last word."""
+    """Cases of the same kind and scene share a table: their names differ in the last word."""
     return case["case"].rpartition(" ")[0]
 
 
 def kind_tables(record):
-    """{(kind, scene): rows} for one device. A row begins with the name of its case."""
+    """{(kind, scene): rows} for one device. A row starts with the name of its case."""
     tables, bases = {}, {}
     for case in record["cases"]:
         key = kind_of(case), case["scene"]
@@ -57,7 +57,7 @@ def kind_tables(record):
     return tables
 
 
-ALL_COLUMNS = " with all columns"  # ends the name of a table of a page; others have only what counts
+ALL_COLUMNS = " with all columns"  # suffix of a page's table; others have only the essential columns
 COLUMNS = ["rays per sample", "time per sample", "error of one sample", "error × rays", "error × time"]
 
 
@@ -74,7 +74,7 @@ def chapter_tables(record):
 
 
 def page_table(name, record):
-    """The table of a page for one device: all cases of a kind, or for "chapter N" that chapter and the row before it."""
+    """A page's table for one device: all cases of a kind, or for "chapter N" that chapter and the row before it."""
     name, is_wide = name.removesuffix(ALL_COLUMNS), name.endswith(ALL_COLUMNS)
     kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
     tables, rows = kind_tables(record), []
@@ -84,7 +84,7 @@ def page_table(name, record):
         if other == kind:
             chosen = cases
             if number:
-                # Only the first case of all is shown without a row before it.
+                # Only the very first case is shown without the row before it.
                 places = [i for i, row in enumerate(cases) if row[0] == name and (i > 0 or name == record["cases"][0]["case"])]
                 chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
             if number and chosen:  # the other is compared with the first row
@@ -94,7 +94,7 @@ def page_table(name, record):
 
 
 def expected_table():
-    """Seconds and error of the Cornell box on each device, at the default resolution and number of samples."""
+    """Seconds and error in the Cornell box on each device, at the default resolution and number of samples."""
     rows, pixels, samples = [], 512 * 512, 64
     for record in load_records("chapters"):
         cases = [case for case in record["cases"] if kind_of(case) == "chapter" and case["scene"].startswith("cornell_box")]
@@ -130,7 +130,8 @@ def headline_table():
 
 
 def over_bare(rates):
-    """Rays per second over the bare rate: the median of interleaved runs and their range. Older records have one number."""
+    """Rays per second relative to the bare rate: the median of interleaved runs and their range. Older records have a single
+    number."""
     if "runs" not in rates:
         return f"{rates['rays_per_second'] / rates['bare_rays_per_second']:.2f}"
     ratios = [a / b for a, b in zip(rates["runs"]["rays_per_second"], rates["runs"]["bare_rays_per_second"])]
@@ -157,7 +158,7 @@ OWN_TABLES = {
     **examples(),
 }
 AGES = "ages of records"
-# Wherever times on such a device are compared.
+# Shown wherever times on such a device are compared.
 NO_RAY_TRACING_CORES = """
 > **An NVIDIA H200 has no ray tracing cores.** There the driver, our tree and Mitsuba's OptiX all trace rays in software. GPUs with such
 > cores trace rays several times faster in hardware, and Mitsuba gains from that as well. No ratio measured here holds for them.
@@ -166,14 +167,14 @@ NO_RAY_TRACING_CORES = """
 
 
 def device_table(name, stem):
-    """A table of the page of a device."""
+    """A table on a device's page."""
     folder, text_of = DEVICE_TABLES[name]
     file = RECORDS / folder / f"{stem}.json"
     return "\n" + text_of(read_json(file)) if file.is_file() else "\nNot measured on this device.\n"
 
 
 def page_tables(name, page):
-    """The text of a table: its own, or that of the first device with its explanation."""
+    """The text of a table: its own, or the first device's with its explanation."""
     if name in OWN_TABLES:
         return OWN_TABLES[name]()
     if name == AGES:
@@ -195,8 +196,8 @@ def without_ages(text):
 
 
 def write_pages(is_check=False, checks_ages=False):
-    """Writes all pages and plots, or only checks that they are up to date. Whether records are old is checked apart: else each change of
-    a shader would ask for other pages."""
+    """Writes all pages and plots, or only checks that they are up to date. The age of records is checked separately: otherwise
+    each change of a shader would require other pages."""
     for page in PAGES:
         before = page.read_text(encoding="utf-8")
         text = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3], before)

@@ -11,7 +11,7 @@ from difflib import SequenceMatcher
 from project import CHAPTERS, ROOT, Parser
 
 CONTEXT = 3  # unchanged lines around a change
-BEFORE = dict(zip(list(CHAPTERS)[1:], CHAPTERS))  # number of a chapter: that of the one before
+BEFORE = dict(zip(list(CHAPTERS)[1:], CHAPTERS))  # number of a chapter: that of the previous one
 STYLES = {"-": "\033[31m", "+": "\033[32m", "@": "\033[36m", " ": ""}  # ANSI: red, green, cyan
 STRONG, RESET = "\033[7m", "\033[0m"
 INCLUDE = re.compile(r'#include "(?:\.\./)?([\w/]+\.glsl)"')
@@ -19,14 +19,14 @@ ESTIMATOR = re.compile(r"^vec3 path_trace\(", re.MULTILINE)
 
 
 def text_of(file):
-    """The text of a shader, a path below chapters/; empty if there is no such file."""
+    """The text of a shader, given by its path below chapters/; empty if the file does not exist."""
     path = ROOT / "chapters" / file
     return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def shader_lines(file):
-    """The lines of a shader below chapters/. Where it includes its namesake of another chapter, or a file with the function
-    path_trace(), the included lines follow, so that chapters are compared as if each had written its own."""
+    """The lines of a shader below chapters/. If it includes its namesake from another chapter, or a file with the function
+    path_trace(), the included lines follow, so that chapters are compared as if each were written in full."""
     (folder, name), lines = file.split("/"), []
     for line in text_of(file).splitlines():
         lines.append(line)
@@ -41,13 +41,13 @@ def lesson(number):
     """(file before, file) below chapters/ for each shader of a chapter's folder, the estimator first."""
     folder, names = CHAPTERS[number], ["path_trace.glsl"]
     for path in sorted((ROOT / "chapters" / folder).glob("*.glsl")):
-        if path.name not in names and not ESTIMATOR.search(text_of(f"{folder}/{path.name}")):  # else it is part of the first
+        if path.name not in names and not ESTIMATOR.search(text_of(f"{folder}/{path.name}")):  # otherwise it is part of the first
             names.append(path.name)
     return [(f"{CHAPTERS[BEFORE[number]]}/{name}", f"{folder}/{name}") for name in names]
 
 
 def words_of(lines):
-    """Names, keywords and numbers of code, without comments."""
+    """Names, keywords and numbers in code, without comments."""
     return re.findall(r"[\w.]+", re.sub(r"//.*", "", "\n".join(lines)))
 
 
@@ -60,8 +60,8 @@ def is_code(line):
 
 
 def compare(before, after):
-    """Rows (mark, line, partner) and counts. Marks: space for equal lines, - for removed and + for new ones. The partner of a line
-    is the line that it replaces, or that replaces it."""
+    """Rows (mark, line, partner) and counts. Marks: space for equal lines, - for removed and + for new ones. A line's partner is
+    the one that it replaces, or that replaces it."""
     rows, counts = [], {"code": 0, "comments": 0, "words": 0}
     for kind, a, b, c, d in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
         gone, new = before[a:b], after[c:d]
@@ -71,7 +71,7 @@ def compare(before, after):
         paired = len(gone) == len(new)
         rows += [("-", line, new[i] if paired else None) for i, line in enumerate(gone)]
         rows += [("+", line, gone[i] if paired else None) for i, line in enumerate(new)]
-        for key, counted in (("code", is_code), ("comments", is_comment)):  # a line that replaces another is one line
+        for key, counted in (("code", is_code), ("comments", is_comment)):  # a line that replaces another counts once
             counts[key] += max(sum(map(counted, gone)), sum(map(counted, new)))
         matcher = SequenceMatcher(None, words_of(gone), words_of(new), autojunk=False)
         counts["words"] += sum(max(j - i, n - m) for tag, i, j, m, n in matcher.get_opcodes() if tag != "equal")
@@ -79,7 +79,7 @@ def compare(before, after):
 
 
 def paint(mark, line, partner, colour):
-    """A row as text; in colour, the words that differ from the partner stand out."""
+    """A row as text; in colour, words that differ from the partner are highlighted."""
     if not colour:
         return f"{mark} {line}".rstrip()
     if partner is None:
@@ -93,7 +93,7 @@ def paint(mark, line, partner, colour):
 
 
 def visible(rows):
-    """The rows near a change, with None in place of those left out."""
+    """The rows near a change, with None in place of omitted ones."""
     near = {j for i, row in enumerate(rows) if row[0] != " " for j in range(i - CONTEXT, i + CONTEXT + 1)}
     shown = [i for i in range(len(rows)) if i in near]
     for previous, i in zip([-1, *shown], shown):

@@ -1,5 +1,5 @@
-"""Sets of points in the unit square, as pixels of a render have them: their spectra, and how fast the errors of estimates fall.
-The random ones and Sobol's come from the shaders."""
+"""Point sets in the unit square, as used by pixels of a render: their spectra, and how fast the errors of estimates fall. Random
+and Sobol points come from the shaders."""
 import numpy as np
 
 PIXELS, SIZE = 64, 4096  # number of sets of each kind, and points per set
@@ -8,13 +8,13 @@ SIZES = [4**k for k in range(7)]
 
 
 def grid(side, dimensions, offset):
-    """Points of a regular grid on [0,1]^k with `side` of them along each axis."""
+    """Points of a regular grid on [0,1]^k with `side` points along each axis."""
     axis = (np.arange(side) + offset) / side
     return np.stack(np.meshgrid(*[axis] * dimensions, indexing="ij"), axis=-1).reshape(-1, dimensions)
 
 
 def first_points(sets, name, size):
-    """The first points of each set; a grid differs for each size."""
+    """The first points of each set; a grid differs for every size."""
     return grid(round(size**0.5), 2, 0.5)[None] if name == "grid" else sets[name][:, :size]
 
 
@@ -34,7 +34,7 @@ def spectra(sets):
 
 
 def errors(sets, integral):
-    """Name -> errors of estimates from SIZES points: the roots of their mean squares over the sets."""
+    """Name -> errors of estimates from SIZES points: root mean squares over the sets."""
     exact = integral.value(2)
 
     def error(points):
@@ -45,7 +45,7 @@ def errors(sets, integral):
 
 
 def slope(values):
-    """The slope of the line through the logarithms of the errors of SIZES points."""
+    """The log-log slope of the errors against SIZES points."""
     return np.polyfit(np.log(SIZES), np.log(values), 1)[0]
 
 

@@ -15,7 +15,7 @@ from report.studies import named
 
 PROGRAM = program_file("sample_points")
 BINS = 16
-CHANCE = 4.5  # in standard errors: the largest of BINS deviations hardly ever exceeds it
+CHANCE = 4.5  # in standard errors: the largest of BINS deviations rarely exceeds it
 
 
 @dataclass
@@ -28,19 +28,19 @@ class Integral:
 @dataclass
 class Playground:
     title: str
-    sampler: str  # of the program sample_points
+    sampler: str  # for the program sample_points
     integrals: list
-    coordinate: str  # that the histogram shows
+    coordinate: str  # shown by the histogram
     coordinates: Callable = lambda points: points[:, 0]
-    cumulative: Callable = lambda x: x  # the distribution function of that coordinate
+    cumulative: Callable = lambda x: x  # distribution function of that coordinate
     dimensions: int = 2
     kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
-    is_pixel: bool = False  # whether the points are samples of one pixel, and not the first ones of as many
-    chapter: str = next(iter(CHAPTERS.values()))  # whose shader makes the points
+    is_pixel: bool = False  # whether the points are samples of one pixel, rather than the first of as many pixels
+    chapter: str = next(iter(CHAPTERS.values()))  # whose shader generates the points
 
 
 def drop_lost(points):
-    """The directions that the estimator traced."""
+    """The directions that the estimator actually traced."""
     return points[np.any(points[:, :3] != 0, axis=1)]
 
 
@@ -50,7 +50,7 @@ COSINES = [Integral("∫ n·ω dω over the hemisphere", lambda k: math.pi, lamb
            Integral("∫ (n·ω)² dω over the hemisphere", lambda k: 2 * math.pi / 3, lambda p: math.pi * p[:, 3] * p[:, 2])]
 MEAN_SQUARE = Integral("∫ ((u_1 + … + u_k) / k)² du over [0,1]^k", lambda k: 1 / 4 + 1 / (12 * k),
                        lambda u: u.mean(axis=1) ** 2)
-COMPARED = {"the quarter disk's area": DARTS, "a smooth integral": MEAN_SQUARE}  # with each set of points
+COMPARED = {"the quarter disk's area": DARTS, "a smooth integral": MEAN_SQUARE}  # with each point set
 
 PLAYGROUNDS = {
     "1d": Playground("1D Monte Carlo integration", "numbers", [
@@ -83,7 +83,7 @@ PLAYGROUNDS |= OF_CHAPTERS
 
 
 def draw(playground, count, seed, dimensions, device=None, samples=1):
-    """Array [index, column] of points: the first ones of pixels, or `samples` of each pixel."""
+    """Array [index, column] of points: the first ones of the pixels, or `samples` of each pixel."""
     result = run_program([PROGRAM, playground.sampler, playground.chapter, count, samples, seed, dimensions, device or ""], encoding=None, errors=None)
     if result.returncode != 0:
         raise UserError(result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}")
@@ -91,7 +91,7 @@ def draw(playground, count, seed, dimensions, device=None, samples=1):
 
 
 def draw_sets(seed, device=None):
-    """Name -> points [pixel, index, axis] of many pixels: random ones, Sobol's, and a chapter's, which are scrambled."""
+    """Name -> points [pixel, index, axis] of many pixels: random ones, Sobol's, and a chapter's scrambled ones."""
     points = next(playground for playground in PLAYGROUNDS.values() if playground.is_pixel)
     kinds = {"random": PLAYGROUNDS["numbers"], "Sobol": replace(points, sampler="sobol"), "scrambled": points}
     return {name: draw(kind, point_sets.PIXELS * point_sets.SIZE, seed, 2, device, point_sets.SIZE).reshape(point_sets.PIXELS, -1, 2)
@@ -99,7 +99,7 @@ def draw_sets(seed, device=None):
 
 
 def histogram(playground, points):
-    """Edges of bins, and the observed and expected numbers of points in them."""
+    """Edges of bins, with the observed and expected numbers of points in them."""
     values = playground.coordinates(points)
     counts, edges = np.histogram(values, BINS, (0, 1))
     return edges, counts, np.diff(playground.cumulative(edges)) * len(values)
@@ -125,7 +125,7 @@ def grid_rows(integral, dimensions, limit):
 
 
 def report(playground, points, dimensions):
-    """The text that is printed."""
+    """The printed text."""
     edges, counts, expected = histogram(playground, points)
     lines = [playground.title, "", f"{playground.coordinate:>12}   points  expected"]
     scale = 40 / max(counts.max(), expected.max())

@@ -1,4 +1,4 @@
-"""Plots of points, their density and the estimates that they give."""
+"""Plots of points, their density and the resulting estimates."""
 import matplotlib
 
 matplotlib.use("agg")
@@ -29,7 +29,7 @@ def scatter(axis, kind, points):
 
 
 def density(axis, playground, points, histogram):
-    """Histogram of a coordinate as a density, beside the exact density."""
+    """Histogram of a coordinate as a density, with the exact density."""
     edges, counts, _ = histogram(playground, points)
     heights = counts / counts.sum() / np.diff(edges)
     axis.stairs(heights, edges, fill=True, color=COLOURS[5], label="points")
@@ -60,7 +60,7 @@ def save_overview(path, playground, points, dimensions, histogram, estimates):
 
 
 def save_point_sets(path, sets, integrals):
-    """Sets of points, their spectra, and the errors of two integrals with them."""
+    """Point sets, their spectra, and the errors of two integrals with them."""
     names = ["grid", *sets]
     figure = pyplot.figure(figsize=(14, 6), layout="constrained")
     axes = figure.add_gridspec(2, len(names) + 1, width_ratios=[1] * len(names) + [1.5])

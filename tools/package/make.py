@@ -23,10 +23,10 @@ HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
 FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
 FILES = ["CHANGELOG.md", "LICENSE", "README.md"]
-# Solutions and what only teachers need, or what needs the sources.
+# Solutions and other material for teachers, and what needs the sources.
 LEFT_OUT = ["tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/exercise.json",
             "chapters/*/mistakes.json", "chapters/*/solutions/*", "chapters/*/variants/*", "*/__pycache__/*"]
-DATE = 1980, 1, 1, 0, 0, 0  # of all files: the same sources make the same archive
+DATE = 1980, 1, 1, 0, 0, 0  # for all files: the same sources make the same archive
 BOOK = ROOT / "output/book"
 
 
@@ -51,7 +51,7 @@ def windows_files(chapters):
 
 
 def linux_files(chapters):
-    """The programs, and the libraries that a system without a compiler may lack."""
+    """The programs, and libraries that a system without a compiler may lack."""
     files, libraries = {"lab": (ROOT / "lab").read_bytes()}, {}
     for name in [*chapters, *windows_programs.OTHERS]:
         files[f"build/bin/{name}"] = stripped(BINARIES / name)
@@ -63,7 +63,7 @@ def linux_files(chapters):
 
 
 def stripped(program):
-    """A program without its symbols."""
+    """A program stripped of its symbols."""
     with tempfile.NamedTemporaryFile() as copy:
         run_to_end(["strip", "-o", copy.name, program], f"Packing {program}")
         return Path(copy.name).read_bytes()
@@ -78,12 +78,12 @@ def write_zip(archive, folder, files):
         for name in sorted(files):
             entry = zipfile.ZipInfo(f"{folder}/{name}", DATE)
             entry.external_attr = (0o755 if is_program(name) else 0o644) << 16
-            entry.create_system = 3  # Unix: so these permissions count
+            entry.create_system = 3  # Unix, so that the permissions below apply
             stream.writestr(entry, files[name], zipfile.ZIP_DEFLATED)
 
 
 def write_tar(archive, folder, files):
-    # Chapters' programs differ little: with a large dictionary, xz stores them once.
+    # Chapters' programs differ little: with a large dictionary, xz stores their common parts once.
     filters = [{"id": lzma.FILTER_LZMA2, "preset": 2, "dict_size": 1 << 26}]
     with lzma.open(archive, "wb", filters=filters) as compressed, tarfile.open(fileobj=compressed, mode="w") as stream:
         for name in sorted(files):
@@ -96,7 +96,7 @@ SYSTEMS = {"windows": (windows_files, write_zip, ".zip"), "linux": (linux_files,
 
 
 def pack(system, archive, tree=ROOT):
-    """Writes an archive of a tree of the lab, the whole one or a handout; it is complete or not there."""
+    """Writes an archive of a tree of the lab, the whole one or a handout; it is either complete or absent."""
     system_files, write, _ = SYSTEMS[system]
     chapters = [name for name in CHAPTERS.values() if (tree / "chapters" / name).exists()]
     files = tree_files(tree) | system_files(chapters)
@@ -112,7 +112,7 @@ def version():
 
 
 def changes(number):
-    """What CHANGELOG.md says of a version."""
+    """What CHANGELOG.md says about a version."""
     sections = re.split(r"^## (.*)\n", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), flags=re.MULTILINE)
     found = dict(zip(sections[1::2], sections[2::2]))
     if number not in found:
@@ -121,7 +121,7 @@ def changes(number):
 
 
 def release(folder):
-    """All files of a release; the archives have the book in them."""
+    """All files of a release; the archives contain the book."""
     number = version()
     notes = changes(number)
     book.build(BOOK, is_teacher=False)

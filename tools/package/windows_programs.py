@@ -1,4 +1,4 @@
-"""Builds the programs for Windows, on Debian or Ubuntu, and before, once, the libraries that have no package for Windows."""
+"""Builds the programs for Windows, on Debian or Ubuntu; before that, once, the libraries that have no package for Windows."""
 import re
 import shutil
 import sys
@@ -10,13 +10,13 @@ HERE = Path(__file__).parent / "windows"
 BUILD = ROOT / "build/windows"  # may be deleted at any time
 SOURCES, LIBRARIES = BUILD / "sources", BUILD / "libraries"
 PROGRAMS = BUILD / "programs/bin"
-OTHERS = ["merge_images", "sample_points"]  # of a package, besides the chapters
-# Their sources are built in the version of the Linux programs, so that both do the same.
+OTHERS = ["merge_images", "sample_points"]  # of a package, in addition to the chapters
+# Built from source in the same version as for the Linux programs, so that both behave alike.
 PACKAGES = ["glslang-dev", "libglfw3-dev", "libimgui-dev", "libtinyexr-dev", "libtinyobjloader-dev"]
 
 
 def fetch_sources():
-    """Unpacks the sources into SOURCES/NAME-VERSION. It uses package lists of its own, so it needs no root and leaves apt's alone."""
+    """Unpacks the sources into SOURCES/NAME-VERSION. Uses private package lists, so it needs no root and leaves apt's alone."""
     versions = run_to_end(["dpkg-query", "-W", "-f", "${source:Package}=${source:Version} ", *PACKAGES], "Asking for versions").split()
     stamp = SOURCES / "versions.txt"
     if stamp.exists() and stamp.read_text(encoding="utf-8").split() == versions:
@@ -43,7 +43,7 @@ def fetch_sources():
 
 
 def cmake(source, build, what, targets, **variables):
-    """Configures and builds; a folder that is complete takes a second."""
+    """Configures and builds; takes a second if the folder is up to date."""
     variables |= {"CMAKE_BUILD_TYPE": "Release", "CMAKE_CXX_FLAGS_RELEASE": "-O2", "LAB_WINDOWS_LIBRARIES": LIBRARIES}
     run_to_end(["cmake", "-G", "Ninja", "-S", source, "-B", build, "--toolchain", HERE / "toolchain.cmake",
                 *(f"-D{name}={value}" for name, value in variables.items())], f"Configuring {what}")

@@ -1,4 +1,4 @@
-"""Our materials that Mitsuba 3 lacks, as its BSDFs."""
+"""Those of our materials that Mitsuba 3 lacks, as Mitsuba BSDFs."""
 import drjit as dr
 import mitsuba as mi
 import numpy as np
@@ -8,7 +8,7 @@ def define_bsdfs():
     """Defines and registers the classes: their base class exists only after a variant was chosen."""
 
     class ByEvalPdf(mi.BSDF):
-        """eval() and pdf() by eval_pdf()."""
+        """Implements eval() and pdf() with eval_pdf()."""
 
         def eval(self, ctx, si, wo, active=True):
             return self.eval_pdf(ctx, si, wo, active)[0]
@@ -30,7 +30,7 @@ def define_bsdfs():
             self.m_flags = self.nested.flags()
 
         def turn(self, si, active):
-            """The interaction in the frame of the interpolated normal, and whether wi is on one side of both."""
+            """The interaction in the frame of the interpolated normal, and whether wi is on the same side of both normals."""
             normal = mi.Vector3f(si.shape.eval_attribute_3("vertex_shading_normal", si, active))
             length = dr.norm(normal)
             turned = mi.SurfaceInteraction3f(si)
@@ -73,7 +73,7 @@ def define_bsdfs():
 
         def sample(self, ctx, si, sample1, sample2, active=True):
             _, _, probability = self.lobe_albedos(si, active)
-            # cos^(n+1) alpha is uniform. By the square t of tan(alpha / 2): nothing cancels where alpha is small.
+            # cos^(n+1) alpha is uniform. With the square t of tan(alpha / 2) nothing cancels for small alpha.
             t = dr.tanh(-0.5 * dr.log(1 - sample2.x) / (self.exponent + 1))
             phi = 2 * dr.pi * sample2.y
             lobe = mi.Vector3f(2 * dr.sqrt(t) * dr.cos(phi), 2 * dr.sqrt(t) * dr.sin(phi), 1 - t) / (1 + t)
@@ -89,7 +89,7 @@ def define_bsdfs():
         def eval_pdf(self, ctx, si, wo, active=True):
             active &= (si.wi.z > 0) & (wo.z > 0)
             diffuse, specular, probability = self.lobe_albedos(si, active)
-            # cos^n alpha, where 1 - cos alpha keeps its digits.
+            # cos^n alpha, with 1 - cos alpha computed accurately.
             one_minus_cos = 0.5 * dr.squared_norm(mi.reflect(si.wi) - wo)
             power = dr.exp(-2 * self.exponent * dr.atanh(one_minus_cos / (2 - one_minus_cos)))
             lobe = dr.select(one_minus_cos < 1, power, 0) / (2 * dr.pi)
@@ -98,13 +98,13 @@ def define_bsdfs():
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
 
     def correlation(alpha, wi, wo):
-        """Height-correlated masking-shadowing over the product of both sides', which Mitsuba has."""
+        """Height-correlated masking-shadowing divided by the product of both sides', which Mitsuba uses."""
         def term(w):
             return 0.5 * (dr.sqrt(1 + alpha**2 * dr.maximum(1 / dr.square(w.z) - 1, 0)) - 1)
         return (1 + term(wi)) * (1 + term(wo)) / (1 + term(wi) + term(wo))
 
     class RoughGlass(ByEvalPdf):
-        """Mitsuba's rough dielectric, with height-correlated masking-shadowing where it reflects."""
+        """Mitsuba's rough dielectric, with height-correlated masking-shadowing for reflection."""
 
         def __init__(self, properties):
             super().__init__(properties)
@@ -125,7 +125,7 @@ def define_bsdfs():
 
     class RoughOpaque(ByEvalPdf):
         """Rough metal, by Mitsuba's rough conductor without Fresnel, and a diffuse surface under a rough coat (Kelemen and
-        Szirmay-Kalos 2001), whose albedo is a sum over normals of facets."""
+        Szirmay-Kalos 2001), whose albedo is a sum over facet normals."""
 
         def __init__(self, properties):
             super().__init__(properties)
@@ -140,7 +140,7 @@ def define_bsdfs():
             self.albedo = mi.Float(albedo.astype(np.float32)) if dr.is_array_v(mi.Float) else albedo.tolist()
 
         def coat_albedo(self, cosine, count=200):
-            """Of normals that are chosen as D n m is."""
+            """Averaged over normals distributed like D n m."""
             u, phi = np.meshgrid(1 - (1 - (np.arange(count) + 0.5) / count) ** 3, np.pi * (np.arange(count) + 0.5) / count)
             tangent = self.alpha * np.sqrt(u / (1 - u))
             m_z = 1 / np.sqrt(1 + tangent**2)
@@ -158,7 +158,7 @@ def define_bsdfs():
             return (np.where(seen, part, 0) * 3 * (1 - u) ** (2 / 3)).mean()
 
         def absorbed(self, cosine):
-            """What the coat does not reflect of light from this direction."""
+            """The fraction of light from this direction that the coat does not reflect."""
             position = dr.sqrt(dr.clip(cosine, 0, 1)) * 256
             if not dr.is_array_v(mi.Float):
                 return 1 - np.interp(position, np.arange(257), self.albedo)

@@ -10,7 +10,7 @@ import numpy as np
 from project import write_bytes
 
 MAGIC = b"\x76\x2f\x31\x01\x02\x00\x00\x00"  # and version 2: scan lines
-ROWS_PER_BLOCK = {0: 1, 2: 1, 3: 16}  # by kind of compression: none, ZIP a row, ZIP
+ROWS_PER_BLOCK = {0: 1, 2: 1, 3: 16}  # by compression: none, ZIP per row, ZIP
 FLOAT, ZIP = 2, 3
 
 
@@ -41,7 +41,7 @@ def attribute(name, kind, value):
 
 
 def compress(rows):
-    """As OpenEXR prescribes: even bytes before odd ones, differences of neighbours, zlib; never longer than before."""
+    """OpenEXR's ZIP predictor: even bytes before odd ones, differences of neighbours, zlib; never longer than the input."""
     content = np.frombuffer(rows, np.uint8)
     split = np.concatenate([content[0::2], content[1::2]])
     split[1:] = split[1:] - split[:-1] + np.uint8(128)  # modulo 256
@@ -79,7 +79,7 @@ def write_exr(path, channels, attributes):
 
 # ---------------------------------------------------------------------------------------------- reading
 def read_header(content):
-    """Attributes up to the damage, if any, name -> (kind, bytes), and where the header ends."""
+    """Attributes up to the damage, if any, as name -> (kind, bytes), and the position where the header ends."""
     position, attributes = len(MAGIC), {}
     while content[position:position + 1] not in (b"", b"\0"):
         name, kind, rest = content[position:position + 1024].split(b"\0", 2)
@@ -94,7 +94,7 @@ def string_attributes(content):
 
 
 def read_attributes(path):
-    """The string attributes of an OpenEXR file; those before the damage in a damaged one."""
+    """The string attributes of an OpenEXR file; if it is damaged, those before the damage."""
     return string_attributes(path.read_bytes())
 
 

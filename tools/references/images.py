@@ -6,12 +6,12 @@ import numpy as np
 from project import ROOT, UserError
 from references.exr import Exr, read_attributes
 
-FOLDERS = [ROOT / "assets/references", ROOT / "output/references"]  # what ./lab reference writes
+FOLDERS = [ROOT / "assets/references", ROOT / "output/references"]  # where ./lab reference writes
 
 
 @dataclass
 class Reference:
-    """Arrays [row, column, channel] of the mean of all samples and of that mean's variance, 0 where it is not known."""
+    """Arrays [row, column, channel] of the mean of all samples and of that mean's variance, 0 if unknown."""
     mean: np.ndarray
     variance: np.ndarray
     attributes: dict
@@ -29,8 +29,8 @@ class Reference:
 
     @property
     def rel_mse_deviation(self):
-        """Standard deviation of the reference's own contribution to rel_mse, whose expectation rel_mse() subtracts. It is the same
-        for all images. Errors of pixels are taken as independent, those of a pixel's channels as fully correlated."""
+        """Standard deviation of the reference's own contribution to rel_mse, whose expectation rel_mse() subtracts. It is the
+        same for all images. Errors of pixels are assumed independent, those of a pixel's channels fully correlated."""
         pixels = (self.weights * self.variance).sum(axis=2)
         return float(np.sqrt(2 * (1 + 1 / self.freedom) * (pixels**2).sum()) / self.mean.size)
 
@@ -41,7 +41,7 @@ def read_rgb(path):
 
 
 def averaged(image, scale):
-    """The image after averaging blocks of scale x scale pixels."""
+    """The image with blocks of scale x scale pixels averaged."""
     height, width, channels = image.shape
     return image.reshape(height // scale, scale, width // scale, scale, channels).mean(axis=(1, 3))
 
@@ -64,13 +64,13 @@ def read_reference(path):
 
 
 def rel_mse(image, reference):
-    """Mean of the weighted (x - r)^2, less the variance of the reference."""
+    """Mean of the weighted (x - r)^2, minus the variance of the reference."""
     return max(float((reference.weights * ((image - reference.mean) ** 2 - reference.variance)).mean()), 0.0)
 
 
 def find_references(words):
-    """Pairs (scene file, reference file) for scenes given by name or file, or for names of references; without
-    words all shipped ones. Of several references of a scene the one with the longest paths counts."""
+    """Pairs (scene file, reference file) for scenes given by name or file, or for names of references; without words, all shipped
+    ones. If a scene has several references, the one with the longest paths counts."""
     paths = [path for folder in FOLDERS for path in sorted(folder.glob("*.exr"))]
     if not words:
         shipped = [path for path in paths if path.parent == FOLDERS[0]]
@@ -93,6 +93,6 @@ def find_reference(word, paths):
 
 
 def scene_file(word):
-    """The scene file that a chapter takes for this word."""
+    """The scene file that a chapter uses for this word."""
     shipped = ROOT / "assets/scenes" / f"{word}.json"
     return shipped if shipped.exists() else Path(word)

@@ -25,18 +25,18 @@ from references.images import FOLDERS
 from references.scenes import read_scene
 
 GOES_ON = True
-BATCHES = 64  # for the variance of the mean: known to 18 %
-MIN_BATCHES = 32  # of an interrupted render
+BATCHES = 64  # for the variance of the mean: accurate to 18 %
+MIN_BATCHES = 32  # in an interrupted render
 
 
 def render_batches(scene, name, batches, samples_per_batch, seed):
-    """Mean of the batches, variance of the mean, and the number of batches, less than asked for after Ctrl-C."""
+    """Mean of the batches, variance of the mean, and the number of batches, which is lower after Ctrl-C."""
     interrupts = []
     default_handler = signal.signal(signal.SIGINT, lambda *_: interrupts.append("Ctrl-C"))
     total = squares = done = 0
     started = time.monotonic()
     while done < batches and not interrupts:
-        # Mitsuba starts a sequence of random numbers of its own for each seed and pixel.
+        # Mitsuba uses a separate sequence of random numbers for each seed and pixel.
         image = mi.render(scene, spp=samples_per_batch, seed=(seed * batches + done) % (1 << 32))
         image = np.array(image, float)
         total, squares, done = total + image, squares + image * image, done + 1
@@ -49,7 +49,7 @@ def render_batches(scene, name, batches, samples_per_batch, seed):
 
 
 def make_reference(scene_file, output, width, height, max_path_length, samples, seed, keep=False):
-    """Renders a scene, unless `keep` is set and the file is up to date. None stands for the scene's own setting."""
+    """Renders a scene, unless `keep` is set and the file is up to date. None means the scene's own setting."""
     scene = read_scene(scene_file)
     width, height = width or scene.width, height or scene.height
     max_path_length = scene.max_path_length if max_path_length is None else max_path_length

@@ -1,4 +1,4 @@
-"""Reads .obj and .mtl files that a chapter renders, for tools that hand them to other renderers: see scenes.py."""
+"""Reads the .obj and .mtl files of chapters, for tools that pass them to other renderers: see scenes.py."""
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,7 +8,7 @@ import numpy as np
 
 @dataclass(eq=False)  # compared and hashed by identity: two files may use the same name
 class Material:
-    """Reflectances are linear and at most 1 in sum; absorption is -ln Tf per unit of world length."""
+    """Reflectances are linear and sum to at most 1; absorption is -ln Tf per unit of world length."""
     name: str
     diffuse: np.ndarray = field(default_factory=lambda: np.zeros(3))
     emission: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -19,14 +19,14 @@ class Material:
     texture: Path | None = None
     roughness: float = 0.0  # alpha of the GGX distribution; 0 without microfacets
     metalness: float = 0.0
-    coat_index: float = 1.5  # of an opaque surface with microfacets
+    coat_index: float = 1.5  # for an opaque surface with microfacets
 
 
 NUMBERS = {"Kd": 3, "Ke": 3, "Ks": 3, "Tf": 3, "Kt": 3, "Ns": 1, "Ni": 1, "d": 1, "Tr": 1, "Pr": 1, "Pm": 1}
 
 
 def to_floats(words, count):
-    """The first numbers of a line, rounded to 32 bits as the renderer holds them."""
+    """The first numbers in a line, rounded to 32 bits as in the renderer."""
     values = np.array([float(word) for word in words[:count]], np.float32).astype(float)
     if len(values) < count or not np.isfinite(values).all():
         raise ValueError(f"expected {count} finite numbers, found '{' '.join(words[:count])}'")
@@ -39,7 +39,7 @@ def name_after_keyword(line):
 
 
 def read_mtl(path, texture_folder, files):
-    """The materials of an MTL file by name; of two with the same name the first counts."""
+    """The materials of an MTL file by name; if a name occurs twice, the first one counts."""
     statements = []  # one dictionary per material
     for line in files.read_text(path).splitlines():
         words = line.split("#")[0].split()
@@ -76,7 +76,7 @@ def read_mtl(path, texture_folder, files):
 
 
 def triangulate(polygon):
-    """Triples of corner indices: a fan, as the renderer makes of convex polygons."""
+    """Triples of corner indices: a fan, as in the renderer for convex polygons."""
     fan = [(0, i, i + 1) for i in range(1, len(polygon) - 1)]
     normals = np.array([np.cross(polygon[b] - polygon[0], polygon[c] - polygon[0]) for _, b, c in fan])
     if (normals @ normals.sum(axis=0) < 0).any():
@@ -122,7 +122,7 @@ class ObjFile:
         self._gather(np.array(corners), positions, texture_coordinates, normals)
 
     def _read_materials(self, names, where):
-        """Exporters do not escape spaces in names: all words together are tried before the single ones."""
+        """Exporters do not escape spaces in names: all words together are tried before single ones."""
         folder = self.path.parent
         for name in [names.replace("\\", ""), *names.split()]:
             if (folder / name).is_file():
@@ -133,7 +133,7 @@ class ObjFile:
         self._note_missing(f"{where}: there is no material file '{names}'")
 
     def _note_missing(self, what):
-        """Names the first thing that is missing, as the chapters do."""
+        """Reports the first thing that is missing, as the chapters do."""
         if not self._is_noted:
             print(f"note: {what}: faces without a material are drawn in grey", file=sys.stderr)
         self._is_noted = True

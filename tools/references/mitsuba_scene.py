@@ -1,4 +1,4 @@
-"""Our scenes in Mitsuba 3. Import this module before the others here: it says what to install."""
+"""Our scenes in Mitsuba 3. Import this module before the others here: it reports what to install."""
 from project import UserError
 
 try:
@@ -18,7 +18,7 @@ def load_image(path):
         bitmap = mi.Bitmap(str(path))
     except RuntimeError:
         raise UserError(f"{path}: Mitsuba cannot read this image") from None
-    is_srgb = bitmap.component_format() == mi.Struct.Type.UInt8  # decoded here, since Mitsuba's result is rounded
+    is_srgb = bitmap.component_format() == mi.Struct.Type.UInt8  # decoded here, since Mitsuba rounds its result
     if bitmap.srgb_gamma() != is_srgb:
         raise UserError(f"{path}: must be an image of 8 bits a channel, or radiance of 32")
     bitmap.set_srgb_gamma(False)
@@ -65,8 +65,8 @@ def make_bsdf(surface, own_normals):
 
 # ---------------------------------------------------------------------------------------------- scenes
 def unit_length(scene):
-    """The length of our unit in Mitsuba's scene. Mitsuba moves the origin of a ray off the surface by 1e-4 (1 + its largest
-    coordinate). Coordinates are made large, so that the 1 does not count."""
+    """The length of our unit in Mitsuba's scene. Mitsuba moves a ray's origin off the surface by 1e-4 (1 + its largest
+    coordinate). Coordinates are scaled up so that the 1 is negligible."""
     return 1000 / np.linalg.norm(scene.camera["target"] - scene.camera["position"])
 
 
@@ -99,12 +99,12 @@ def make_mesh(surface, unit, own_normals):
 
 
 def make_light_probe(scene):
-    """Mitsuba's rows reach from pole to pole; our first and last row end half a row before. A finer image, with rows at ours and in
-    the middle between them and three columns for each of ours, interpolates to the same."""
+    """Mitsuba's rows extend from pole to pole; our first and last row end half a row earlier. A finer image, with rows at ours
+    and halfway between them and three columns for each of ours, interpolates to the same."""
     pixels = scene.background * load_image(scene.light_probe)
-    rows = np.repeat(pixels, 2, axis=0)  # at v = (2 j + 1) / (4 h); wanted are those at v = j / (2 h)
+    rows = np.repeat(pixels, 2, axis=0)  # at v = (2 j + 1) / (4 h); we need rows at v = j / (2 h)
     rows = np.concatenate([pixels[:1], (rows[:-1] + rows[1:]) / 2, pixels[-1:]])
-    weights = [1 / 3, 0, 1 / 3]  # of the neighbour for the three columns, of which the middle one is ours
+    weights = [1 / 3, 0, 1 / 3]  # of the neighbour for the three columns, the middle one being ours
     left, right = np.roll(rows, 1, axis=1), np.roll(rows, -1, axis=1)
     columns = [(1 - weight) * rows + weight * other for weight, other in zip(weights, (left, rows, right))]
     fine = np.stack(columns, axis=2).reshape(len(rows), -1, 3).astype(np.float32)
@@ -116,7 +116,7 @@ def make_light_probe(scene):
 def make_camera(scene, width, height, unit, sampler):
     position, target, up = unit * scene.camera["position"], unit * scene.camera["target"], scene.camera["up"]
     forward = (target - position) / np.linalg.norm(target - position)
-    if np.linalg.norm(np.cross(forward, up)) <= 1e-6 * np.linalg.norm(up):  # leaves the roll open
+    if np.linalg.norm(np.cross(forward, up)) <= 1e-6 * np.linalg.norm(up):  # leaves the roll undefined
         up = np.array([0, 0, -1] if abs(forward[1]) > 0.5 else [0, 1, 0])
     return {
         "type": "perspective", "fov": float(scene.camera["vertical_fov"]), "fov_axis": "y",
@@ -129,8 +129,8 @@ def make_camera(scene, width, height, unit, sampler):
 
 
 def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False, sampler="independent"):
-    """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself
-    where nothing emits, and not at all on lights: nearly the same picture, without Python where it renders."""
+    """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself where
+    nothing emits, and not at all on lights: nearly the same picture, without Python during the render."""
     absorbs = any(surface.material.absorption.any() for surface in scene.surfaces)
     integrator = "volpath" if absorbs else "path"
     unit = unit_length(scene)
@@ -146,7 +146,7 @@ def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False,
 
 
 def run_mitsuba(variant, work):
-    """Calls work() with Mitsuba's variant chosen; errors end the program in one line."""
+    """Calls work() with Mitsuba's variant selected; errors end the program with one line."""
     try:
         mi.set_variant(variant)
         if variant == "llvm_ad_rgb" and dr.detail.llvm_version()[0] < 19:  # Mitsuba would abort

@@ -15,9 +15,9 @@ from references.exr import rgb_channels, write_exr
 from references.images import read_reference, rel_mse
 from references.scenes import read_scene
 
-CALLS = 8  # with independent samples, for a curve. Other samplers stratify the samples of a call, so few calls have less error.
+CALLS = 8  # with independent samples, for a curve. Other samplers stratify the samples within a call, so fewer calls err less.
 GPU_BATCH_PATHS = 1 << 26  # instead of MAX_BATCH_PATHS: they take about 4 GiB
-GROWTH = 8  # of the samples of a call, until a time is over
+GROWTH = 8  # factor between the samples of calls, until the time is up
 
 
 class Render:
@@ -40,8 +40,8 @@ class Render:
         return np.array(image, float), time.perf_counter() - started
 
     def add(self, samples):
-        """Renders about so many samples: most samplers round the number up, and need a kernel for each number. A first call, which is
-        discarded, compiles it."""
+        """Renders about this many samples: most samplers round the number up, and need a kernel for each number. A first call,
+        which is discarded, compiles it."""
         sampler = self.scene.sensors()[0].sampler()
         sampler.set_sample_count(min(samples, self.largest))
         count = sampler.sample_count()
@@ -50,7 +50,7 @@ class Render:
             self.call(count)
             self.compiled.add(count)
         image, seconds = self.call(count)
-        self.discarded_seconds += is_first * seconds  # of rendering alone: compiling is part of starting up
+        self.discarded_seconds += is_first * seconds  # of rendering alone: compiling is part of start-up
         self.sum, self.seconds, self.samples = self.sum + count * image, self.seconds + seconds, self.samples + count
 
     def row(self, reference):

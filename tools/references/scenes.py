@@ -15,7 +15,7 @@ from references.meshes import Material, ObjFile, triangle_normals
 
 
 class SourceFiles:
-    """Reads files and hashes their contents in reading order (FNV-1a, 64 bits), as common/scene/text_lines.h."""
+    """Reads files and hashes their contents in reading order (FNV-1a, 64 bits), like common/scene/text_lines.h."""
 
     def __init__(self):
         self.hash = 0xCBF29CE484222325
@@ -37,10 +37,10 @@ class SourceFiles:
 
 @dataclass
 class Surface:
-    """All triangles of one material in world space: arrays [triangle, corner], counter-clockwise from the front."""
+    """All triangles of one material in world space: arrays [triangle, corner], counter-clockwise seen from the front."""
     material: Material
     positions: np.ndarray
-    normals: np.ndarray | None  # to be interpolated, then normalised; None where they are those of the triangles
+    normals: np.ndarray | None  # to be interpolated, then normalised; None to use the triangles' own
     texture_coordinates: np.ndarray  # v down from the top row of the image
 
 
@@ -54,11 +54,11 @@ class Scene:
     width: int
     height: int
     max_path_length: int
-    hash: str  # of all files, as the chapters write it into their reports
+    hash: str  # over all files, as the chapters write it to their reports
 
 
 def limit_reflectance(material, specular):
-    """Ks counts only where asked for; both are divided by the largest channel of their sum where that exceeds 1."""
+    """Ks counts only on request; both are divided by the largest channel of their sum if that exceeds 1."""
     if not specular:
         material.specular = np.zeros(3)
     largest = max(1, *(material.diffuse + material.specular))
@@ -67,14 +67,14 @@ def limit_reflectance(material, specular):
 
 
 def place_meshes(meshes, placements):
-    """Surfaces in world space, one a material; placements: (index of the mesh, object-to-world matrix)."""
+    """Surfaces in world space, one per material; placements: (index of the mesh, object-to-world matrix)."""
     pieces = {}  # material -> arrays of its instances
     for index, matrix in placements:
         mesh, linear = meshes[index], matrix[:3, :3]
         materials = np.array([id(m) for m in mesh.materials])
         positions = mesh.positions @ linear.T + matrix[:3, 3]
         normals = mesh.normals @ np.linalg.inv(linear)
-        # The front is decided in object space: a mirrored instance keeps it.
+        # The front is determined in object space: a mirrored instance keeps it.
         order = [0, 2, 1] if np.linalg.det(linear) < 0 else [0, 1, 2]
         for material in dict.fromkeys(mesh.materials):
             chosen = materials == id(material)
@@ -112,7 +112,7 @@ def placement_matrix(entry):
 
 
 def framing_camera(meshes, placements):
-    """The camera of scenes without one: the bounding sphere touches the upper and lower edge of the image."""
+    """The camera for scenes without one: the bounding sphere touches the top and bottom of the image."""
     points = []
     for index, matrix in placements:
         corners = meshes[index].positions.reshape(-1, 3)
@@ -127,12 +127,12 @@ def framing_camera(meshes, placements):
 
 
 def read_description(path, files):
-    """The content of a .json scene; that of a bare .obj is the mesh alone."""
+    """The content of a .json scene; for a bare .obj, the mesh alone."""
     return {"meshes": [{"file": path.name}]} if path.suffix.lower() == ".obj" else json.loads(files.read_text(path))
 
 
 def read_scene(path):
-    """Reads a scene with all its files, in the order in which the renderer reads them, on which the hash depends."""
+    """Reads a scene with all its files, in the same order as the renderer, since the hash depends on it."""
     path = Path(path)
     files = SourceFiles()
     try:

@@ -55,7 +55,7 @@ def make_record(options, settings):
     measurement.measure()
     measurement.finish()
     for run in (run for case in measurement.record["cases"] for run in case["runs"]):
-        del run["rows"][:-1]  # the others are not shown there
+        del run["rows"][:-1]  # the others are not displayed
     measurement.save()
     print(f"{options.record}: complete; python3 tools tables fills docs/results/ from records in docs/records/chapters")
 

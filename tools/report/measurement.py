@@ -1,8 +1,4 @@
-"""Runs chapters, and Mitsuba as their peer, and records their reports: see numbers.py.
-
-The record is written after each run, so an interrupted measurement can go on. The runs of all cases are interleaved, so that
-other load on the machine affects all of them alike.
-"""
+"""Runs chapters, and Mitsuba as their peer, and records their reports: see numbers.py."""
 import hashlib
 import re
 import shutil
@@ -24,7 +20,7 @@ LARGE = 1024  # side in pixels of a second size on GPUs, which small pictures do
 
 
 class Refused(UserError):
-    """A program cannot render a scene, as a chapter without dielectrics cannot render glass."""
+    """A program cannot render a scene, such as glass with a chapter that has no dielectrics."""
 
 
 # ---------------------------------------------------------------------------------------------- cases
@@ -59,7 +55,8 @@ def new_case(scene_file, reference_file, name, program, options=(), is_peer=Fals
 
 
 def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
-    """Cases of all chapters and variants of Mitsuba for pairs (scene file, reference file); the fastest variant also with these samplers."""
+    """Cases of all chapters and variants of Mitsuba for pairs (scene file, reference file); the fastest variant also uses these
+    samplers."""
     peers = [(variant, SAMPLERS[0]) for variant in variants]
     peers += [(variants[-1], sampler) for sampler in samplers if sampler != SAMPLERS[0]]
     cases = []
@@ -72,12 +69,12 @@ def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
 
 # ---------------------------------------------------------------------------------------------- programs
 def peer_command(variant):
-    """Uses the user's python3, which finds Mitsuba in an active virtual environment, for instance."""
+    """Uses the user's python3, which can find Mitsuba in an active virtual environment, for example."""
     return [shutil.which("python3") or sys.executable, ROOT / "tools", "peer", "--variant", variant]
 
 
 def working_variants():
-    """The variants of Mitsuba that run here. Each is tried in a process of its own, since some crash."""
+    """The variants of Mitsuba that work here. Each is tried in a separate process, since some crash."""
     size = ["--width", "8", "--height", "8", "--max-path-length", "1", "--samples", "1", "--seed", "1"]
     tried = {variant: run_program([*peer_command(variant), ROOT / "assets/scenes/cornell_box.json", *size]) for variant in VARIANTS}
     works = [variant for variant in VARIANTS if tried[variant].returncode == 0]
@@ -87,7 +84,7 @@ def working_variants():
 
 
 def run_case(case, settings, arguments):
-    """The report of one run, with the seconds of the whole command, less those of a peer's discarded renders."""
+    """The report of one run, with the seconds of the whole command, minus those of a peer's discarded renders."""
     with tempfile.TemporaryDirectory() as folder:
         limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
         command = [*peer_command(case["program"])] if case["is_peer"] else [*limited, program_file(case["program"]), "--quiet"]
@@ -125,7 +122,7 @@ def run_case(case, settings, arguments):
 
 
 def measure_large(case, rows, picture):
-    """Computes the error of a picture that is larger than its reference, for the last row alone."""
+    """Computes the error of a picture larger than its reference, for the last row only."""
     for row in rows:
         row["rel_mse"] = None
     rows[-1]["rel_mse"] = rel_mse(averaged(read_rgb(picture), case["scale"]), read_reference(ROOT / case["reference_file"]))
@@ -143,7 +140,7 @@ def driver_of(program, device):
 
 
 def find_device(program, settings):
-    """The name of the device that such settings choose."""
+    """The name of the device that these settings select."""
     tiny = new_case(ROOT / "assets/scenes/cornell_box.json", None, "which device?", program) | {"width": 8, "height": 8}
     return run_case(tiny, settings, ["--samples", 1])["device"]
 
@@ -178,7 +175,7 @@ class Measurement:
         write_json(self.file, self.record)
 
     def finish(self):
-        """Marks the record as complete, and keeps what it measured."""
+        """Marks the record as complete, and stores what it measured."""
         self.record |= {"is_complete": True, "measured": measured(" ".join(case["program"] for case in self.record["cases"]))}
 
     def run_seconds(self):
@@ -186,7 +183,7 @@ class Measurement:
         return self.record["settings"]["seconds"] / self.record["settings"]["repetitions"]
 
     def steps(self):
-        """All steps in order. Whether one is still open is decided when its turn comes."""
+        """All steps in order. Whether a step is still needed is decided when its turn comes."""
         cases = self.record["cases"]
         yield from ((self.try_out, case, 0) for case in cases)
         for seed in range(1, self.record["settings"]["repetitions"] + 1):
@@ -195,7 +192,7 @@ class Measurement:
             yield from ((self.render_equal_error, case, 1) for case in cases)
 
     def measure(self):
-        """Does all steps that the record lacks."""
+        """Performs all steps that the record lacks."""
         cases, steps = self.record["cases"], list(self.steps())
         print(f"{len(cases)} cases, {self.record['settings']['repetitions']} runs of {self.run_seconds():.2g} s each. "
               "Ctrl-C keeps what is there, and the same command goes on.", file=sys.stderr)
@@ -215,12 +212,12 @@ class Measurement:
         return len(case["runs"]) < seed if do == self.repeat else "equal_error" not in case["pictures"]
 
     def try_out(self, case, _):
-        """Finds the number of samples per run, which is the same in all runs of a case."""
+        """Finds the number of samples per run, the same for all runs of a case."""
         settings, limit = self.record["settings"], PILOT_PART * self.run_seconds()
         limits = ["--time-limit", limit] if case["is_peer"] else ["--time-limit", limit, "--samples", 2**32 - 1]
         try:
             report = run_case(case, settings, [*limits, "--seed", 0])
-            if not report["rows"]:  # the time was over before the first sample
+            if not report["rows"]:  # time ran out before the first sample
                 report = run_case(case, settings, ["--samples", 1, "--seed", 0])
         except Refused as refusal:
             case["refused"] = str(refusal).replace(f"{ROOT}/", "")
@@ -228,7 +225,7 @@ class Measurement:
         row = report["rows"][-1]
         samples = max(1, round(row["samples"] * self.run_seconds() / row["seconds"]))
         if not case["reference_file"]:
-            samples = max(2, samples)  # both halves tell the error
+            samples = max(2, samples)  # the error needs both halves
         case |= {"samples": samples, "backend": report["backend"], "note": report.get("note", "")}
         branches = re.search(r"--splitting-factor (\d+)", report.get("settings", ""))
         case["paths_per_sample"] = int(branches[1]) if branches else 1
@@ -256,7 +253,7 @@ class Measurement:
         return {"seed": seed, "command_seconds": report["command_seconds"], "rows": report["rows"]}
 
     def render_equal_error(self, case, seed):
-        """Renders with as many samples as reach the error of the scene's noisiest case."""
+        """Renders as many samples as it takes to reach the error of the scene's noisiest case."""
         others = [other for other in self.record["cases"] if other["scene"] == case["scene"] and other["runs"]]
         errors = {id(other): sum(run["rows"][-1]["rel_mse"] for run in other["runs"]) / len(other["runs"]) for other in others}
         samples = max(1, round(case["samples"] * errors[id(case)] / (max(errors.values()) or 1)))

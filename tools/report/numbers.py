@@ -13,17 +13,17 @@ from project import has_low_discrepancy
 from scipy.special import nctdtrinc, stdtrit
 
 CONFIDENCE = 0.95
-FALSE_ALARMS = 0.01  # probability that a report without bias calls anything biased
+FALSE_ALARMS = 0.01  # probability that an unbiased report calls anything biased
 POWER = 0.95  # probability of finding the smallest bias that a test calls detectable
-TARGET_ERROR = 0.01  # for the time to it; the root of rel_mse
+TARGET_ERROR = 0.01  # for the time to reach it; the root of rel_mse
 SLOPE_ROWS = 6  # the last ones: fixed costs dominate the first
 KNOWN = 1e6  # degrees of freedom of an error that is known, not estimated
-ROUNDING = 1e-5  # of a mean: other programs sum in another order
+ROUNDING = 1e-5  # of a mean: other programs sum in a different order
 
 
 # ---------------------------------------------------------------------------------------------- numbers as text
 def short(value, digits=3):
-    """A number with so many significant digits, without an exponent if that is readable."""
+    """A number with this many significant digits, without an exponent if that is readable."""
     if value is None or not math.isfinite(value):
         return "–"
     if value == 0 or isinstance(value, int) or not 1e-4 <= abs(value) < 1e7:
@@ -33,7 +33,7 @@ def short(value, digits=3):
 
 
 def with_interval(values):
-    """The text of [value, low, high]; a single run has no interval and low = None."""
+    """The text for [value, low, high]; a single run has no interval and low = None."""
     value, low, high = values
     return short(value, 2) + ("" if low is None else f" ({short(low, 2)} – {short(high, 2)})")
 
@@ -45,18 +45,19 @@ def with_range(values):
 
 # ---------------------------------------------------------------------------------------------- intervals
 def two_sided(confidence, freedom):
-    """The t for which Student's distribution lies between -t and t with this probability."""
+    """The t such that Student's distribution lies between -t and t with this probability."""
     return -stdtrit(freedom, (1 - confidence) / 2)
 
 
 def half_width(parts, factor=lambda freedom: two_sided(CONFIDENCE, freedom)):
     """Half the interval of a sum of independent parts (squared standard error, its degrees of freedom), numbers or arrays. After
-    Cochran and Cox: conservative for any degrees of freedom, exact if one part dominates. Welch's interval is too short in the tails."""
+    Cochran and Cox: conservative for any degrees of freedom, exact if one part dominates. Welch's interval is too short in the
+    tails."""
     return np.sqrt(sum(square * factor(freedom) ** 2 for square, freedom in parts))
 
 
 def mean_part(numbers):
-    """The part for half_width() of the mean of independent numbers."""
+    """The part for half_width() that the mean of independent numbers contributes."""
     return np.var(numbers, ddof=1) / len(numbers), len(numbers) - 1
 
 
@@ -100,7 +101,7 @@ def ratio(now, base, is_paired=False):
 
 
 def paired_ratio(now, base):
-    """The same for runs with the same seeds. They share random numbers, so their errors are correlated, and the interval follows
+    """The same for runs with equal seeds. They share random numbers, so their errors are correlated, and the interval follows
     from the spread of the differences between runs with the same seed."""
     return ratio(now, base, is_paired=True)
 
@@ -117,7 +118,7 @@ def mean_of(rows, key):
 
 
 def per_sample(case, key):
-    """The mean over the runs of the rays or seconds that a sample of a pixel takes."""
+    """The mean over the runs of the rays or seconds per sample of a pixel."""
     return mean_of(last_rows(case["runs"]), key) / (case["samples"] * case["width"] * case["height"])
 
 
@@ -136,7 +137,7 @@ def errors(case, key=None, index=-1):
 
 
 def curve(case):
-    """Points (samples, mean seconds, [error, low, high]) at the numbers of samples that all runs report."""
+    """Points (samples, mean seconds, [error, low, high]) at the sample counts that all runs report."""
     points = []
     for index, rows in enumerate(zip(*(run["rows"] for run in case["runs"]))):
         if len({row["samples"] for row in rows}) == 1 and all(row["rel_mse"] for row in rows):
@@ -165,23 +166,23 @@ def slope(case, key):
 
 
 def runs_in_batches(case):
-    """The runs of a case for batches(), which needs batch means with a variance of 1 / size. The variance with low-discrepancy
-    points falls faster, so only the two halves of the samples of a run are kept, which have independent scrambles."""
+    """The runs of a case in the form for batches(), which needs batch means with a variance of 1 / size. With low-discrepancy
+    points the variance falls faster, so only the two halves of a run's samples are kept, which have independent scrambles."""
     if not has_low_discrepancy(case["program"]):
         return case["runs"]
     return [{"rows": halves(run["rows"][-1])} for run in case["runs"]]
 
 
 def halves(row):
-    """Rows of the first half of the samples and of all of them."""
-    if "difference" not in row or row["samples"] < 2:  # of an earlier record
+    """Rows for the first half of the samples and for all of them."""
+    if "difference" not in row or row["samples"] < 2:  # an earlier record
         return [row]
     half = {"samples": row["samples"] / 2, "mean": np.array(row["mean"]) + np.array(row["difference"]) / 2}
     return [half, row]
 
 
 def batches(runs):
-    """Numbers of samples [batch] and means [batch, channel] of the samples between consecutive rows, which are independent."""
+    """Sample counts [batch] and means [batch, channel] of the samples between consecutive rows, which are independent."""
     counts, means = [], []
     for run in runs:
         before, mean_before = 0, 0.0

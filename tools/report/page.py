@@ -74,7 +74,7 @@ def bias_table(scene):
 
 
 def peer_tables(scene):
-    """Time to equal error compared with Mitsuba, of rendering alone and from the command on."""
+    """Time to equal error compared with Mitsuba, for rendering alone and for the whole command."""
     ours = [case for case in scene["cases"] if not case["is_peer"]]
     peers = [case["case"] for case in scene["cases"] if case["is_peer"]]
     if not ours or not peers:

@@ -9,12 +9,12 @@ matplotlib.use("svg")
 import numpy as np
 from matplotlib import image, pyplot, ticker
 
-# Colours by Okabe and Ito, then by Tol, which everybody can tell apart; peers are grey. The numbers of colours and markers have no
-# common factor, so no two of 90 chapters look alike.
+# Colours by Okabe and Ito, then by Tol, distinguishable by everybody; peers are grey. The numbers of colours and markers are
+# coprime, so no two of 90 chapters look alike.
 COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9", "#332288", "#999933", "#882255", "#44aa99"]
 PEER_COLOURS = ["#000000", "#666666", "#a0a0a0"]
 MARKERS = "osD^vPX*<"
-DIFFERENCE_FACTOR = 4  # of difference images: full red or blue is a difference of a quarter of the reference's mean
+DIFFERENCE_FACTOR = 4  # of difference images: saturated means a difference of a quarter of the reference's mean
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 DPI = 100
 GAP, LABEL = 4, 22  # pixels between tiles, height of a label
@@ -74,7 +74,7 @@ def svg_text(figure):
 
 
 def png_uri(pixels):
-    """A data URI of an array [row, column, channel] of numbers in [0, 1]."""
+    """A data URI for an array [row, column, channel] of numbers in [0, 1]."""
     stream = io.BytesIO()
     image.imsave(stream, (255 * np.clip(pixels, 0, 1)).round().astype(np.uint8), format="png",
                  pil_kwargs={"optimize": True})
@@ -82,7 +82,7 @@ def png_uri(pixels):
 
 
 def encode_srgb(radiance):
-    """sRGB as in the chapters' PNG files: numbers in [0, 1], and what is brighter than white is 1."""
+    """sRGB as in the chapters' PNG files: numbers in [0, 1]; anything brighter than white becomes 1."""
     linear = np.clip(radiance, 0, 1)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
 
@@ -92,12 +92,12 @@ def picture(radiance):
 
 
 def relative_difference(radiance, reference):
-    """The difference of each pixel's luminance, as part of the reference's mean."""
+    """The difference of each pixel's luminance, relative to the reference's mean."""
     return (radiance - reference) @ LUMINANCE / ((reference @ LUMINANCE).mean() or 1)
 
 
 def difference_colours(difference, full=1 / DIFFERENCE_FACTOR):
-    """Red where a pixel is too bright, blue where it is too dark, white where it is right; at most for a difference of `full`.
+    """Red where a pixel is too bright, blue where it is too dark, white where it is right; saturated at a difference of `full`.
     Numbers in [0, 1]."""
     excess = np.clip(difference / full, -1, 1)[:, :, None]
     red, blue = np.array([0.70, 0.09, 0.17]), np.array([0.13, 0.40, 0.67])
@@ -125,8 +125,8 @@ def sheet(path, rows):
 
 
 def right_and_wrong(path, right, wrong):
-    """Two images side by side, and where the wrong one is too bright (red) or too dark (blue). Colours are as in a report, or weaker
-    so that only one pixel in ten is saturated."""
+    """Two images side by side, and where the wrong one is too bright (red) or too dark (blue). Colours are as in a report, or
+    weaker so that only one pixel in ten is saturated."""
     difference = relative_difference(wrong, right)
     full = max(1 / DIFFERENCE_FACTOR, np.quantile(np.abs(difference), 0.9))
     sheet(path, [[("right", encode_srgb(right)), ("wrong", encode_srgb(wrong)),

@@ -8,13 +8,13 @@ import re
 
 from project import CHAPTERS, ROOT, shaders_of
 
-# What decides about a picture and how long it takes; the window, messages and image formats do not.
+# What determines a picture and how long it takes; window, messages and image formats do not.
 RENDERER = ["shaders", "common/film", "common/gpu", "common/rendering", "common/scene", "common/tracing"]
 COMMENT_OR_BLANKS = re.compile(r"//[^\n]*|/\*.*?\*/|\s+", re.DOTALL)
 
 
 def digest(files):
-    """Of the code in these files and their names, wherever the project lies."""
+    """Digest of the code in these files and of their names, wherever the project lies."""
     found = hashlib.sha256()
     for path in sorted(set(files)):
         found.update(f"{path.relative_to(ROOT).as_posix()}\n{COMMENT_OR_BLANKS.sub(' ', path.read_text(encoding='utf-8'))}\n".encode())
@@ -30,7 +30,8 @@ def measured(text):
 
 
 def changed_since(record):
-    """What has changed since a record was measured: names as in measured(), or None where the record does not say what it measured."""
+    """What has changed since a record was measured: names as in measured(), or None if the record does not say what it
+    measured."""
     then = record.get("measured")
     if then is None:
         return None

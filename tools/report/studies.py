@@ -14,7 +14,7 @@ from report.numbers import short
 
 
 def measures():
-    """Folder -> content of its measure.json. Copies of a chapter are left out."""
+    """Folder -> content of its measure.json. Copies of a chapter are omitted."""
     found = {}
     for number, folder in CHAPTERS.items():
         file = ROOT / "chapters" / folder / "measure.json"
@@ -27,7 +27,8 @@ def measures():
 
 
 def named(key):
-    """Name -> (folder, content) for a key with names. The first chapter counts: another one with a name was copied from it."""
+    """Name -> (folder, content) for a key with names. The first chapter counts: another one with the same name was copied from
+    it."""
     found = {}
     for folder, measure in measures().items():
         for name, content in measure.get(key, {}).items():
@@ -36,7 +37,7 @@ def named(key):
 
 
 def study_cases():
-    """The cases of docs/results.md: all chapters on each reference, then the options that single chapters vary."""
+    """The cases of docs/results.md: all chapters on each reference, then the options varied by single chapters."""
     def case(place, name, folder, *options):
         reference = ROOT / f"assets/references/{place}.exr"
         scene = place.rstrip("_0123456789") if reference.is_file() else place

@@ -18,7 +18,7 @@ vec3 reflect_light(ShadingData s, vec3 out_direction, vec2 u, inout uvec2 seed) 
     return brdf * y.emission * light.inverse_density * dot(s.normal, omega) * cos_light / squared_distance;
 }
 
-// Two numbers of which the first is in stratum `branch` of `count` ones, at the first hit; anywhere later.
+// Two numbers, at the first hit with the first of them in stratum `branch` of `count`, later anywhere.
 vec2 get_stratified_numbers(uint k, uint branch, uint count, inout uvec2 seed) {
     vec2 u = get_random_numbers(seed);
     if (k == 1u) u.x = min((float(branch) + u.x) / float(count), 0.9999999);

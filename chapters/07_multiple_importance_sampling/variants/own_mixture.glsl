@@ -1,5 +1,5 @@
-// The mixture has another probability of the lobe, and the bounce is made from the first hit on: what it finds belongs to the
-// hit that it starts from, as the light sample does. Densities are carried over the cosine, where a Lambertian surface has 1/π.
+// The lobe is chosen with another probability. The loop starts at the first hit, and what a bounce finds is added at the hit that
+// it starts from, just like the light sample.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 
@@ -36,7 +36,7 @@ vec3 choose_direction(ShadingData s, vec3 eye, inout uvec2 seed) {
     return get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
 }
 
-// What a light sample brings to a hit: ρ cos θ L_e / (p_l + p_b).
+// What a light sample contributes at a hit: ρ cos θ L_e / (p_l + p_b).
 vec3 sample_lights(ShadingData s, vec3 eye, inout uvec2 seed) {
     LightTriangle light = choose_light_triangle(seed);
     vec2 u = get_random_numbers(seed);
@@ -52,7 +52,7 @@ vec3 sample_lights(ShadingData s, vec3 eye, inout uvec2 seed) {
     return f * geometry / (1.0 / light.inverse_density + geometry * p_bounce);
 }
 
-// Weight of light that a bounce of this density has found: 1 / (1 + p_l / p_b).
+// Weight of light found by a bounce of this density: 1 / (1 + p_l / p_b).
 float get_share_of_the_bounce(ShadingData at_light, float r, vec3 omega, float p_bounce) {
     if (at_light.light_density == 0.0) return 1.0;
     if (p_bounce == 0.0) return 0.0;

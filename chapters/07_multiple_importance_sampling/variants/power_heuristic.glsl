@@ -1,5 +1,5 @@
-// The power heuristic: weights in proportion to the squares of the densities. Both are written as a quotient of densities,
-// q = the other one's over one's own: 1 / (1 + q²).
+// The power heuristic: weights proportional to the squares of the densities. Both are written with a quotient of densities, q =
+// the other strategy's over one's own: 1 / (1 + q²).
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "sample_bsdf.glsl"

@@ -1,5 +1,5 @@
-// Owen scrambling as it is defined: a coin for each node of the tree of digits. Of the digits behind the 16th, which move a
-// point by less than 2^-16, a hash decides at once.
+// Owen scrambling by its definition: a coin flip for each node of the tree of digits. The digits after the 16th move a point by
+// less than 2^-16, so a single hash decides about them.
 
 uint coin(uint level, uint path, uint key) {
     uvec2 state = uvec2(path ^ key, key + 0x632be59bu * (level + 1u));

@@ -1,5 +1,5 @@
-// A path carries the surface that it has reached instead of a ray: a call scatters there and traces the next ray. So what
-// light samples leave to a bounce is decided within the call.
+// A path carries the surface point that it has reached instead of a ray: a call scatters there and traces the next ray. So the
+// weight of a bounce against light samples is computed within the call.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "07_multiple_importance_sampling/sample_bsdf.glsl"
@@ -15,7 +15,7 @@ struct Path {
     bool goes_on;
 };
 
-// Traces a ray and adds what shines there. The densities of light samples count where the last surface has one.
+// Traces a ray and adds the emission that it meets. Light samples' densities count if the last surface took one.
 void arrive(inout Path path, Ray ray, bool is_light_sampled, float bounce_density) {
     Hit hit;
     vec3 emission;

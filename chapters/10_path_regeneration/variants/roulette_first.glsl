@@ -1,4 +1,4 @@
-// A path's last decision of a bounce, Russian roulette, is the first one of the next call. Bounces are counted down.
+// A path's last decision at a bounce, Russian roulette, comes first in the next call. Bounces are counted down.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "07_multiple_importance_sampling/sample_bsdf.glsl"
@@ -25,7 +25,7 @@ Path start_path(Ray ray) {
     return path;
 }
 
-// What a bounce finds, with the part of it that light samples of this density leave.
+// Adds what a bounce finds, weighted against light samples of this density.
 void find(inout Path path, vec3 emission, float p_light) {
     if (!is_counted(parameters.max_path_length - path.bounces_left)) return;
     float part = path.p_bounce < 0.0 ? 1.0 : get_bounce_part(p_light, path.p_bounce);

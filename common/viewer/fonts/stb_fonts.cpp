@@ -1,5 +1,5 @@
-// What Debian's Dear ImGui expects of the stb libraries to draw text. Debian's own build of them would bring the readers of
-// images along, which are compiled here with bounds on their memory.
+// The parts of the stb libraries that Debian's Dear ImGui needs to draw text. Debian's own build of them includes the image
+// readers, which are compiled here with bounds on their memory.
 #define STB_RECT_PACK_IMPLEMENTATION
 #define STB_TRUETYPE_IMPLEMENTATION
 #pragma GCC diagnostic push

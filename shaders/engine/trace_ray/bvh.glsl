@@ -1,8 +1,8 @@
-// The bounding volume hierarchy (BVH) that common/tracing/bvh.cpp has built, in texels of 16 bytes.
-// A node is eight: low x, high x, low y, high y, low z, high z of its four children, and references to them.
-// A triangle is three: x, y and z of its vertices. The fourth components are instance, triangle and nothing.
+// The bounding volume hierarchy (BVH) built by common/tracing/bvh.cpp, in texels of 16 bytes.
+// A node takes eight: low x, high x, low y, high y, low z, high z of its four children, and references to them.
+// A triangle takes three: x, y and z of its vertices; the fourth components hold instance, triangle and nothing.
 
-#ifdef BVH_IN_STORAGE_BUFFERS  // of devices whose texel buffers are too small; most read those faster
+#ifdef BVH_IN_STORAGE_BUFFERS  // where texel buffers are too small; most devices read those faster
 #extension GL_EXT_scalar_block_layout : require
 layout(scalar, set = 0, binding = BINDING_BVH_NODES) readonly buffer BvhNodes { uvec4 bvh_nodes[]; };
 layout(scalar, set = 0, binding = BINDING_BVH_TRIANGLES) readonly buffer BvhTriangles { uvec4 bvh_triangles[]; };

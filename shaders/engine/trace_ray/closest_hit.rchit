@@ -1,5 +1,5 @@
 #version 460
-// Closest-hit shader of a hit group: says what was hit. There is one group for each material class.
+// Closest-hit shader of a hit group: reports what was hit. There is one group per material class.
 #extension GL_EXT_scalar_block_layout : require
 #include "interface.h"
 #include "world/ray.glsl"

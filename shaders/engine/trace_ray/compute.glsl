@@ -1,20 +1,20 @@
-// trace_ray() for any device: steps through a bounding volume hierarchy (BVH) of our own.
+// trace_ray() for any device: traverses a bounding volume hierarchy (BVH) of our own.
 #include "bvh.glsl"
 
-// References are below END for inner nodes: their index, and above for leaves: (triangle count << 28) | first triangle.
+// A reference below END is the index of an inner node; above END it is a leaf: (triangle count << 28) | first triangle.
 const uint END = 0x0fffffffu;
 const uint MISS = 0xffffffffu;
 
 uint traversal_steps = 0u;  // nodes and triangles that this invocation has visited
 
-// The closest hit nearer than t_max, or with `any_hit` the first one found.
+// Finds the closest hit nearer than t_max, or with `any_hit` the first one that it meets.
 bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
     // Boxes: the ray meets the plane x = p at t = p * inverse.x + offset.x. Zeros in the direction would give NaN.
     vec3 direction = mix(ray.direction, vec3(1e-18), lessThan(abs(ray.direction), vec3(1e-18)));
     precise vec3 inverse = 1.0 / direction;
     ivec3 near = ivec3(0, 2, 4) + ivec3(lessThan(direction, vec3(0.0)));
     ivec3 far = near ^ 1;
-    // Rounding must not lose a box: the builder has grown it by 2^-20 of its coordinates, this does so for the ray's.
+    // Rounding must not lose a box: the builder pads it by 2^-20 of its coordinates, and here by as much of the ray's origin.
     float radius = max(abs(ray.origin.x), max(abs(ray.origin.y), abs(ray.origin.z))) / 1048576.0;
     precise vec3 near_offset = -ray.origin * inverse - radius * abs(inverse);
     precise vec3 far_offset = -ray.origin * inverse + radius * abs(inverse);
@@ -49,30 +49,30 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
             ivec4 leave_z = floatBitsToInt(far_z * inverse.z + far_offset.z);
             ivec4 enter = max(enter_x, max(enter_y, max(enter_z, 0)));
             ivec4 leave = min(leave_x, min(leave_y, min(leave_z, floatBitsToInt(hit.distance))));
-            // Sort the children by distance, with those that are missed last. The two lowest bits tell which it is.
+            // Sort the children by distance, misses last. The two lowest bits hold the child's index.
             uvec4 key = uvec4((enter & ~3) | ivec4(0, 1, 2, 3));
             key = mix(uvec4(MISS), key, lessThanEqual(enter, leave));
             key = uvec4(min(key.xz, key.yw), max(key.xz, key.yw)).xzyw;
             key = uvec4(min(key.xy, key.zw), max(key.xy, key.zw));
             key.yz = uvec2(min(key.y, key.z), max(key.y, key.z));
-            // The nearest comes next, the others wait on the stack.
+            // Visit the nearest next; the others wait on the stack.
             if (key.w != MISS) stack[++top] = children[key.w & 3u];
             if (key.z != MISS) stack[++top] = children[key.z & 3u];
             if (key.y != MISS) stack[++top] = children[key.y & 3u];
             reference = key.x != MISS ? children[key.x & 3u] : stack[top--];
         }
-        // No else: where the node led to a leaf, its triangles are tested in the same turn.
+        // No else: if the node led to a leaf, its triangles are tested in the same iteration.
         if (reference > END) {
             int first = 3 * int(reference & END);
             int end = first + 3 * int(reference >> 28u);
-            // Not do-while: a driver lets threads that have left a loop at its bottom repeat it without what they had loaded.
+            // Not do-while: one driver lets threads that left a loop at its bottom repeat it, without the values they had loaded.
             for (int triangle = first; triangle < end; triangle += 3) {
                 ++traversal_steps;
                 vec3 x = fetch_triangle_row(triangle + axes.x);
                 vec3 y = fetch_triangle_row(triangle + axes.y);
                 vec3 z = fetch_triangle_row(triangle + axes.z) - origin.z;
-                // Triangles that share a vertex get the same numbers for it, and a difference of two rounded products
-                // never has the wrong sign: so no ray slips through between them. `precise` forbids to fuse them.
+                // Triangles that share a vertex compute the same numbers for it, and the difference of two rounded products never
+                // has the wrong sign: so no ray slips through between them. `precise` forbids fusing.
                 precise vec3 sheared_x = fma(vec3(-shear.x), z, x - origin.x);
                 precise vec3 sheared_y = fma(vec3(-shear.y), z, y - origin.y);
                 precise vec3 area = sheared_x.zxy * sheared_y.yzx - sheared_y.zxy * sheared_x.yzx;

@@ -1,5 +1,5 @@
-// trace_ray() by Embree, for the backend `native` alone: a GLSL compiler does not know the functions native_…(), which
-// common/native/glsl.h has.
+// trace_ray() by Embree, for the `native` backend only: no GLSL compiler knows the functions native_…(), which are defined in
+// common/native/glsl.h.
 
 // Closest hit nearer than t_max.
 bool trace_ray(Ray ray, float t_max, out Hit hit) {

@@ -17,7 +17,7 @@ bool trace_ray(Ray ray, float t_max, out Hit hit) {
     return hit.triangle != NO_TRIANGLE;
 }
 
-// Whether anything is hit nearer than t_max: no hit shader runs, only the miss shader says that there was nothing.
+// Whether anything is hit nearer than t_max: no hit shader runs, and only the miss shader reports that nothing was hit.
 bool is_occluded(Ray ray, float t_max) {
     ++ray_count;
     hit_payload.triangle = 0u;  // any triangle

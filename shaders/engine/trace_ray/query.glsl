@@ -1,4 +1,4 @@
-// trace_ray() by ray queries: the driver's acceleration structure, asked from any shader.
+// trace_ray() by ray queries: any shader can traverse the driver's acceleration structure.
 #extension GL_EXT_ray_query : require
 
 layout(set = 0, binding = BINDING_ACCELERATION_STRUCTURE) uniform accelerationStructureEXT acceleration_structure;

@@ -1,4 +1,4 @@
-// A view: the fraction of its time in which a pixel's thread waits while other threads of its group trace rays.
+// A view: the fraction of time that a pixel's thread waits while other threads of its group trace rays.
 // Threads that execute the same instruction together are the lanes of a subgroup.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require

@@ -25,6 +25,6 @@ void render_samples(uvec2 position, uint first, uint end, uint step) {
         own_steps = group_steps = 0u;
         render_observed_samples(position, 0u, OBSERVED_SAMPLES, 1u);
         uint steps = subgroupAdd(group_steps);
-        finish_sample(vec3(float(steps - own_steps) / float(steps)));  // a difference first: never below 0
+        finish_sample(vec3(float(steps - own_steps) / float(steps)));  // subtracting first keeps it from falling below 0
     }
 }

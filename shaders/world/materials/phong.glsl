@@ -2,8 +2,8 @@
 // exponent.
 #ifdef FEATURE_SPECULAR
 
-// cos^n α, and 0 from 90 degrees on. 1 - cos α is half the squared difference of the two unit vectors, which keeps its
-// digits where α is small. There pow() may have lost all of them: Vulkan allows its logarithm an error of 2^-21, times n.
+// cos^n α, and 0 from 90 degrees on. 1 - cos α is half the squared difference of the two unit vectors, which stays accurate for
+// small α. There pow() may lose all digits: Vulkan allows its logarithm an error of 2^-21, which n multiplies.
 float get_lobe(ShadingData s, vec3 in_direction) {
     vec3 difference = reflect(-in_direction, s.normal) - s.out_direction;
     float one_minus_cos = 0.5 * dot(difference, difference);
@@ -30,7 +30,7 @@ float get_one_minus_exp(float x) {
     return -x * (1.0 + x / 2.0 * (1.0 + x / 3.0 * (1.0 + x / 4.0 * (1.0 + x / 5.0))));
 }
 
-// A direction of the lobe, with get_phong_density(). It may point below the surface, where it carries nothing.
+// Samples the lobe with get_phong_density(). The direction may point below the surface, where it carries no light.
 vec3 sample_phong(ShadingData s, vec2 u) {
     // 1 - u_x = cos^(n+1) α. 1 - cos α is exact even where α is small.
     float one_minus_cos = get_one_minus_exp(log(1.0 - u.x) / (s.specular_exponent + 1.0));

@@ -1,15 +1,15 @@
-// Traces recorded rays and does nothing else: the rate that a backend reaches without shading. Returns a hash of the
-// hits, so that no compiler can leave the work out.
+// Only traces recorded rays: the rate that a backend reaches without shading. Returns a hash of the hits, so that no compiler can
+// optimise the work away.
 #include "recorded_ray.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_RAYS) readonly buffer RecordedRays { RecordedRay recorded_rays[]; };
 
-// Paths that this thread has replayed. Each sample is the path of another block of pixels: with the same path in each
-// sample, a thread whose path is long would be late in all of them. Where threads do not wait for each other after a
-// sample, as in the ray tracing pipeline, that made the rate look half as high.
+// Paths that this thread has replayed. Each sample replays the path of a different block of pixels: with the same path in every
+// sample, a thread with a long path would be late every time. Where threads do not wait for each other after a sample, as in the
+// ray tracing pipeline, that made the rate look half as high.
 uint replayed_paths = 0u;
 
-// What replaying a path keeps from ray to ray.
+// State of a path's replay between rays.
 struct Path {
     vec3 radiance;
     uint index;

@@ -5,8 +5,8 @@ namespace lab {
 #endif
 
 const uint BINDING_RECORDED_RAYS = 40u;
-// Two slots for each segment of a path of length 8: the ray to the hit, and the one from there to a light.
-// Threads then replay rays of one kind together, as they traced them.
+// Two slots per segment of a path of length 8: the ray to the hit, and the one from there to a light. So threads replay rays of
+// one kind together, just as they traced them.
 const uint MAX_RECORDED_RAYS = 18u;
 
 struct RecordedRay {
