@@ -25,6 +25,9 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
 // The chapter's shader and what it is compiled with.
 Estimator estimator_of(const Chapter& chapter);
 
+// What one of the chapter's choices is with these options: the value's number.
+size_t value_of(const ChapterChoice& choice, const Options& options);
+
 // How the chapter's estimator finds light with these options.
 Strategy strategy_of(const Chapter& chapter, const Options& options);
 
