@@ -44,6 +44,14 @@ class EveryChapter(ProgramTest):
         for chapter in (chapter for chapter in CHAPTERS if not description(chapter).get("dielectrics")):
             self.assert_refused(["glass"], "dielectric", "chapter 6", program=BINARIES / chapter)
 
+    def test_makes_no_report_of_a_picture_that_leaves_microfacets_out(self):
+        for chapter in (chapter for chapter in CHAPTERS if description(chapter).get("dielectrics")):
+            command = ["microfacets", *TINY, f"--report={self.folder}/report.json"]
+            if description(chapter).get("microfacets"):
+                self.render(*command, program=BINARIES / chapter)
+            else:
+                self.assert_refused(command, "--report", "cannot render", r"microfacets\.json", program=BINARIES / chapter)
+
 
 class ChapterOptions(ProgramTest):
     def refuse(self, number, *arguments):

@@ -3,8 +3,8 @@
 
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
---peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass 5 7 9 10`, whose report.json belongs into
-docs/records/peers, `tests/mistakes/learn.py confusion`, `tests/measure/hard_cases.py`, `build/bin/facet_record --output
+--peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass microfacets 5 7 9 10 11`, whose report.json
+belongs into docs/records/peers, `tests/mistakes/learn.py confusion`, `tests/measure/hard_cases.py`, `build/bin/facet_record --output
 docs/records/facets/DEVICE.json` and `./lab device --output docs/records/devices/DEVICE.json`.
 """
 import math
