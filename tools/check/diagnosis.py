@@ -47,7 +47,7 @@ def is_deciding(experiment, _):
 
 
 def look_at(program, points, settings, seed, pool, repeats, expected):
-    """What a program shows at points, a list of Sight. Only a point that looks wrong in its first picture gets the others."""
+    """What a program shows at each of these points: a list of Sight. Only a point whose first picture looks wrong is rendered again."""
     seen = pictures(program, points, settings, seed, pool)
     wrong = [index for index, reading in enumerate(readings(points, map(together, seen), expected)) if not reading.is_right]
     if repeats > 1:

@@ -202,15 +202,9 @@ def together(sights):
                  mean("rays"), mean("typical"), sum(sight.invalid for sight in sights))
 
 
-<<<<<<< HEAD
 def pictures(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
-    """What a program shows at each of some points, in each of `repeats` pictures with `factor` times as many samples as the points say:
-    a list of Sight for each point."""
-=======
-def measure(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
-    """What a program shows at each of these points: a list of Sight. Takes `factor` times as many samples as the points say, in
-    each of `repeats` pictures."""
->>>>>>> docs
+    """What a program shows at each of these points, picture by picture: a list of Sight for each point. Takes `factor` times as many
+    samples as the points say, in each of `repeats` pictures."""
     with tempfile.TemporaryDirectory() as folder:
         files = [write_scene(point.scene, Path(folder), f"point_{index}") for index, point in enumerate(points)]
 
@@ -227,5 +221,5 @@ def measure(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
 
 
 def measure(*those, **others):
-    """The same of all pictures of a point together: a list of Sight."""
+    """The same, with all pictures of a point averaged: a list of Sight."""
     return [together(sights) for sights in pictures(*those, **others)]
