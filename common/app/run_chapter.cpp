@@ -124,9 +124,12 @@ void run(const Chapter& chapter, Options options) {
     check_outputs(options.run);
     const auto scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
     RenderJob job = make_job(chapter, options, scene);
-    if (features_of(*scene).microfacets && !chapter.microfacets)
-        scene->warnings.push_back(scene->file.string() + ": has microfacets (Pr), which " + chapter.name +
-                                  " leaves out: use a chapter that has them, see ./lab run");
+    if (features_of(*scene).microfacets && !chapter.microfacets) {
+        const std::string use = ": use a chapter that has them, see ./lab run";
+        if (!options.run.report.empty())  // of another picture than the scene's
+            throw UserError("--report: " + chapter.name + " cannot render the microfacets (Pr) of " + scene->file.string() + use);
+        scene->warnings.push_back(scene->file.string() + ": has microfacets (Pr), which " + chapter.name + " leaves out" + use);
+    }
     for (const auto& warning : scene->warnings)
         if (!options.run.quiet) std::cerr << "note: " << warning << "\n";
     if (const auto window = open_window(chapter, options, job.parameters.image_size);

@@ -1,6 +1,7 @@
 #include "rendering/chapter.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <set>
 
@@ -53,7 +54,30 @@ std::vector<Strategy> read_strategies(const JsonObject& chapter) {
     return strategies;
 }
 
+std::vector<ChapterChoice> read_choices(const JsonObject& chapter, const std::string& file) {
+    std::vector<ChapterChoice> choices;
+    if (!chapter.has("choices")) return choices;
+    for (const nlohmann::json& content : chapter.array("choices")) {
+        const JsonObject choice(content, file, "a choice", {"name", "help", "values"});
+        choices.push_back({choice.required("name", choice.text("name")), choice.required("help", choice.text("help")), {}});
+        if (!choices.back().name.starts_with("--")) choice.fail("name", "must begin with --");
+        for (const nlohmann::json& value : choice.array("values")) {
+            if (!value.is_array() || value.size() != 2 || !value[0].is_string() || !value[1].is_string())
+                choice.fail("values", "has " + value.dump() + ": use pairs of a word and what the shader calls it");
+            choices.back().values.emplace_back(value[0], value[1]);
+        }
+        if (choices.back().values.empty()) choice.fail("values", "is empty: the first value is the default");
+    }
+    return choices;
+}
+
 }  // namespace
+
+std::string ChapterChoice::define() const {
+    std::string define = name.substr(2);
+    for (char& letter : define) letter = letter == '-' ? '_' : static_cast<char>(std::toupper(letter));
+    return define;
+}
 
 std::vector<std::string> chapter_folders() {
     std::vector<std::string> names;
@@ -77,7 +101,7 @@ Chapter load_chapter(const std::string& name) {
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(content, file.string(), "the chapter",
                           {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics",
-                           "microfacets", "low_discrepancy", "options", "check"});
+                           "microfacets", "low_discrepancy", "options", "choices", "check"});
     // For ./lab check: tools/check/grading.py reads it.
     if (root.has("check")) root.object("check", {"samples", "references", "other_references", "gains_over"});
     const Chapter defaults;
@@ -90,7 +114,8 @@ Chapter load_chapter(const std::string& name) {
             .dielectrics = root.boolean("dielectrics").value_or(false),
             .microfacets = root.boolean("microfacets").value_or(false),
             .low_discrepancy = root.boolean("low_discrepancy").value_or(false),
-            .options = read_options(root)};
+            .options = read_options(root),
+            .choices = read_choices(root, file.string())};
 }
 
 }  // namespace lab

@@ -19,6 +19,15 @@ struct ChapterOption {
     double low, high;  // accepted range, both ends included
 };
 
+// An option of the estimator that its shader is compiled with: --facet-sampling is the define FACET_SAMPLING.
+struct ChapterChoice {
+    std::string name;  // "--facet-sampling"
+    std::string help;
+    std::vector<std::pair<std::string, std::string>> values;  // on the command line and in the shader, the default first
+
+    std::string define() const;
+};
+
 // The contents of chapter.json, under the same names. Only the title is mandatory. It may also have "check", for ./lab check: the
 // "samples" of a run, and the "references" whose scenes show what the shader can do.
 struct Chapter {
@@ -32,6 +41,7 @@ struct Chapter {
     bool microfacets = false;                   // likewise for rough metal, plastic and glass (Pr)
     bool low_discrepancy = false;               // brings its own points, random_words.glsl, which are not independent
     std::vector<ChapterOption> options = {};
+    std::vector<ChapterChoice> choices = {};
 };
 
 // Names of the folders in chapters/ that hold a chapter, sorted.

@@ -119,6 +119,16 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
                "How light is found: by light samples, by bounces or by both")
             ->default_str(to_string(chapter.strategies.front()))
             ->check(CLI::IsMember(strategies));
+    for (const ChapterChoice& choice : chapter.choices) {
+        std::map<std::string, size_t> numbers;
+        for (const auto& [value, _] : choice.values) numbers.emplace(value, numbers.size());
+        app.add_option_function<std::string>(
+               choice.name,
+               [=, &given = options.estimator.choices[choice.name]](const auto& value) { given = numbers.at(value); },
+               choice.help)
+            ->default_str(choice.values.front().first)
+            ->check(CLI::IsMember(numbers));
+    }
     options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i) {
         const ChapterOption& option = chapter.options[i];

@@ -1,6 +1,7 @@
 // The command line, the same for every chapter.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct SceneOptions {
 
 // Options that decide how the chapter's estimator is compiled.
 struct EstimatorOptions {
-    std::optional<Strategy> strategy;  // one of the chapter's
+    std::optional<Strategy> strategy;       // one of the chapter's
+    std::map<std::string, size_t> choices;  // name of a choice of the chapter -> number of its value
     bool operator==(const EstimatorOptions&) const = default;
 };
 

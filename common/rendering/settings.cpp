@@ -52,6 +52,11 @@ CameraPose camera_of(const Scene& scene, const Options& options) {
 
 vec3 background_of(const Scene& scene, const Options& options) { return options.light.background.value_or(scene.background); }
 
+size_t value_of(const ChapterChoice& choice, const Options& options) {
+    const auto given = options.estimator.choices.find(choice.name);
+    return given == options.estimator.choices.end() ? 0 : given->second;
+}
+
 Strategy strategy_of(const Chapter& chapter, const Options& options) {
     if (chapter.strategies.empty()) return Strategy::bounces;
     return options.estimator.strategy.value_or(chapter.strategies.front());
@@ -94,6 +99,9 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
         text << ' ' << chapter.options[i].name << ' ' << value_of(chapter, i, options);
     const Strategy strategy = strategy_of(chapter, options);
     if (!chapter.strategies.empty() && strategy != chapter.strategies.front()) text << " --strategy " << to_string(strategy);
+    for (const ChapterChoice& choice : chapter.choices)
+        if (const size_t value = value_of(choice, options); value > 0)
+            text << ' ' << choice.name << ' ' << choice.values[value].first;
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
     text << ' ' << camera_flags(camera_of(scene, options), ' ') << " --background " << exact_text(background_of(scene, options));
@@ -117,6 +125,9 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
         return estimator;
     }
     if (strategy_of(chapter, options) == Strategy::light) estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
+    for (const ChapterChoice& choice : chapter.choices)
+        if (const size_t value = value_of(choice, options); value > 0)
+            estimator.defines.push_back(choice.define() + ' ' + choice.values[value].second);
     if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
     return estimator;
 }

@@ -25,6 +25,9 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
 // The chapter's shader and its defines.
 Estimator estimator_of(const Chapter& chapter);
 
+// The index of the value that these options give one of the chapter's choices.
+size_t value_of(const ChapterChoice& choice, const Options& options);
+
 // How the chapter's estimator finds light under these options.
 Strategy strategy_of(const Chapter& chapter, const Options& options);
 

@@ -39,6 +39,7 @@ void Comparison::start(const Session& first, const std::string& chapter) {
         if (options.estimator.strategy &&
             std::find(strategies.begin(), strategies.end(), *options.estimator.strategy) == strategies.end())
             options.estimator.strategy.reset();
+        options.estimator.choices.clear();
     }
     // With equal random numbers, differences would look smaller than they are.
     ++options.samples.seed;

@@ -93,6 +93,13 @@ void draw_strategy(const Chapter& chapter, EstimatorOptions& estimator) {
     ImGui::EndCombo();
 }
 
+void draw_choice(const ChapterChoice& choice, size_t& chosen) {
+    if (!ImGui::BeginCombo(choice.name.c_str() + 2, choice.values[chosen].first.c_str())) return;
+    for (size_t i = 0; i < choice.values.size(); ++i)
+        if (ImGui::Selectable(choice.values[i].first.c_str(), i == chosen)) chosen = i;
+    ImGui::EndCombo();
+}
+
 void draw_picture(const Session& session, Options& options) {
     ImGui::Separator();
     const uvec2 size = session.build().job.parameters.image_size;
@@ -191,6 +198,7 @@ void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parame
     if (options.light.max_path_length && options.light.only_path_length)
         options.light.max_path_length = std::max(*options.light.max_path_length, *options.light.only_path_length);
     draw_strategy(chapter, options.estimator);
+    for (const ChapterChoice& choice : chapter.choices) draw_choice(choice, options.estimator.choices[choice.name]);
     options.samples.chapter_values.resize(chapter.options.size());
     for (size_t i = 0; i < chapter.options.size(); ++i)
         draw_chapter_option(chapter.options[i], parameters, options.samples.chapter_values[i]);

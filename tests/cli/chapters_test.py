@@ -16,7 +16,7 @@ def description(chapter):
 def options_of(chapter):
     """The chapter's own options."""
     says = description(chapter)
-    return ["--strategy"] * ("strategies" in says) + says.get("options", [])
+    return ["--strategy"] * ("strategies" in says) + says.get("options", []) + [choice["name"] for choice in says.get("choices", [])]
 
 
 class EveryChapter(ProgramTest):
@@ -44,6 +44,14 @@ class EveryChapter(ProgramTest):
         for chapter in (chapter for chapter in CHAPTERS if not description(chapter).get("dielectrics")):
             self.assert_refused(["glass"], "dielectric", "chapter 6", program=BINARIES / chapter)
 
+    def test_makes_no_report_of_a_picture_that_leaves_microfacets_out(self):
+        for chapter in (chapter for chapter in CHAPTERS if description(chapter).get("dielectrics")):
+            command = ["microfacets", *TINY, f"--report={self.folder}/report.json"]
+            if description(chapter).get("microfacets"):
+                self.render(*command, program=BINARIES / chapter)
+            else:
+                self.assert_refused(command, "--report", "cannot render", r"microfacets\.json", program=BINARIES / chapter)
+
 
 class ChapterOptions(ProgramTest):
     def refuse(self, number, *arguments):
@@ -62,6 +70,11 @@ class ChapterOptions(ProgramTest):
             self.refuse(7, f"--strategy={value}")
         self.refuse(2, "--strategy=bounces")
         self.refuse(3, "--strategy=both")
+
+    def test_choices(self):
+        for value in ("none", "", "SAMPLES_COSINES"):
+            self.refuse(11, f"--facet-sampling={value}")
+        self.refuse(10, "--facet-sampling=cosine")
 
     def test_largest_settings_end(self):
         program = BINARIES / CHAPTERS[3]
@@ -96,3 +109,13 @@ class ChapterRenders(RenderTest):
             self.assertEqual(default.pixels(), pictures[0].pixels())
             self.assertEqual(len({str(picture.pixels()) for picture in pictures}), len(strategies))
             self.assertEqual(len({picture.text("settings") for picture in pictures}), len(strategies))
+
+    def test_choices(self):
+        ways = ("visible_normals", "normals", "cosine")
+        of_balls = {"scene": "microfacets", "program": BINARIES / CHAPTERS[10]}
+        pictures = [self.picture(name, "--samples=2", f"--facet-sampling={name}", **of_balls) for name in ways]
+        default = self.picture("default", "--samples=2", **of_balls)
+        self.assertEqual(default.pixels(), pictures[0].pixels())
+        self.assertEqual(default.text("settings"), pictures[0].text("settings"))
+        self.assertEqual(len({str(picture.pixels()) for picture in pictures}), len(ways))
+        self.assertEqual(len({picture.text("settings") for picture in pictures}), len(ways))

@@ -7,6 +7,7 @@
 #include "support/expect_statistics.h"
 #include "support/gpu_test.h"
 #include "support/render.h"
+#include "support/scenes.h"
 
 namespace lab {
 namespace {
@@ -114,6 +115,23 @@ TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
         }
     }
     expect_uniform("p-values of the tiles", p_values, 0.3);
+}
+
+// What a chapter's shader can be compiled as, in a studio with rough metal.
+TEST(ChapterChoices, ChangeTheNoiseAndNotTheImage) {
+    Scene scene = load_shipped_scene("studio.json");
+    make_metal(scene, 0.7f);
+    uint32_t seed = 2000;
+    for (const std::string& chapter : all_chapters)
+        for (const ChapterChoice& choice : load_chapter(chapter).choices) {
+            std::vector<Batches> images;
+            for (const auto& [name, value] : choice.values) {
+                Subject subject{name, chapter_estimator(chapter), 1};
+                subject.estimator.defines = {choice.define() + " " + value};
+                images.push_back(render_subject(scene, subject, 4, 24, ++seed));
+                if (images.size() > 1) expect_agreement(choice.name + " " + name, images.back(), images.front(), {0.015, 0.3});
+            }
+        }
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 #include <cstdio>
 
 #include "rendering/options.h"
-#include "scene/microfacets.h"
 #include "statistics/error_metrics.h"
 #include "support/expect_statistics.h"
 #include "support/render.h"
+#include "support/scenes.h"
 
 namespace lab {
 namespace {
@@ -129,12 +129,7 @@ TEST(Efficiency, LowDiscrepancyPointsPay_all) {
 // A floor, a ball and a torus of metal in a studio. Light samples find the lamps either way; the lobes see the rest.
 TEST(Efficiency, VisibleNormalsPay_all) {
     Scene scene = load_shipped_scene("studio.json");
-    Microfacets metal{};
-    metal.roughness = 0.2f * 0.2f;
-    metal.metalness = 1;
-    metal.coat_index = 1.5f;
-    integrate_albedo(metal);
-    scene.microfacets.assign(scene.materials.size(), metal);
+    make_metal(scene, 0.2f);
     RenderSettings settings{.width = 64, .height = 64, .samples = 16, .max_path_length = 8, .seed = 11000};
     settings.estimator = chapter_estimator(chapter_named("microfacets"));
     const Cost visible = measure(scene, settings);

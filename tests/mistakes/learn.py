@@ -217,7 +217,7 @@ def confusion(workshop, chapters, is_anew):
             answer = {"mistake": trial.mistake, "verdict": result["verdict"], "named": [], "facts": 0, "measured": measured, **effect(result)}
             if result["verdict"] != "correct":
                 found = diagnose(trial.chapter, file, plan, trial.shader)
-                answer |= {"named": found["names"], "facts": len(found["facts"])}
+                answer |= {"named": [each["name"] for each in found["mistakes"]], "facts": len(found["facts"])}
         with lock:
             record["trials"][key] = answer
             write_json(RECORD, record, DEPTH)

@@ -43,7 +43,7 @@ def untrue(chapter, file, found, those):
             if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
                 continue
             kind = "factor" if repeats_of(chapter) == 1 else "repeats"
-            anew = readings(experiment, measure(program, experiment.points, those, SEED, pool, **{kind: FACTOR}), known_sights(known[name]))
+            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, pool, **{kind: FACTOR}), known_sights(known[name]))
             contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
                              if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
     return contradicted

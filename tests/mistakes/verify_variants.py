@@ -35,6 +35,7 @@ SETTINGS = {
         ("cornell_box", "--max-path-length 40 --survival-cap 0.6 --roulette-start 2")],
     ("light_probe_sampling",): [("sunny", "--max-path-length 3"), ("studio", "--max-path-length 3"),
                                 ("textured", "--max-path-length 2 --strategy light")],
+    ("microfacets",): [("microfacets", "--max-path-length 4"), ("microfacets", "--max-path-length 3 --strategy light")],
 }
 
 

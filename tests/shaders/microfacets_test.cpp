@@ -331,6 +331,29 @@ TEST_P(MicrofacetSurface, NeverGivesMoreThanItReceivesNorNothing) {
         }
 }
 
+// Over all directions the density of each way adds up to the part of the samples that are not dropped, and these have it.
+TEST_P(MicrofacetSurface, HasADensityThatAddsUpHoweverItIsSampled) {
+    constexpr int rows = 600, columns = 300;  // of a hemisphere; both sides of the plane of incidence are the same
+    const vec3 out = facing(50 * pi / 180);
+    std::vector<Directions> grid;
+    for (int i = -rows; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) grid.push_back({facing(std::acos((i + 0.5) / rows), pi * (j + 0.5) / columns), out});
+    uint32_t seed = 1000;
+    for (const std::string& sampling : all_samplings)
+        for (const RoughMaterial& material :
+             {rough_opaque(0.4f, 1, vec3(1)), rough_opaque(0.4f, 0, vec3(0.5f)), rough_glass(0.4f)}) {
+            double sum = 0;
+            for (const Result& result : run(material, grid, 1, {"FACET_SAMPLING " + sampling}))
+                sum += 2 * pi / (rows * columns) * (result.carries_light ? double{result.density} : 0);
+            std::vector<double> kept;
+            for (const Result& result : sample(material, out, 800'000, ++seed, {"FACET_SAMPLING " + sampling})) {
+                kept.push_back(result.sampled_density > 0);
+                ASSERT_EQ(result.sampled_density, kept.back() * double{result.density_of_sample});
+            }
+            expect_mean(sampling, estimate_mean(kept), sum, 0.005, 9);
+        }
+}
+
 // Visible normals, binned by the fraction of steeper facets and by azimuth.
 TEST_P(MicrofacetSurface, SamplesVisibleNormalsAsOftenAsTheyAreSeen) {
     constexpr size_t rows = 16, columns = 16;

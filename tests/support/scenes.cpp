@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/microfacets.h"
+
 namespace lab {
 namespace {
 
@@ -62,6 +64,15 @@ Scene closed_box(const Material& material) {
     Scene scene = make_scene({material}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
     scene.camera = {.position = {0.3f, -0.2f, 0.5f}, .target = {-0.4f, 0.1f, -1}, .up = {0, 1, 0}, .vertical_fov = 70};
     return scene;
+}
+
+void make_metal(Scene& scene, float roughness) {
+    Microfacets metal{};
+    metal.roughness = roughness * roughness;
+    metal.metalness = 1;
+    metal.coat_index = 1.5f;
+    integrate_albedo(metal);
+    scene.microfacets.assign(scene.materials.size(), metal);
 }
 
 Scene make_sphere(const Material& material, Facing facing) {

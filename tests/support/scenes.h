@@ -32,6 +32,9 @@ Scene closed_box(const Material& material);
 // encloses the camera, outwards it fills the camera's view.
 Scene make_sphere(const Material& material, Facing facing);
 
+// Turns all materials into rough metal of the same colours, whose Pr this is.
+void make_metal(Scene& scene, float roughness);
+
 struct TriangleMesh {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;

@@ -35,6 +35,11 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
         EXPECT_EQ(chapter.dielectrics, mentions("is_dielectric")) << name;
         EXPECT_EQ(chapter.microfacets, mentions("microfacets[")) << name;
         EXPECT_EQ(chapter.low_discrepancy, mentions("get_random_words(inout uvec2 seed) {")) << name;
+        for (const ChapterChoice& choice : chapter.choices) {
+            EXPECT_TRUE(mentions("#define " + choice.define() + " " + choice.values.front().second))
+                << "the default of " << choice.name;
+            for (const auto& [_, value] : choice.values) EXPECT_TRUE(mentions("const uint " + value + " =")) << value;
+        }
         for (const auto& [option_name, option] : options) {
             std::string parameter = option_name.substr(2);
             std::ranges::replace(parameter, '-', '_');
@@ -59,7 +64,12 @@ TEST(Chapter, MistakesAreNamed) {
         {"{\"title\": \"A\", \"strategies\": [\"brdf\"]}", "has \"brdf\": use both, light, bounces"},
         {"{\"title\": \"A\", \"options\": \"--survival-cap\"}", "must be a list"},
         {"{\"title\": \"A\", \"options\": [7]}", "has 7: use"},
-        {"{\"title\": \"A\", \"options\": [\"--cap\"]}", "has \"--cap\": use --splitting-factor, "}};
+        {"{\"title\": \"A\", \"options\": [\"--cap\"]}", "has \"--cap\": use --splitting-factor, "},
+        {"{\"title\": \"A\", \"choices\": [{\"help\": \"B\", \"values\": []}]}", "\"name\" in a choice is missing"},
+        {"{\"title\": \"A\", \"choices\": [{\"name\": \"B\", \"help\": \"C\", \"values\": []}]}", "must begin with --"},
+        {"{\"title\": \"A\", \"choices\": [{\"name\": \"--b\", \"help\": \"C\", \"values\": []}]}", "is empty"},
+        {"{\"title\": \"A\", \"choices\": [{\"name\": \"--b\", \"help\": \"C\", \"values\": [[\"d\"]]}]}",
+         "has [\"d\"]: use pairs"}};
     for (const auto& [text, words] : mistakes) {
         folder.write("chapter.json", text);
         EXPECT_USER_ERROR(load(), words);

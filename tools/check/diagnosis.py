@@ -9,8 +9,8 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from check.experiments import JOBS, Sight, experiments_of, measure, write_scene
-from check.facts import Fact, common_value, constant, fact, number
+from check.experiments import JOBS, Sight, experiments_of, pictures, together, write_scene
+from check.facts import Fact, common_value, constant, fact, number, readings
 from check.grading import DESCRIPTIONS, knowledge_file, make_tree
 from project import CHAPTERS, ROOT, UserError, read_json
 
@@ -46,6 +46,17 @@ def is_deciding(experiment, _):
     return experiment.decides
 
 
+def look_at(program, points, settings, seed, pool, repeats, expected):
+    """What a program shows at each of these points: a list of Sight. Only a point whose first picture looks wrong is rendered again."""
+    seen = pictures(program, points, settings, seed, pool)
+    wrong = [index for index, reading in enumerate(readings(points, map(together, seen), expected)) if not reading.is_right]
+    if repeats > 1:
+        more = pictures(program, [points[index] for index in wrong], settings, seed + len(points), pool, repeats=repeats - 1)
+        for index, sights in zip(wrong, more):
+            seen[index] += sights
+    return [together(sights) for sights in seen]
+
+
 def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIRST_SEED):
     """Name -> Fact and name -> list of Sight, for the experiments of a chapter."""
     facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
@@ -54,7 +65,7 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
             if name not in expected or not chosen(experiment, facts):
                 continue
             try:
-                sights[name] = measure(program, experiment.points, settings, seed, pool, repeats=repeats_of(chapter))
+                sights[name] = look_at(program, experiment.points, settings, seed, pool, repeats_of(chapter), known_sights(expected[name]))
                 facts[name] = fact(experiment, sights[name], known_sights(expected[name]))
             except UserError as error:  # for example an endless loop that only this scene triggers
                 facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {error}")

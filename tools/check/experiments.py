@@ -202,9 +202,9 @@ def together(sights):
                  mean("rays"), mean("typical"), sum(sight.invalid for sight in sights))
 
 
-def measure(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
-    """What a program shows at each of these points: a list of Sight. Takes `factor` times as many samples as the points say, in
-    each of `repeats` pictures."""
+def pictures(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
+    """What a program shows at each of these points, picture by picture: a list of Sight for each point. Takes `factor` times as many
+    samples as the points say, in each of `repeats` pictures."""
     with tempfile.TemporaryDirectory() as folder:
         files = [write_scene(point.scene, Path(folder), f"point_{index}") for index, point in enumerate(points)]
 
@@ -217,4 +217,9 @@ def measure(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
 
         work = [(index, turn) for index in range(len(points)) for turn in range(repeats)]
         sights = list(pool.map(render, work)) if pool else [render(item) for item in work]
-        return [together(sights[i:i + repeats]) for i in range(0, len(sights), repeats)]
+        return [sights[i:i + repeats] for i in range(0, len(sights), repeats)]
+
+
+def measure(*those, **others):
+    """The same, with all pictures of a point averaged: a list of Sight."""
+    return [together(sights) for sights in pictures(*those, **others)]

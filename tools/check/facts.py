@@ -66,11 +66,11 @@ class Fact:
         return self.is_right and all(reading.is_surely_right for reading in self.readings)
 
 
-def readings(experiment, sights, expected):
+def readings(points, sights, expected):
     """Compares the Sights of a shader with those of the chapter's own."""
     brightest = max(sight.mean for sight in expected)
     found = []
-    for point, now, right in zip(experiment.points, sights, expected):
+    for point, now, right in zip(points, sights, expected):
         is_dark = right.mean <= DARK * brightest
         scale = brightest if is_dark else right.mean
         value = now.mean / scale
@@ -165,7 +165,7 @@ def in_words(reading):
 
 
 def fact(experiment, sights, expected):
-    found = Fact(experiment, readings(experiment, sights, expected), invalid=sum(sight.invalid for sight in sights))
+    found = Fact(experiment, readings(experiment.points, sights, expected), invalid=sum(sight.invalid for sight in sights))
     if not found.is_right:
         found.sentence = sentence(experiment, found.readings)
         found.sentence += f"; {found.invalid} samples are infinite or not a number" if found.invalid else ""

@@ -1,7 +1,8 @@
 """Tells which records in docs/records are older than the sources that they measured.
 
 --stamp writes into records what they measured, where the program that made them cannot: those of build/bin/cost_record,
-build/bin/hardware_record and ./lab device, and those that were measured on another machine. Do it before the sources change.
+build/bin/hardware_record, build/bin/facet_record and ./lab device, and those that were measured on another machine. Do it before the
+sources change.
 """
 import json
 import os

@@ -9,6 +9,7 @@ import re
 
 from docs.best_table import best_and_peers
 from docs.confusion_table import CONDITIONS, rates
+from docs.facet_tables import WAYS, WAYS_IN_WORDS, lost_by_degrees, sampling_cost
 from matplotlib import pyplot, ticker
 from project import RECORDS, load_records, read_json, scene_of, write_bytes
 from report.numbers import Series, errors, paired_ratio
@@ -212,7 +213,30 @@ def check():
     return figure, shown
 
 
-PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, features, check)}
+def facets():
+    """Left: what cosine and any normals cost, relative to visible normals. Right: what white metal loses, by the angle it is seen from."""
+    found, shown = devices("facets"), {}
+    for device, record in found.items():
+        for way in WAYS[1:]:
+            shown[f"{WAYS_IN_WORDS[way]}, {short_device(device).split(' (')[0]}"] = [
+                [row["roughness"], sampling_cost(row, way)] for row in record["sampling"]]
+    lost = lost_by_degrees(next(iter(found.values())))
+    figure, axes = new_figure(300, columns=2)
+    for index, (label, rows) in enumerate(shown.items()):
+        lines(axes[0], [roughness for roughness, _ in rows], [cost for _, cost in rows], index, label)
+    axes[0].axhline(1, color=GREY, linewidth=1.5)
+    finish_axis(axes[0], yscale="log", xlabel="roughness Pr", ylabel="error × time, visible normals are 1")
+    axes[0].yaxis.set_major_formatter(plain)
+    for index, (degrees, rows) in enumerate(lost.items()):
+        for key, style, label in (("single", "-", f"seen from {degrees}°"), ("corrected", "--", None if index else "corrected")):
+            axes[1].plot([row["roughness"] for row in rows], [row[key][0] for row in rows], style, color=COLOURS[index], label=label)
+    finish_axis(axes[1], xlabel="roughness Pr", ylabel="% of the light lost")
+    for axis in axes:
+        axis.legend()
+    return figure, {"sampling": shown, "lost": lost}
+
+
+PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, features, check, facets)}
 
 
 # ---------------------------------------------------------------------------------------------- files
