@@ -126,7 +126,7 @@ void run(const Chapter& chapter, Options options) {
     RenderJob job = make_job(chapter, options, scene);
     if (features_of(*scene).microfacets && !chapter.microfacets) {
         const std::string use = ": use a chapter that has them, see ./lab run";
-        if (!options.run.report.empty())  // of another picture than the scene's
+        if (!options.run.report.empty())  // it would describe a different picture
             throw UserError("--report: " + chapter.name + " cannot render the microfacets (Pr) of " + scene->file.string() + use);
         scene->warnings.push_back(scene->file.string() + ": has microfacets (Pr), which " + chapter.name + " leaves out" + use);
     }

@@ -19,7 +19,7 @@ struct ChapterOption {
     double low, high;  // accepted range, both ends included
 };
 
-// An option of the estimator that its shader is compiled with: --facet-sampling is the define FACET_SAMPLING.
+// An option that the shader is compiled with: --facet-sampling becomes the define FACET_SAMPLING.
 struct ChapterChoice {
     std::string name;  // "--facet-sampling"
     std::string help;

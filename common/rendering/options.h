@@ -34,7 +34,7 @@ struct SceneOptions {
 // Options that decide how the chapter's estimator is compiled.
 struct EstimatorOptions {
     std::optional<Strategy> strategy;       // one of the chapter's
-    std::map<std::string, size_t> choices;  // name of a choice of the chapter -> number of its value
+    std::map<std::string, size_t> choices;  // name of a chapter's choice -> index of its value
     bool operator==(const EstimatorOptions&) const = default;
 };
 

@@ -117,7 +117,7 @@ TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
     expect_uniform("p-values of the tiles", p_values, 0.3);
 }
 
-// What a chapter's shader can be compiled as, in a studio with rough metal.
+// All variants that a chapter's shader can be compiled as, in a studio with rough metal.
 TEST(ChapterChoices, ChangeTheNoiseAndNotTheImage) {
     Scene scene = load_shipped_scene("studio.json");
     make_metal(scene, 0.7f);

@@ -28,7 +28,7 @@ struct Settings {
     std::filesystem::path output = "facets.json";
 };
 
-// A scene on the device, and what renders it.
+// A scene on the device, and its renderer.
 class Subject {
   public:
     Subject(const Device& device, const Chapter& chapter, const Scene& scene)
@@ -59,7 +59,7 @@ Options options_of(const Chapter& chapter, uint32_t size) {
     return options;
 }
 
-// Error and seconds of each way to sample, in runs of which the ways take turns.
+// Error and seconds of each sampling strategy; the strategies take turns.
 json measure_sampling(const Device& device, const Chapter& chapter, double roughness, const Settings& settings) {
     Scene scene = load_shipped_scene("studio.json");
     make_metal(scene, static_cast<float>(roughness));
@@ -117,7 +117,7 @@ json measure_furnace(const Device& device, const Chapter& chapter, double roughn
 }
 
 int run(const Settings& settings) {
-    check_writable(settings.output, {".json"});  // before minutes are spent
+    check_writable(settings.output, {".json"});  // fail before spending minutes
     const Device device({settings.device});
     const Chapter chapter = load_chapter(chapter_named("microfacets"));
     json record = record_of(device);

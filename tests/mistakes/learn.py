@@ -7,8 +7,8 @@
                                        written shaders of their variants; checks correct shaders as well; writes
                                        docs/records/check/confusion.json
 
-Both do only what has changed since the last time: a shader or what it is rendered with. So both go on where they were
-interrupted. --anew does everything again, which is needed where anything else has changed: shaders that chapters share, scenes,
+Both do only what has changed since the last time: a shader or what it is rendered with. So both continue where they were
+interrupted. --anew does everything again, which is needed if anything else has changed: shaders that chapters share, scenes,
 references, or how check judges and names. --chapters does those alone.
 """
 import hashlib

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Grades shaders that were written without a look at the catalogue of mistakes, and compares with what their authors say of them.
+"""Grades shaders written without a look at the catalogue of mistakes, and compares with what their authors say about them.
 
     tests/mistakes/submissions.py FOLDER RECORD
 
 FOLDER has a folder for each submission, with a shader and submission.json. RECORD is the name of a file in docs/records/check. It
 gets the verdict, the facts and the names of each submission. Each fact is measured again with other random numbers and more samples:
-it is true where both agree. Whether the facts and names point at what the wrong line means, and whether a single name is right, is for a person to
-say: "points" and "name_is_right" in the record, true, false or null, stay as long as the same is told.
+it is true if both agree. A person decides whether the facts and names point at what the wrong line means, and whether a single name is
+right: "points" and "name_is_right" in the record, true, false or null, which are kept as long as the answer stays the same.
 """
 import sys
 import tempfile

@@ -331,9 +331,9 @@ TEST_P(MicrofacetSurface, NeverGivesMoreThanItReceivesNorNothing) {
         }
 }
 
-// Over all directions the density of each way adds up to the part of the samples that are not dropped, and these have it.
+// The density of each strategy integrates to the fraction of samples that are kept, and those samples follow it.
 TEST_P(MicrofacetSurface, HasADensityThatAddsUpHoweverItIsSampled) {
-    constexpr int rows = 600, columns = 300;  // of a hemisphere; both sides of the plane of incidence are the same
+    constexpr int rows = 600, columns = 300;  // of a hemisphere; symmetric about the plane of incidence
     const vec3 out = facing(50 * pi / 180);
     std::vector<Directions> grid;
     for (int i = -rows; i < rows; ++i)

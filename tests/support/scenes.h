@@ -32,7 +32,7 @@ Scene closed_box(const Material& material);
 // encloses the camera, outwards it fills the camera's view.
 Scene make_sphere(const Material& material, Facing facing);
 
-// Turns all materials into rough metal of the same colours, whose Pr this is.
+// Turns all materials into rough metal of the same colours with this Pr.
 void make_metal(Scene& scene, float roughness);
 
 struct TriangleMesh {

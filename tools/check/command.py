@@ -1,16 +1,16 @@
 """Grades a shader of chapter N, or of the chapter that N is a copy of: is it correct, biased, or noisier or more expensive than its technique should be?
 
-Renders scenes that have a reference image, each several times. The means of the whole image and of its tiles are tested
-against the reference: a correct shader is called biased in about one of 1000 checks. Error and rays are compared with those of
-the chapter's own shader: too much is 1.5 times, unless the one pays for the other, and less where less noise is the lesson.
-After a third of the renders a first verdict says what is sure by then. Where a shader is not correct, small experiments
-find out what is wrong and what is right: each varies one thing alone, an angle, a distance, the albedo. Where only one common
-mistake fits all that they show, there is a question to think about and the slide to read again, too; --teacher names it.
+Renders scenes that have a reference image, each several times. Tests the means of the whole image and of its tiles
+against the reference: a correct shader is called biased in about one of 1000 checks. Compares error and rays with those of
+the chapter's own shader: the limit is 1.5 times, unless one pays for the other, and lower if less noise is the lesson.
+After a third of the renders a first verdict says what is certain by then. If a shader is not correct, small experiments
+find out what is wrong and what is right: each varies a single thing, such as an angle, a distance or the albedo. If only one common
+mistake fits all of their results, the check asks a question and names the slide to read again; --teacher names the mistake.
 
---all grades each shader in a folder: files NAME.glsl, and shaders in folders of their own. It writes results.csv
-and a page with pictures, and goes on where it was interrupted. For autograders see docs/grading.
+--all grades each shader in a folder: files NAME.glsl, and shaders in separate folders. It writes results.csv
+and a page with pictures, and continues after an interruption. For autograders see docs/grading.
 
-Exit code: 0 correct, 1 biased, noisy or expensive, 2 cannot be graded; of --all: 0, or 2 where some cannot be.
+Exit code: 0 correct, 1 biased, noisy or expensive, 2 cannot be graded; with --all: 0, or 2 if some cannot be graded.
 """
 import json
 import os

@@ -1,7 +1,7 @@
-"""The differential diagnosis of a shader that is not correct: facts first, and a name only where they leave one.
+"""The differential diagnosis of an incorrect shader: facts first, and a name only if they leave a single one.
 
-The chapter's experiments run in their order, those with a condition (`when`) only where other experiments have shown what it asks for.
-knowledge.json in the chapter's folder has what its own shader shows in each of them, and what the mistakes of the catalogue do to it.
+The chapter's experiments run in order, those with a condition (`when`) only if other experiments have met it.
+knowledge.json in the chapter's folder records what its own shader shows in each, and what the catalogue's mistakes do to it.
 """
 import math
 import tempfile

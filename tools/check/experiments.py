@@ -1,8 +1,8 @@
-"""Small experiments that isolate one thing each: what a chapter uses of them stands in experiments.json in its folder.
+"""Small experiments that isolate one thing each: experiments.json in a chapter's folder lists those that it uses.
 
-An experiment has points: tiny scenes of a few plates, lamps or pieces of glass that differ in one thing alone. The camera looks at one
-small spot, so that all pixels show the same and a picture is one number: its mean, with an error by the spread of the pixels. It
-is compared with what the chapter's own shader finds there, which knowledge.json has.
+An experiment has points: tiny scenes of a few plates, lamps or pieces of glass that differ in a single thing. The camera looks at one
+small spot, so that all pixels show the same and a picture is one number: its mean, with an error from the spread of the pixels. It
+is compared with what the chapter's own shader finds there, as recorded in knowledge.json.
 """
 import json
 import math

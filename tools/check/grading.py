@@ -1,7 +1,7 @@
 """Grades a shader of a chapter: renders scenes that have a reference image and judges bias, noise and cost.
 
 Means of the whole image and of its tiles are tested against the reference. Error and rays are compared with those of the
-chapter's own shader, which knowledge.json in its folder has.
+chapter's own shader, which are recorded in knowledge.json in its folder.
 """
 import os
 import re

@@ -1,8 +1,8 @@
 """The bug gallery: shaders with a mistake in them, to be found by looking.
 
     ./lab bug 3             lists the bugs of chapter 3, without their names
-    ./lab bug 3 2           renders the second one beside the right picture, with the same random numbers: output/bug_3_2.png
-    ./lab bug 3 2 --answer  tells what is wrong, in which line, and what catches it
+    ./lab bug 3 2           renders the second one next to the right picture, with the same random numbers: output/bug_3_2.png
+    ./lab bug 3 2 --answer  explains what is wrong, in which line, and what catches it
 
 The picture shows right, wrong and their difference: red is too bright, blue too dark. The verdict compares its mean with the
 reference image, or with the right picture where the scene has none.

@@ -1,8 +1,8 @@
-"""The mistakes that chapters know, mistakes.json in their folders, and how they are planted into the chapters' shaders.
+"""The mistakes in the chapters' mistakes.json, and how to plant them into the chapters' shaders.
 
-A record replaces the text `find`, which is there exactly once, by `replace`: in a shader of its chapter's folder, in one that these
-include from other chapters, or in `file`. A chapter that can have the mistake of an earlier one has a record of its own with that name. What is said of a mistake need be said in one
-record only: its "explanation"; "hint" and "slide", with which ./lab check is to know it; the "test" that is red where it is planted.
+A record replaces the text `find`, which must occur exactly once, by `replace`: in a shader of its chapter's folder, in one that these
+include from other chapters, or in `file`. If a chapter can have an earlier chapter's mistake, it has its own record with that name. These
+need to be in one of the records only: the "explanation"; "hint" and "slide", for ./lab check; the "test" that the mistake turns red.
 """
 from dataclasses import dataclass
 from pathlib import Path

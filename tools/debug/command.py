@@ -1,11 +1,11 @@
 """Stops in a shader: runs one sample of one pixel of chapter N in a debugger, up to its path_trace().
 
-    ./lab debug 3 --pixel 200,300                   gdb, or lldb where that is all there is
-    ./lab debug 3 torus --pixel 20,30 --sample 5    other options are those of the chapter
-    ./lab debug 3 --pixel 200,300 -- -batch -ex 'info locals'    what follows -- are options of the debugger
+    ./lab debug 3 --pixel 200,300                   gdb, or lldb if there is no gdb
+    ./lab debug 3 torus --pixel 20,30 --sample 5    all other options are the chapter's
+    ./lab debug 3 --pixel 200,300 -- -batch -ex 'info locals'    passes what follows -- to the debugger
     ./lab debug --vscode                            writes .vscode/launch.json and .vscode/tasks.json, to press F5 there
 
-The page docs/debugging.md shows what can be done there.
+docs/debugging.md shows what you can do there.
 """
 import json
 import os

@@ -1,6 +1,6 @@
 """Tells which records in docs/records are older than the sources that they measured.
 
---stamp writes into records what they measured, where the program that made them cannot: those of build/bin/cost_record,
+--stamp writes into records what they measured, if the program that made them cannot: those of build/bin/cost_record,
 build/bin/hardware_record, build/bin/facet_record and ./lab device, and those that were measured on another machine. Do it before the
 sources change.
 """

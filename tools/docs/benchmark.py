@@ -1,10 +1,10 @@
-"""Measures how fast this machine renders and prints a table that can be posted and compared; also in output/benchmark.json.
+"""Measures how fast this machine renders and prints a table to post and compare; also in output/benchmark.json.
 
-Every backend of the device renders the Cornell box, a scene lit by a mesh and one of glass, by the chapter whose
+Every backend of the device renders the Cornell box, a scene lit by a mesh and one of glass, with the chapter whose
 measure.json says how: five runs of each, interleaved. "Seconds to 1 % error" is the time from the command to a picture with a
-relative error of 0.01 (the root of rel_mse). Shorter runs are extrapolated: the error falls as one over the root of the samples.
-Paths and rays per second are measured by the device's clock. GPUs render 1024 x 1024 pixels, because the reference's size is too
-small to fill them. Takes less than two minutes. Ctrl-C keeps what was measured; the same command then goes on.
+relative error of 0.01 (the root of rel_mse). Shorter runs are extrapolated: the error falls with one over the root of the samples.
+Paths and rays per second use the device's clock. GPUs render 1024 x 1024 pixels, because the reference's size is too
+small to fill them. Takes less than two minutes. Ctrl-C keeps what was measured; the same command then continues.
 """
 import os
 import platform

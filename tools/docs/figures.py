@@ -1,5 +1,5 @@
 """Renders and plots all pictures of the pages into docs/pictures, then fills the tables of the pages from the records. Ctrl-C
-keeps finished renders; the same command goes on.
+keeps finished renders; the same command then continues.
 """
 import hashlib
 import os

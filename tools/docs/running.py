@@ -1,7 +1,7 @@
-"""Measures what each command costs, from a fresh clone on: docs/records/running/NAME.json, for the table of docs/measuring.md.
+"""Measures what each command costs, starting from a fresh clone: docs/records/running/NAME.json, for the table of docs/measuring.md.
 
-It clones the last commit into a temporary folder, and runs the commands there one after the other. What they need must be installed.
-The table shows seconds of the CPU, which depend little on what else runs. Building keeps all cores busy; most else is short.
+Clones the last commit into a temporary folder, and runs the commands there one after the other. What they need must be installed.
+The table shows CPU seconds, which depend little on the load. Building keeps all cores busy; most other commands are short.
 """
 import os
 import subprocess

@@ -1,5 +1,5 @@
-"""Shows the lesson of chapter N: how its path_trace.glsl differs from that of the chapter before, and the other shaders that its
-folder brings in full. Counts what is new.
+"""Shows the lesson of chapter N: how its path_trace.glsl differs from the previous chapter's, and the other shaders that its
+folder adds, in full. Counts what is new.
 """
 import os
 import re

@@ -1,4 +1,4 @@
-"""A playground before pixels: points of the lab's own samplers against their density, and the integrals that they
+"""A playground without pixels: points from the lab's samplers against their density, and the integrals that they
 estimate, as text and as a picture. The points come from the chapters' shaders, so a change there shows here.
 """
 import math

@@ -1,7 +1,7 @@
 """Packs programs, shaders, scenes, pages and tools for machines without a compiler: output/path_tracing_lab-SYSTEM.
 
-windows: a .zip to unpack and run on Windows 10 or 11, built here. linux: a .tar.xz for the distribution of this machine.
-release: both, the book, checksums and what is new, as output/release. The same sources make the same archive.
+windows: a .zip to unpack and run on Windows 10 or 11, built here. linux: a .tar.xz for this machine's distribution.
+release: both, the book, checksums and the changes, in output/release. The same sources make the same archive.
 """
 import hashlib
 import io

@@ -1,6 +1,6 @@
 """Reads and writes OpenEXR files: one part, 32-bit float channels in scan lines, ZIP compression, string attributes.
 
-Debian 12 has no Python binding of OpenEXR but OpenImageIO's, which brings 80 packages; ./lab check needs this on Windows, too.
+Debian 12's only Python binding for OpenEXR is OpenImageIO's, which pulls in 80 packages; ./lab check also needs this on Windows.
 """
 import re
 import struct

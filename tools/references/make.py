@@ -1,13 +1,13 @@
 """Renders reference images of our scenes with Mitsuba 3, a renderer that shares no code with ours.
 
-    ./lab reference SCENE --output FILE.exr   renders one scene, also one of your own
-    ./lab reference --all                     renders those in assets/references again whose scenes have changed
+    ./lab reference SCENE --output FILE.exr   renders one scene, possibly your own
+    ./lab reference --all                     re-renders those in assets/references whose scenes have changed
 
 A reference is an EXR file with the mean of all samples in R, G and B, the variance of that mean, estimated from
 independent batches, in variance.R, variance.G and variance.B, and its settings as attributes. Path lengths
-count as in the chapters: at most m bounces are Mitsuba's max_depth m + 1. Nothing is decided by Russian roulette.
+count as in the chapters: at most m bounces are Mitsuba's max_depth m + 1. There is no Russian roulette.
 
-Mitsuba is needed to make references only (`pip install mitsuba`; made and tested with version 3.9.1). Its variant
+Mitsuba is only needed to make references (`pip install mitsuba`; made and tested with version 3.9.1). Its variant
 scalar_rgb runs everywhere, but is slow where vertex normals are interpolated or the Phong lobe is used, as that is
 Python here; llvm_ad_rgb compiles it for the CPU (LLVM 19 or newer, DRJIT_LIBLLVM_PATH names its library) and
 cuda_ad_rgb for NVIDIA's GPUs.

@@ -1,6 +1,6 @@
 """Renders one of our scenes with Mitsuba 3 and reports error against samples and seconds as a chapter does.
 
-Its command line is a chapter's, as far as `./lab report --peer mitsuba` needs it. Seconds are those of Mitsuba's render calls
+Takes a chapter's command line, as far as `./lab report --peer mitsuba` needs it. Seconds are those of Mitsuba's render calls
 alone; kernels are compiled before.
 """
 import itertools

@@ -1,7 +1,7 @@
 """Reads our scene files (.json, .obj, .mtl) in Python, for tools that hand them to other renderers.
 
-It shares no code with common/scene: where the two read a file differently, a comparison with a reference shows it. It does not look
-for mistakes in the files, as the chapters do. Arrays are in double precision.
+Shares no code with common/scene: if the two read a file differently, a comparison with a reference shows it. Does not check
+files for mistakes, as the chapters do. Arrays are in double precision.
 """
 import itertools
 import json

@@ -2,7 +2,7 @@
 
 Scenes are names or files with a reference (./lab reference makes one), or names of references in assets/references;
 chapters are their numbers. Without any, all shipped scenes and all chapters are rendered, in about a quarter of an hour on
-two cores. Ctrl-C keeps what was measured; the same command then goes on.
+two cores. Ctrl-C keeps what was measured; the same command then continues.
 """
 from pathlib import Path
 

@@ -1,4 +1,8 @@
-"""Runs chapters, and Mitsuba as their peer, and records their reports: see numbers.py."""
+"""Runs chapters, and Mitsuba as their peer, and records their reports: see numbers.py.
+
+The record is written after each run, so an interrupted measurement can continue. The runs of all cases are interleaved, so that
+other load on the machine affects all of them alike.
+"""
 import hashlib
 import re
 import shutil
@@ -14,7 +18,7 @@ from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, commit, fail
 from references.images import averaged, read_reference, read_rgb, rel_mse
 from report.sources import measured
 
-PILOT_PART = 0.3  # of a run's seconds: a pilot tells how many samples a run takes
+PILOT_PART = 0.3  # of a run's seconds: a pilot determines how many samples a run takes
 DEVICE_LOST = 3  # exit code
 LARGE = 1024  # side in pixels of a second size on GPUs, which small pictures do not fill
 

@@ -1,5 +1,5 @@
 // Next event estimation with resampling (Talbot, Cline and Egbert 2005): of three candidates y_i with density p_i one
-// is kept with probability proportional to w_i = t(y_i) / p_i, where t is the luminance of what it brings if nothing
+// is kept with probability proportional to w_i = t(y_i) / p_i, where t is the luminance of its contribution if nothing
 // is in between. The estimate f(y) / t(y) · mean(w_i) has the right expectation, and needs a single shadow ray.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 

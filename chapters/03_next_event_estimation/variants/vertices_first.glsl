@@ -35,7 +35,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     uint path_length = 0u;
     bool goes_on = true;
     while (goes_on) {
-        // First pass: hits, with what they emit where no light sample brings it.
+        // First pass: hits, with their emission unless light samples cover it.
         Vertex vertices[VERTICES];
         uint first_length = path_length;
         uint count = 0u;

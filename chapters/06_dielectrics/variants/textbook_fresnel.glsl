@@ -10,7 +10,7 @@ float fresnel(float c_1, float c_2, float n_1, float n_2) {
     return (r_s * r_s + r_p * r_p) / 2.0;
 }
 
-// Direction in which a path goes on from glass, and the factor of its radiance.
+// Direction in which a path continues from glass, and the factor of its radiance.
 vec3 scatter_at_glass(ShadingData s, vec3 incident, float u, out float radiance_factor) {
     float n = s.relative_index;
     float c_1 = -dot(s.normal, incident);

@@ -26,7 +26,7 @@ uint mix_bits(uint x) {
     return x ^ (x >> 16u);
 }
 
-// Samples of even and of odd number have scrambles of their own.
+// Even and odd samples have different scrambles.
 uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
     uint hash = mix_bits(key.y ^ mix_bits(pixel_index ^ mix_bits(key.x + sample_index % 2u)));
     return uvec2(sample_index / 2u, hash);
