@@ -127,6 +127,26 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     change([](Options& options) { options.image.view = nullptr; });
 }
 
+TEST_F(ViewerTest, EveryChoiceTakesEffect) {
+    chapter_ = load_chapter(chapter_named("microfacets"));
+    Options options = make_options();
+    options.scene.file = scenes / "microfacets.json";
+    open(options);
+    for (const ChapterChoice& choice : chapter_.choices)
+        for (size_t i = 0; i < choice.values.size(); ++i) {
+            options = session().options();
+            options.estimator.choices[choice.name] = i;
+            session().change(options);
+            finish_build();
+            EXPECT_EQ(session().message(), "");
+            const auto& job = session().build().job;
+            const std::string said = choice.name + " " + choice.values[i].first,
+                              define = choice.define() + " " + choice.values[i].second;
+            EXPECT_EQ(job.record.settings.find(said) != std::string::npos, i > 0) << said;
+            EXPECT_EQ(std::ranges::count(job.estimator.defines, define), i > 0) << define;
+        }
+}
+
 TEST_F(ViewerTest, ScenesDroppedInAreShownAndBadOnesAreRefused) {
     open(make_options());
     drop(scenes / "furnace.json");
