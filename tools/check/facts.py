@@ -106,7 +106,8 @@ def common_value(those):
 
 def power_law(experiment, those):
     """(factor, its error, words for the power) if readings follow a power of the experiment's quantity; otherwise None."""
-    points = {point.at: point.x for point in experiment.points}
+    points = {point.at: point.x for point in experiment.points if point.x is not None}
+    those = [reading for reading in those if reading.at in points]
     values = np.array([reading.value for reading in those])
     if len(those) < 3 or not experiment.quantity or values.min() <= 0:
         return None
