@@ -14,6 +14,7 @@ references, or how check judges and names. --chapters does those alone.
 import hashlib
 import json
 import math
+import random
 import sys
 import tempfile
 import time
@@ -214,15 +215,18 @@ def confusion(workshop, chapters, is_anew):
             file = Path(folder) / "path_trace.glsl"
             file.write_text(trial.text, encoding="utf-8")
             result = grading.judge(trial.chapter, file, plan, shader=trial.shader)[0]
-            answer = {"mistake": trial.mistake, "verdict": result["verdict"], "named": [], "facts": 0, "measured": measured, **effect(result)}
-            if result["verdict"] != "correct":
-                found = diagnose(trial.chapter, file, plan, trial.shader)
-                answer |= {"named": [each["name"] for each in found["mistakes"]], "facts": len(found["facts"])}
+            is_correct = result["verdict"] == "correct"
+            found = diagnose(trial.chapter, file, plan, trial.shader, is_correct)
+            verdict = "biased" if is_correct and found["is_beyond_doubt"] else result["verdict"]
+            answer = {"mistake": trial.mistake, "verdict": verdict, "named": [each["name"] for each in found["mistakes"]],
+                      "facts": len(found["facts"]), "measured": measured, **effect(result)}
         with lock:
             record["trials"][key] = answer
             write_json(RECORD, record, DEPTH)
 
-    workshop.map("naming", try_naming, [(key, everything[key]) for key in planned_trials(chapters) if key not in record["trials"]])
+    missing = [(key, everything[key]) for key in planned_trials(chapters) if key not in record["trials"]]
+    random.Random(0).shuffle(missing)  # what an interrupted run has done is a fair sample
+    workshop.map("naming", try_naming, missing)
     record["trials"] = {key: record["trials"][key] for key in everything if key in record["trials"]}
     write_json(RECORD, stamped(record), DEPTH)
 
