@@ -5,6 +5,8 @@ import unittest
 from unittest import mock
 
 from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
+import cpp_mistake
+import mistake
 import project
 from PIL import Image
 from course import bug, mistakes
@@ -19,6 +21,20 @@ cp "$(dirname "$0")/../chapters/{chapter}/path_trace.glsl" '{folder}/shader'
 
 def index_of(chapter, name):
     return 1 + [found.mistake["name"] for found in mistakes.bugs_of(chapter)].index(name)
+
+
+class PlantedMistakesTest(unittest.TestCase):
+    """The mistakes themselves run with --all; whether the code still has their places is seen at once."""
+
+    def test_shaders_have_the_places_of_all_mistakes(self):
+        for planted in mistake.load().values():
+            mistakes.plant((PROJECT / planted["file"]).read_text(encoding="utf-8"), planted["find"], planted["replace"], planted["name"])
+
+    def test_sources_have_the_places_of_all_mistakes(self):
+        with mock.patch.object(cpp_mistake, "TREE", PROJECT):
+            for planted in cpp_mistake.load().values():
+                source, text = cpp_mistake.find_source(planted)
+                mistakes.plant(text, planted["find"], planted["replace"], source.name)
 
 
 class BugTest(ProgramTest):
