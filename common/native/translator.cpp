@@ -232,7 +232,7 @@ class Translator : ExpressionReader {
         return text + take();
     }
     std::string body() {  // of a loop
-        return "{ if (*bindings.is_stopped) [[unlikely]] throw Stopped(); " + statement() + " }";
+        return "{ if (bindings.is_stopped->load(std::memory_order_relaxed)) [[unlikely]] throw Stopped(); " + statement() + " }";
     }
     std::string parenthesised() {
         std::string text = expect("(");
