@@ -156,14 +156,14 @@ class ExpressionReader : protected TokenReader {
             const std::string type = take();
             auto sizes = dimensions();
             sizes.erase(sizes.begin());
-            return call("make_array<" + array_type(type, sizes) + ">", word, {});
+            return call("make_array<" + array_type(type, sizes) + ">", {});
         }
-        if (is_type(word)) return call(scalar_types.contains(word) ? skip() + "scalar<" + word + ">" : take(), word, {});
+        if (is_type(word)) return call(scalar_types.contains(word) ? skip() + "scalar<" + word + ">" : take(), {});
         if (is_name(word) && peek(1) == "(") {
             const auto found = functions_.find(word);
             std::string name = take();
             if (declared_.contains(word)) name.insert(name.size() - word.size(), "this->");
-            return call(word == "not" ? name : name, word, found == functions_.end() ? outs_of_builtin(word) : found->second);
+            return call(name, found == functions_.end() ? outs_of_builtin(word) : found->second);
         }
         Expression all{take()};
         if (is_name(word)) {
@@ -179,7 +179,7 @@ class ExpressionReader : protected TokenReader {
         return {};
     }
     // The arguments of a call. `overloads` tell which ones are `out`.
-    Expression call(const std::string& name, const std::string&, const std::vector<std::vector<bool>>& overloads) {
+    Expression call(const std::string& name, const std::vector<std::vector<bool>>& overloads) {
         std::vector<Expression> arguments;
         const std::string open = expect("(");
         while (peek() != ")") {

@@ -246,7 +246,7 @@ struct Builtins {
     LAB_FLOATS(floor) LAB_FLOATS(trunc) LAB_FLOATS(round) LAB_FLOATS(roundEven) LAB_FLOATS(ceil) LAB_FLOATS(fract) LAB_FLOATS(mod)
     LAB_FLOATS(step) LAB_FLOATS(smoothstep) LAB_FLOATS(isnan) LAB_FLOATS(isinf) LAB_FLOATS(length) LAB_FLOATS(distance)
     LAB_FLOATS(dot) LAB_FLOATS(cross) LAB_FLOATS(normalize) LAB_FLOATS(faceforward) LAB_FLOATS(reflect) LAB_FLOATS(refract)
-    LAB_SAME(matrixCompMult) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse) LAB_NUMBERS(abs)
+    LAB_SAME(matrixCompMult) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse)
     LAB_NUMBERS(sign) LAB_NUMBERS(min) LAB_NUMBERS(max) LAB_NUMBERS(clamp) LAB_NUMBERS(lessThan) LAB_NUMBERS(lessThanEqual)
     LAB_NUMBERS(greaterThan) LAB_NUMBERS(greaterThanEqual) LAB_NUMBERS(equal) LAB_NUMBERS(notEqual) LAB_SAME(any) LAB_SAME(all)
     LAB_SAME(not_) LAB_SAME(bitfieldReverse) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(findMSB) LAB_SAME(bitfieldExtract)
@@ -264,6 +264,10 @@ struct Builtins {
             return glm::mix(as<CommonFloat<A, B>>(a), as<CommonFloat<A, B>>(b), as<CommonFloat<A, B>>(weight));
     }
     // clang-format on
+    template <typename T>
+    static auto abs(const T& x) {  // GLM's asks for the sign
+        return each([](auto number) { return std::abs(number); }, x);
+    }
     template <typename A, typename B, typename C>
     static auto fma(const A& a, const B& b, const C& c) {  // GLM's rounds twice
         return each([](auto x, auto y, auto z) { return std::fma(x, y, z); }, a, b, c);

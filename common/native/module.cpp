@@ -63,8 +63,10 @@ std::vector<std::string> compiler_arguments() {
     std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-fvisibility=hidden",          "-g",
                                        "-fno-finite-loops", "-ffp-contract=off", "-w",    "-I" + header_folder().string()};
     if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
-    if (mode == Mode::fast)
-        arguments.insert(arguments.end(), {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG"});
+    if (mode == Mode::fast)  // in one large function, structs need not be copied from one to the next
+        arguments.insert(arguments.end(),
+                         {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG", "-finline-limit=4000",
+                          "--param=large-function-growth=2000", "--param=inline-unit-growth=1000"});
     if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-DNDEBUG"});
     if (mode == Mode::checked) arguments.insert(arguments.end(), {"-O1", "-DLAB_CHECKED", "-fsanitize=undefined"});
     return arguments;

@@ -14,7 +14,7 @@ std::vector<std::string> missing_tools();
 enum class Mode {
     fast,
     debug,    // for a debugger
-    checked,  // stops at undefined behaviour and at indices outside of their arrays
+    checked,  // stops at indices outside of their arrays, and reports other undefined behaviour
 };
 
 // How all shaders are compiled that are loaded from now on; `fast` without a call.

@@ -103,7 +103,7 @@ class Translator : ExpressionReader {
                    take();
         }
         std::string fields, offset = "0";
-        fields += expect("{").substr(0, 0);
+        expect("{");
         while (peek() != "}") {
             bool is_const = false;
             std::string space = qualifiers(is_const);
@@ -194,7 +194,7 @@ class Translator : ExpressionReader {
                 text += skip();
                 continue;
             }
-            bool is_const = false, is_out = false;
+            bool is_out = false;
             while (dropped.contains(peek()) || peek() == "const" || peek() == "in" || peek() == "out" || peek() == "inout") {
                 is_out |= peek() == "out" || peek() == "inout";
                 text += skip();
@@ -206,7 +206,6 @@ class Translator : ExpressionReader {
             sizes.insert(sizes.begin(), more.begin(), more.end());
             text += array_type(parameter, sizes) + (is_out ? "&" : "") + variable;
             outs.push_back(is_out);
-            (void)is_const;
         }
         text += take();
         // GLSL's own functions of this name stay.
@@ -232,7 +231,7 @@ class Translator : ExpressionReader {
         return text + take();
     }
     std::string body() {  // of a loop
-        return "{ if (*bindings.is_stopped) [[unlikely]] throw Stopped(); " + statement() + " }";
+        return "{ if (bindings.is_stopped->load(std::memory_order_relaxed)) [[unlikely]] throw Stopped(); " + statement() + " }";
     }
     std::string parenthesised() {
         std::string text = expect("(");

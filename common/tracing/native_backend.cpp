@@ -24,7 +24,8 @@ native::Bindings::Range range_of(std::span<const T> data) {  // const is cast aw
 #ifdef LAB_EMBREE
 class NativeTree {
   public:
-    explicit NativeTree(const Scene& scene) : triangles_(world_triangles(scene)) {
+    explicit NativeTree(const Scene& scene) {
+        const auto triangles = world_triangles(scene);
         const auto start = Clock::now();
         device_.reset(rtcNewDevice(nullptr));
         rtcSetDeviceMemoryMonitorFunction(
@@ -37,7 +38,8 @@ class NativeTree {
         scene_.reset(rtcNewScene(device_.get()));
         rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
         const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        const size_t count = triangles_.size();
+        const size_t count = triangles.size();
+        places_.reserve(count);
         const auto buffer = [&](RTCBufferType type, size_t elements) {
             return rtcSetNewGeometryBuffer(
                 geometry, type, 0, type == RTC_BUFFER_TYPE_VERTEX ? RTC_FORMAT_FLOAT3 : RTC_FORMAT_UINT3, sizeof(vec3), elements);
@@ -45,11 +47,14 @@ class NativeTree {
         auto* const corners = static_cast<vec3*>(buffer(RTC_BUFFER_TYPE_VERTEX, 3 * count));
         auto* const indices = static_cast<uint32_t*>(buffer(RTC_BUFFER_TYPE_INDEX, count));
         if (count > 0 && (!corners || !indices)) throw std::bad_alloc();
-        for (size_t i = 0; i < count; ++i)
+        for (size_t i = 0; i < count; ++i) {
+            const BvhTriangle& triangle = triangles[i];
+            places_.push_back({triangle.instance, triangle.triangle});
             for (int corner = 0; corner < 3; ++corner) {
-                corners[3 * i + corner] = {triangles_[i].x[corner], triangles_[i].y[corner], triangles_[i].z[corner]};
+                corners[3 * i + corner] = {triangle.x[corner], triangle.y[corner], triangle.z[corner]};
                 indices[3 * i + corner] = static_cast<uint32_t>(3 * i) + corner;
             }
+        }
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene_.get(), geometry);
         rtcReleaseGeometry(geometry);
@@ -63,7 +68,7 @@ class NativeTree {
         bindings.scene = this;
         bindings.trace = trace;
     }
-    size_t bytes() const { return bytes_ + triangles_.size() * sizeof(BvhTriangle); }
+    size_t bytes() const { return bytes_ + places_.size() * sizeof(Place); }
     double build_seconds() const { return build_seconds_; }
 
   private:
@@ -99,8 +104,8 @@ class NativeTree {
         rtcIntersect1(self.scene_.get(), no_arguments, &query);
 #endif
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-        const BvhTriangle& triangle = self.triangles_[query.hit.primID];
-        *hit = {triangle.instance, triangle.triangle, {query.hit.u, query.hit.v}, query.ray.tfar};
+        const Place& place = self.places_[query.hit.primID];
+        *hit = {place.instance, place.triangle, {query.hit.u, query.hit.v}, query.ray.tfar};
         return true;
     }
 
@@ -108,7 +113,10 @@ class NativeTree {
         void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
         void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
     };
-    LargeArray<BvhTriangle> triangles_;
+    struct Place {  // of a triangle in the scene
+        uint32_t instance, triangle;
+    };
+    std::vector<Place> places_;
     std::atomic<size_t> bytes_ = 0;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
     std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
