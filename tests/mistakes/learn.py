@@ -26,7 +26,7 @@ from threading import Lock
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
-from check.diagnosis import diagnose, observe, ratios_of, repeats_of  # noqa: E402
+from check.diagnosis import diagnose, observe, ratios_of  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
 from docs.ages import stamped  # noqa: E402
 from planting import catalogue, own_shader, trials  # noqa: E402
@@ -42,7 +42,7 @@ LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0)}
 GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in grading.DESCRIPTIONS.items()
               if "gains_over" in says.get("check", {})}
 TRYING = {"runs": grading.RUNS, "first_seed": 3001}  # as a check does, with seeds that nothing was learnt from
-OWN_SEED, OWN_FACTOR, MISTAKE_SEED = 5001, 4, 6001  # of experiments; the chapter's own shader has this many times the samples
+OWN_SEED, OWN_PICTURES, MISTAKE_SEED = 5001, 4, 6001  # of experiments
 
 
 def settings(chapter, plan, samples, scenes=None):
@@ -100,8 +100,8 @@ class Workshop:
 
     def own_sights(self, chapter, experiment):
         """What the chapter's own shader shows in an experiment, as lists."""
-        kind = "factor" if repeats_of(chapter) == 1 else "repeats"  # more samples would have less noise each
-        sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, **{kind: OWN_FACTOR})
+        # Not one picture of more samples: the spread of its pixels would tell more of what they show and less of their noise.
+        sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, repeats=OWN_PICTURES)
         return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
 
     def shown(self, bug, expected):

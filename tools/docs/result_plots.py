@@ -231,8 +231,8 @@ def facets():
         for key, style, label in (("single", "-", f"seen from {degrees}°"), ("corrected", "--", None if index else "corrected")):
             axes[1].plot([row["roughness"] for row in rows], [row[key][0] for row in rows], style, color=COLOURS[index], label=label)
     finish_axis(axes[1], xlabel="roughness Pr", ylabel="% of the light lost")
-    for axis in axes:
-        axis.legend()
+    legend_above(axes[0], 2)
+    axes[1].legend()
     return figure, {"sampling": shown, "lost": lost}
 
 
