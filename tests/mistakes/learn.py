@@ -105,14 +105,16 @@ class Workshop:
         return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
 
     def shown(self, bug, expected):
-        """What a mistake shows in experiments, as text with a number per point: brightness, noise and rays, where they differ
-        from the chapter's own."""
+        """What a mistake shows in experiments, as text with a number per point: brightness where it differs from the chapter's
+        own, or if that is right everywhere, noise and rays."""
         with grading.program_with(CHAPTERS[bug.chapter], bug.text, bug.file) as program:
             facts, sights = observe(bug.chapter, program, self.settings(LEVELS), expected, lambda *_: True, MISTAKE_SEED)
+        shows = {name: to_digits(reading.value for reading in seen.readings) for name, seen in facts.items() if not seen.is_right}
+        if shows:
+            return {"shows": shows}
         ratios = ratios_of(sights, expected)
-        return {"shows": {name: to_digits(r.value for r in seen.readings) for name, seen in facts.items() if not seen.is_right},
-                "noise": {name: to_digits((v for v, _ in those), 2) for name, those in ratios["noise"].items()
-                          if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)},
+        return {"shows": {}, "noise": {name: to_digits((v for v, _ in those), 2) for name, those in ratios["noise"].items()
+                                       if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)},
                 "rays": {name: to_digits((v for v, _ in those), 3) for name, those in ratios["rays"].items()
                          if any(abs(v - 1) > 0.05 for v, _ in those)}}
 
@@ -151,7 +153,7 @@ def planned_knowledge(chapters, before):
         for bug in (bug for bug in catalogue() if bug.chapter == chapter):
             now = digest(sorted(digests.values()), code(bug.text))
             old = known.get("mistakes", {}).get(bug.mistake["name"], {})
-            seen = {key: old[key] for key in ("shows", "noise", "rays")} if old.get("measured") == now and "shows" in old else {}
+            seen = {key: old[key] for key in ("shows", "noise", "rays") if key in old} if old.get("measured") == now else {}
             entry["mistakes"][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")} | {"measured": now} | seen
         knowledge[chapter] = entry
     return knowledge
