@@ -31,7 +31,7 @@ from check.experiments import experiments_of, measure  # noqa: E402
 from docs.ages import stamped  # noqa: E402
 from planting import catalogue, own_shader, trials  # noqa: E402
 from project import CHAPTERS, RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
-from report.sources import COMMENT_OR_BLANKS  # noqa: E402
+from report.sources import code  # noqa: E402
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
@@ -59,11 +59,6 @@ def level_digest(chapter):
 def experiment_digest(chapter, name):
     """Digest of what an experiment depends on."""
     return digest(repr(experiments_of(chapter)[name]), own_text(chapter))
-
-
-def code(text):
-    """A shader without comments, which change nothing that it shows."""
-    return COMMENT_OR_BLANKS.sub(" ", text)
 
 
 def own_text(chapter):

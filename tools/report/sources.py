@@ -10,14 +10,19 @@ from project import CHAPTERS, ROOT, shaders_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.
 RENDERER = ["shaders", "common/film", "common/gpu", "common/rendering", "common/scene", "common/tracing"]
-COMMENT_OR_BLANKS = re.compile(r"//[^\n]*|/\*.*?\*/|\s+", re.DOTALL)
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+
+
+def code(text):
+    """A source without its comments and the way it is laid out."""
+    return " ".join(COMMENT.sub(" ", text).split())
 
 
 def digest(files):
     """Digest of the code in these files and of their names, wherever the project lies."""
     found = hashlib.sha256()
     for path in sorted(set(files)):
-        found.update(f"{path.relative_to(ROOT).as_posix()}\n{COMMENT_OR_BLANKS.sub(' ', path.read_text(encoding='utf-8'))}\n".encode())
+        found.update(f"{path.relative_to(ROOT).as_posix()}\n{code(path.read_text(encoding='utf-8'))}\n".encode())
     return found.hexdigest()[:12]
 
 
