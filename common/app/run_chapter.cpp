@@ -27,6 +27,7 @@ void print_devices() {
             for (const auto& name : device.missing.at(backend)) missing += (missing.empty() ? "" : ", ") + name;
             std::printf("   %-9s %s\n", to_string(backend).c_str(), missing.empty() ? "works" : ("lacks " + missing).c_str());
         }
+        if (device.missing.at(Backend::native).empty()) std::printf("   native's rays: %s\n", native::ray_tracer_name().c_str());
         std::printf("   largest image %zu megapixels\n", Film::max_pixels(device) / 1000000);
     }
 }

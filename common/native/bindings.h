@@ -19,6 +19,20 @@ struct RayHit {
     float distance;
 };
 
+// Rays by Embree: embree.h, which is compiled like a shader.
+class RayTracer {
+  public:
+    struct Triangle {
+        float corners[3][3];
+        uint32_t instance, triangle;
+    };
+    virtual ~RayTracer() = default;
+    // The closest hit nearer than t_max, or with a null `hit` whether there is any.
+    virtual bool trace(const float* origin, const float* direction, float t_max, RayHit* hit) const = 0;
+    virtual size_t bytes() const = 0;
+};
+using MakeRayTracer = RayTracer* (*)(const RayTracer::Triangle* triangles, size_t count);
+
 struct Bindings {
     // By the shaders' binding number: an array, or the `Texture`s of images.
     struct Range {
@@ -28,15 +42,12 @@ struct Bindings {
     std::byte* push_constants;
     const std::atomic<bool>* is_stopped;  // loops of the shader end where this is true
 
-    // Rays by Embree: the closest hit nearer than t_max, or with a null `hit` whether there is any.
-    const void* scene;
-    bool (*trace)(const void* scene, const float* origin, const float* direction, float t_max, RayHit* hit);
+    const RayTracer* rays;  // where shaders are compiled with BACKEND_EMBREE
 };
 
 // How a workgroup has ended.
 enum class Outcome { finished, stopped, failed };
 // Runs a workgroup. Of an error it leaves a line of text.
 using RunGroup = Outcome (*)(const Bindings& bindings, uint32_t group, char* error, size_t error_size);
-inline constexpr const char* run_group_name = "lab_run_group";
 
 }  // namespace lab::native

@@ -35,14 +35,15 @@ class ExpressionReader : protected TokenReader {
     bool is_type(const std::string& token) const {
         return scalar_types.contains(token) || is_vector_type(token) || structs_.contains(token);
     }
-    // [2][3] after a type or a name: the sizes, empty for [].
-    std::vector<std::string> dimensions() {
+    // [2][3] after a name or a type: the sizes, empty for [], and then those `of_type`.
+    std::vector<std::string> dimensions(const std::vector<std::string>& of_type = {}) {
         std::vector<std::string> sizes;
         while (peek() == "[") {
             skip();
             sizes.push_back(peek() == "]" ? "" : expression().text);
             expect("]");
         }
+        sizes.insert(sizes.end(), of_type.begin(), of_type.end());
         return sizes;
     }
     static std::string array_type(std::string element, const std::vector<std::string>& sizes) {

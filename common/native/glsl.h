@@ -362,7 +362,7 @@ struct ShaderBase : Builtins {
     bool native_closest_hit(const vec3& origin, const vec3& direction, float t_max, uint& instance, uint& triangle,
                             vec2& barycentrics, float& distance) const {
         RayHit hit;
-        if (!bindings.trace(bindings.scene, &origin.x, &direction.x, t_max, &hit)) return false;
+        if (!bindings.rays->trace(&origin.x, &direction.x, t_max, &hit)) return false;
         instance = hit.instance;
         triangle = hit.triangle;
         barycentrics = {hit.barycentrics[0], hit.barycentrics[1]};
@@ -370,7 +370,7 @@ struct ShaderBase : Builtins {
         return true;
     }
     bool native_any_hit(const vec3& origin, const vec3& direction, float t_max) const {
-        return bindings.trace(bindings.scene, &origin.x, &direction.x, t_max, nullptr);
+        return bindings.rays->trace(&origin.x, &direction.x, t_max, nullptr);
     }
 };
 

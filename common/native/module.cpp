@@ -6,6 +6,8 @@ namespace lab::native {
 std::vector<std::string> missing_tools() { return {"Linux or macOS"}; }
 void set_mode(Mode) {}
 RunGroup load(const std::string&) { return nullptr; }
+MakeRayTracer load_embree() { return nullptr; }
+std::string ray_tracer_name() { return "the lab's own tree"; }
 void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 }  // namespace lab::native
 
@@ -116,22 +118,48 @@ std::string first_error(std::istream& log) {
 }
 
 // Compiles C++ to a shared library in the cache.
-void compile(const std::string& text, const std::string& name) {
+void compile(const std::string& text, const std::vector<std::string>& arguments, const std::string& name) {
     const fs::path place = cache_file(name + "-" + std::to_string(process_id()));
     const auto with = [&](const char* ending) { return fs::path(place.string() + ending); };
+    std::error_code ignored;
+    fs::create_directories(place.parent_path(), ignored);
     write_file(with(".cpp"), text);
-    auto command = compiler_arguments();
-    command.insert(command.begin(), find_compiler().string());
-    command.insert(command.end(), {"-o", with(".so").string(), with(".cpp").string()});
+    std::vector<std::string> command{find_compiler().string(), with(".cpp").string(), "-o", with(".so").string()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
     const bool is_compiled = run_program(command, with(".log"));
     std::ifstream log(with(".log"));
     const std::string error = first_error(log);
     if (is_compiled) write_cache(name, read_file(with(".so"), UINT64_MAX));
-    std::error_code ignored;
     for (const char* ending : {".cpp", ".so", ".log"}) fs::remove(with(ending), ignored);
     if (!is_compiled)
-        throw UserError("the backend native: " + command.front() + " does not compile the shader: " + error +
+        throw UserError("the backend native: " + command.front() + " does not compile its code: " + error +
                         ": use another backend, such as --backend compute");
+}
+
+// A function of a module whose C++ this is. It comes from the cache if possible.
+void* load_function(const char* function, const std::string& text, const std::vector<std::string>& arguments) {
+    std::string key = text + find_compiler().string() + processor();
+    for (const auto& argument : arguments) key += " " + argument;
+    for (const char* header : {"glsl.h", "bindings.h", "embree.h"})
+        key += read_file(header_folder() / "native" / header, UINT64_MAX);
+    const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
+    const fs::path file = cache_file(name);
+    if (file.empty()) throw UserError("the backend native has no folder for its code: set XDG_CACHE_HOME to one");
+    if (!read_cache(name)) compile(text, arguments, name);
+    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library)
+        throw UserError(std::string("the backend native cannot load its code: ") + dlerror() +
+                        ": set XDG_CACHE_HOME to a folder that allows programs");
+    return dlsym(library, function);
+}
+
+// The library "embree4" or "embree3" if one can compile with it: its name without a version is there if its headers are. Empty if
+// there is none, or if LAB_WITHOUT_EMBREE is in the environment.
+std::string find_embree() {
+    if (std::getenv("LAB_WITHOUT_EMBREE")) return {};
+    for (const std::string name : {"embree4", "embree3"})
+        if (dlopen(("lib" + name + ".so").c_str(), RTLD_LAZY | RTLD_LOCAL)) return name;
+    return {};
 }
 
 // A crash in a shader returns to the thread that runs it.
@@ -156,19 +184,21 @@ std::vector<std::string> missing_tools() {
 void set_mode(Mode wanted) { mode = wanted; }
 
 RunGroup load(const std::string& preprocessed_glsl) {
-    const std::string text = translate(preprocessed_glsl);
-    std::string key = text + find_compiler().string() + processor();
-    for (const auto& argument : compiler_arguments()) key += " " + argument;
-    for (const char* header : {"native/glsl.h", "native/bindings.h"}) key += read_file(header_folder() / header, UINT64_MAX);
-    const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
-    const fs::path file = cache_file(name);
-    if (file.empty()) throw UserError("the backend native has no folder for its code: set XDG_CACHE_HOME to one");
-    if (!read_cache(name)) compile(text, name);
-    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!library)
-        throw UserError(std::string("the backend native cannot load its code: ") + dlerror() +
-                        ": set XDG_CACHE_HOME to a folder that allows programs");
-    return reinterpret_cast<RunGroup>(dlsym(library, run_group_name));
+    return reinterpret_cast<RunGroup>(load_function("lab_run_group", translate(preprocessed_glsl), compiler_arguments()));
+}
+
+MakeRayTracer load_embree() {
+    const std::string embree = find_embree();
+    if (embree.empty()) return nullptr;
+    auto arguments = compiler_arguments();
+    arguments.push_back("-l" + embree);
+    const std::string text = "#include <" + embree + "/rtcore.h>\n#include \"native/embree.h\"\n";
+    return reinterpret_cast<MakeRayTracer>(load_function("lab_make_ray_tracer", text, arguments));
+}
+
+std::string ray_tracer_name() {
+    const std::string embree = find_embree();
+    return embree.empty() ? "the lab's own tree; libembree-dev is faster" : "Embree " + embree.substr(embree.size() - 1);
 }
 
 void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
@@ -199,9 +229,10 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
         way_back = nullptr;
         if (outcome != Outcome::failed) return;
         is_stopped = true;
-        throw DeviceFailure(signal == 0 ? std::string(error)
-                                        : std::string("the shader crashed (") + strsignal(signal) +
-                                              "), as it does for an index outside of an array: --sanitize tells where");
+        if (signal == 0) throw DeviceFailure(error);
+        throw DeviceFailure(std::string("the shader crashed (") + strsignal(signal) +
+                            (mode == Mode::checked ? "): the sanitizer's last line tells where"
+                                                   : "), as it does for an index outside of an array: --sanitize tells where"));
     });
 }
 

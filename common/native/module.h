@@ -24,6 +24,11 @@ void set_mode(Mode mode);
 // what translate() makes of it.
 RunGroup load(const std::string& preprocessed_glsl);
 
+// Rays by Embree, compiled and cached in the same way. Null where Embree or its headers are missing.
+MakeRayTracer load_embree();
+// What traces rays, as --list-devices says it: Embree with its version, or our own tree.
+std::string ray_tracer_name();
+
 // Runs workgroups on all processors. Interrupts of the program stop them. Throws UserError for what a checked shader finds, and
 // DeviceFailure if the code crashes.
 void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end);

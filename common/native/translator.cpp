@@ -1,5 +1,7 @@
 #include "native/translator.h"
 
+#include <numeric>
+
 #include "native/expressions.h"
 
 namespace lab::native {
@@ -12,20 +14,19 @@ class Translator : ExpressionReader {
     std::string translate() {
         std::string text;
         while (!peek().empty()) text += global();
-        std::string macros;  // of C's headers, which shaders may use as names
-        for (const auto& token : tokens_)
-            if (std::all_of(token.text.begin(), token.text.end(),
-                            [](char c) { return std::isupper(c) || std::isdigit(c) || c == '_'; }) &&
-                !token.text.empty() && std::isupper(static_cast<unsigned char>(token.text[0])))
-                macros_.insert(token.text);
-        for (const auto& name : macros_) macros += "#undef " + name + "\n";
-        return "#include \"native/glsl.h\"\n" + macros + "namespace lab::native {\nstruct Shader : ShaderBase {\n" + usings_ +
-               text +
-               "\n};\n}\nextern \"C\" __attribute__((visibility(\"default\"))) lab::native::Outcome lab_run_group(const "
-               "lab::native::Bindings& bindings, uint32_t group, "
-               "char* "
-               "error, size_t size) {\n    return lab::native::run_group<lab::native::Shader>(bindings, group, error, "
-               "size);\n}\n";
+        Names macros;  // of C's headers, which shaders may use as names
+        for (const auto& [space, word] : tokens_)
+            if (is_name(word) && std::none_of(word.begin(), word.end(), [](unsigned char c) { return std::islower(c); }))
+                macros.insert("#undef " + word + "\n");
+        return "#include \"native/glsl.h\"\n" + std::accumulate(macros.begin(), macros.end(), std::string()) +
+               "namespace lab::native {\nstruct Shader : ShaderBase {\n" + usings_ + text + R"(
+};
+}
+extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_group(
+    const lab::native::Bindings& bindings, uint32_t group, char* error, size_t size) {
+    return lab::native::run_group<lab::native::Shader>(bindings, group, error, size);
+}
+)";
     }
 
   private:
@@ -53,9 +54,7 @@ class Translator : ExpressionReader {
                 const std::string field = spelled(peek());
                 fields_.insert(field);
                 space += skip();
-                auto all = dimensions();
-                all.insert(all.end(), sizes.begin(), sizes.end());
-                const std::string declared = array_type(type, all);
+                const std::string declared = array_type(type, dimensions(sizes));
                 text += space + declared + " " + field + ";";
                 parameters += (parameters.empty() ? "" : ", ") + declared + " " + field + "_";
                 initialisers += (initialisers.empty() ? " : " : ", ") + field + "(" + field + "_)";
@@ -107,15 +106,15 @@ class Translator : ExpressionReader {
         while (peek() != "}") {
             bool is_const = false;
             std::string space = qualifiers(is_const);
-            const std::string type = take(), field = take();
+            const std::string type = take();
+            globals_.insert(peek());
+            const std::string field = take();
             const auto sizes = dimensions();
             const bool is_open = !sizes.empty() && sizes[0].empty();
             const std::string declared = is_open ? type : array_type(type, sizes);
             fields += space + (is_open ? "Span<" + type + ">" : declared + "&") + field + " = " +
                       getter(declared, is_open, offset) + take();
             offset += " + sizeof(" + declared + ")";
-            globals_.insert(
-                field.substr(field.find_last_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") + 1));
         }
         fields += skip();
         if (peek() == ";") return text + fields + skip();
@@ -136,8 +135,7 @@ class Translator : ExpressionReader {
             const std::string name = peek(), variable = take();
             if (is_global) globals_.insert(name);
             declared_.insert(name);
-            auto all = dimensions();
-            all.insert(all.end(), sizes.begin(), sizes.end());
+            const auto all = dimensions(sizes);
             std::string value;
             bool is_constant = true;
             if (peek() == "=") {
@@ -200,11 +198,9 @@ class Translator : ExpressionReader {
                 text += skip();
             }
             const std::string parameter = take();
-            auto sizes = dimensions();
+            const auto sizes = dimensions();
             const std::string variable = is_name(peek()) ? take() : "";
-            const auto more = dimensions();
-            sizes.insert(sizes.begin(), more.begin(), more.end());
-            text += array_type(parameter, sizes) + (is_out ? "&" : "") + variable;
+            text += array_type(parameter, dimensions(sizes)) + (is_out ? "&" : "") + variable;
             outs.push_back(is_out);
         }
         text += take();
@@ -216,10 +212,7 @@ class Translator : ExpressionReader {
         functions_[name].push_back(outs);
         if (peek() == ";") {  // a prototype: members of a struct know each other
             skip();
-            std::string lines;
-            for (const char c : text)
-                if (c == '\n') lines += c;
-            return lines;
+            return std::string(static_cast<size_t>(std::count(text.begin(), text.end(), '\n')), '\n');
         }
         return text + block();
     }
@@ -233,11 +226,8 @@ class Translator : ExpressionReader {
     std::string body() {  // of a loop
         return "{ if (bindings.is_stopped->load(std::memory_order_relaxed)) [[unlikely]] throw Stopped(); " + statement() + " }";
     }
-    std::string parenthesised() {
-        std::string text = expect("(");
-        text += is_declaration() ? declaration(false) : expression().text;
-        return text + expect(")");
-    }
+    std::string simple() { return is_declaration() ? declaration(false) : expression().text; }
+    std::string parenthesised() { return join({expect("("), simple(), expect(")")}); }
     bool is_declaration() const {
         const std::string& word = peek();
         return word == "const" || dropped.contains(word) || (is_type(word) && (is_name(peek(1)) || is_array_declaration()));
@@ -262,27 +252,20 @@ class Translator : ExpressionReader {
         if (word == "do") return join({take(), " ", body(), expect("while"), parenthesised(), expect(";")});
         if (word == "for") {
             std::string text = join({take(), expect("(")});
-            if (peek() != ";") text += is_declaration() ? declaration(false) : expression().text;
-            text += expect(";");
-            if (peek() != ";") text += is_declaration() ? declaration(false) : expression().text;
-            text += expect(";");
-            if (peek() != ")") text += expression().text;
-            text += expect(")");
+            for (const char* end : {";", ";", ")"}) {
+                if (peek() != end) text += simple();
+                text += expect(end);
+            }
             return text + body();
         }
         if (word == "case") return join({take(), expression().text, expect(":")});
         if (word == "default") return join({take(), expect(":")});
-        if (word == "break" || word == "continue" || word == "discard") return join({take(), expect(";")});
-        if (word == "return") {
-            std::string text = take();
-            if (peek() != ";") text += expression().text;
-            return text + expect(";");
-        }
+        if (word == "return" && peek(1) != ";") return join({take(), expression().text, expect(";")});
+        if (word == "break" || word == "continue" || word == "discard" || word == "return") return join({take(), expect(";")});
         if (word == ";") return take();
-        return join({is_declaration() ? declaration(false) : expression().text, expect(";")});
+        return join({simple(), expect(";")});
     }
 
-    Names macros_;
     std::string usings_;
 };
 

@@ -1,12 +1,4 @@
-// The `native` backend: the shaders of `compute` as C++ on the CPU. Embree traces the rays if the lab is built with it.
-#ifdef LAB_EMBREE
-#if LAB_EMBREE == 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-#endif
-
+// The `native` backend: the shaders of `compute` as C++ on the CPU. Embree traces the rays where it is installed.
 #include "clock.h"
 #include "error.h"
 #include "native/module.h"
@@ -21,126 +13,44 @@ native::Bindings::Range range_of(std::span<const T> data) {  // const is cast aw
     return {reinterpret_cast<std::byte*>(const_cast<T*>(data.data())), data.size_bytes()};
 }
 
-#ifdef LAB_EMBREE
+// Embree's tree where that is installed, or else our own.
 class NativeTree {
   public:
     explicit NativeTree(const Scene& scene) {
         const auto triangles = world_triangles(scene);
+        const auto make_ray_tracer = native::load_embree();
         const auto start = Clock::now();
-        device_.reset(rtcNewDevice(nullptr));
-        rtcSetDeviceMemoryMonitorFunction(
-            device_.get(),
-            [](void* bytes, ssize_t change, bool) {
-                *static_cast<std::atomic<size_t>*>(bytes) += static_cast<size_t>(change);
-                return true;
-            },
-            &bytes_);
-        scene_.reset(rtcNewScene(device_.get()));
-        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        const size_t count = triangles.size();
-        places_.reserve(count);
-        const auto buffer = [&](RTCBufferType type, size_t elements) {
-            return rtcSetNewGeometryBuffer(
-                geometry, type, 0, type == RTC_BUFFER_TYPE_VERTEX ? RTC_FORMAT_FLOAT3 : RTC_FORMAT_UINT3, sizeof(vec3), elements);
-        };
-        auto* const corners = static_cast<vec3*>(buffer(RTC_BUFFER_TYPE_VERTEX, 3 * count));
-        auto* const indices = static_cast<uint32_t*>(buffer(RTC_BUFFER_TYPE_INDEX, count));
-        if (count > 0 && (!corners || !indices)) throw std::bad_alloc();
-        for (size_t i = 0; i < count; ++i) {
-            const BvhTriangle& triangle = triangles[i];
-            places_.push_back({triangle.instance, triangle.triangle});
-            for (int corner = 0; corner < 3; ++corner) {
-                corners[3 * i + corner] = {triangle.x[corner], triangle.y[corner], triangle.z[corner]};
-                indices[3 * i + corner] = static_cast<uint32_t>(3 * i) + corner;
-            }
+        if (make_ray_tracer) {
+            std::vector<native::RayTracer::Triangle> copies;
+            copies.reserve(triangles.size());
+            for (const auto& [x, instance, y, triangle, z, padding] : triangles)
+                copies.push_back({{{x[0], y[0], z[0]}, {x[1], y[1], z[1]}, {x[2], y[2], z[2]}}, instance, triangle});
+            rays_.reset(make_ray_tracer(copies.data(), copies.size()));
+        } else {
+            bvh_ = build_bvh(triangles);
         }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_.get(), geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(scene_.get());
-        if (rtcGetDeviceError(device_.get()) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
         build_seconds_ = seconds_since(start);
     }
 
-    std::vector<std::string> defines() const { return {"BACKEND_EMBREE"}; }
-    void bind(native::Bindings& bindings) const {
-        bindings.scene = this;
-        bindings.trace = trace;
-    }
-    size_t bytes() const { return bytes_ + places_.size() * sizeof(Place); }
-    double build_seconds() const { return build_seconds_; }
-
-  private:
-    static bool trace(const void* tree, const float* origin, const float* direction, float t_max, native::RayHit* hit) {
-        const auto& self = *static_cast<const NativeTree*>(tree);
-        RTCRayHit query;
-        query.ray = {.org_x = origin[0],
-                     .org_y = origin[1],
-                     .org_z = origin[2],
-                     .tnear = 0,
-                     .dir_x = direction[0],
-                     .dir_y = direction[1],
-                     .dir_z = direction[2],
-                     .time = 0,
-                     .tfar = t_max,
-                     .mask = ~0u,
-                     .id = 0,
-                     .flags = 0};
-#if LAB_EMBREE == 4
-        constexpr auto no_arguments = nullptr;
-        if (!hit) rtcOccluded1(self.scene_.get(), &query.ray, no_arguments);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        auto* const no_arguments = &context;
-        if (!hit) rtcOccluded1(self.scene_.get(), no_arguments, &query.ray);
-#endif
-        if (!hit) return query.ray.tfar < 0;
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-#if LAB_EMBREE == 4
-        rtcIntersect1(self.scene_.get(), &query, no_arguments);
-#else
-        rtcIntersect1(self.scene_.get(), no_arguments, &query);
-#endif
-        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-        const Place& place = self.places_[query.hit.primID];
-        *hit = {place.instance, place.triangle, {query.hit.u, query.hit.v}, query.ray.tfar};
-        return true;
-    }
-
-    struct Release {
-        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-    };
-    struct Place {  // of a triangle in the scene
-        uint32_t instance, triangle;
-    };
-    std::vector<Place> places_;
-    std::atomic<size_t> bytes_ = 0;
-    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
-    double build_seconds_ = 0;
-};
-#else
-class NativeTree {
-  public:
-    explicit NativeTree(const Scene& scene) : bvh_(build_bvh(world_triangles(scene))) {}
-
     std::vector<std::string> defines() const {
+        if (rays_) return {"BACKEND_EMBREE"};
         return {"BVH_STACK_SIZE " + std::to_string(bvh_.stack_size()), "BVH_IN_STORAGE_BUFFERS"};
     }
     void bind(native::Bindings& bindings) const {
+        bindings.rays = rays_.get();
         bindings.ranges[BINDING_BVH_NODES] = range_of(std::span<const BvhNode>(bvh_.nodes));
         bindings.ranges[BINDING_BVH_TRIANGLES] = range_of(std::span<const BvhTriangle>(bvh_.triangles));
     }
-    size_t bytes() const { return bvh_.nodes.size() * sizeof(BvhNode) + bvh_.triangles.size() * sizeof(BvhTriangle); }
-    double build_seconds() const { return bvh_.build_seconds; }
+    size_t bytes() const {
+        return rays_ ? rays_->bytes() : bvh_.nodes.size() * sizeof(BvhNode) + bvh_.triangles.size() * sizeof(BvhTriangle);
+    }
+    double build_seconds() const { return build_seconds_; }
 
   private:
+    std::unique_ptr<native::RayTracer> rays_;
     Bvh bvh_;
+    double build_seconds_ = 0;
 };
-#endif
 
 class NativeTracer : public Tracer {
   public:

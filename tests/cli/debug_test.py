@@ -12,6 +12,7 @@ from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
 from check import command as check_command
 from debug import command
 from project import CHAPTERS
+from references.images import read_rgb
 
 PAGE = (PROJECT / "docs/debugging.md").read_text(encoding="utf-8")
 SHADER = "chapters/01_uniform_sampling/path_trace.glsl"
@@ -152,7 +153,7 @@ class NativeFailures_all(CopiedLab):
 
     def test_a_cache_that_was_damaged_is_compiled_anew(self):
         self.assertEqual(self.render().returncode, 0)
-        [code] = (self.tree / "cache/path_tracing_lab").glob("native-*")
+        code = max((self.tree / "cache/path_tracing_lab").glob("native-*"), key=os.path.getsize)  # the other one calls Embree
         good = code.read_bytes()
         for bad in (b"", good[:1000], good[:-9] + b"x" + good[-8:]):
             code.unlink()  # a program that runs it keeps its own copy
@@ -161,12 +162,30 @@ class NativeFailures_all(CopiedLab):
             self.assertEqual(len(code.read_bytes()), len(good))
         self.assertEqual(self.render(**self.compiler("exit 1\n")).returncode, 1)  # another compiler produces other code
 
+    def test_a_cache_that_forbids_programs(self):
+        cache = self.tree / "cache"
+        cache.mkdir()
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", "noexec", "tmpfs", cache], capture_output=True)
+        if mount.returncode != 0:
+            self.skipTest("mounting a folder without programs needs root")
+        self.addCleanup(subprocess.run, ["umount", cache], check=True)
+        self.assert_error(self.render(), 1, "cannot load its code", "XDG_CACHE_HOME")
+
+    def test_without_embree_the_own_tree_traces_the_rays(self):
+        for arguments in ({}, {"LAB_WITHOUT_EMBREE": "1"}):
+            self.assertEqual(self.render("--seed=1", f"--output=rays{len(arguments)}.exr", **arguments).returncode, 0)
+        own = subprocess.run([self.program, "--list-devices"], capture_output=True, encoding="utf-8",
+                             env=os.environ | {"LAB_WITHOUT_EMBREE": "1"}).stdout
+        self.assertIn("native's rays: the lab's own tree", own)
+        with_embree, without = (read_rgb(self.tree / f"rays{i}.exr") for i in range(2))
+        self.assertLess(abs(with_embree - without).mean(), 1e-3 * without.mean())
+
     def test_two_that_compile_the_same(self):
         command_line = [self.program, *self.SIZE, "--backend=native"]
         environment = os.environ | {"XDG_CACHE_HOME": str(self.tree / "cache")}
         both = [subprocess.Popen([*command_line, f"--output={i}.exr"], cwd=self.tree, env=environment) for i in range(2)]
         self.assertEqual([process.wait(120) for process in both], [0, 0])
-        self.assertEqual([file.suffix for file in (self.tree / "cache/path_tracing_lab").glob("native-*")], [""])
+        self.assertEqual({file.suffix for file in (self.tree / "cache/path_tracing_lab").glob("native-*")}, {""})
 
     def test_a_shader_that_never_ends(self):
         old = "        Hit hit;\n"

@@ -139,16 +139,29 @@ TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
     EXPECT_THROW(native::translate("#line 1 \"test.glsl\"\nvoid main() { goto x; }"), UserError);
 }
 
-TEST(Native, CheckedShadersNameTheLineOfAWrongIndex) {
+// What the error of a shader says that is checked.
+std::string failure_of(const std::string& body) {
     native::set_mode(native::Mode::checked);
     std::string message;
     try {
-        run_shader("", "float a[4];\nfor (int i = 0; i < 4; ++i) a[i] = 1.0;\ngive(a[next + 4]);");
+        run_shader("", body);
     } catch (const DeviceFailure& failure) {
         message = failure.what();
     }
     native::set_mode(native::Mode::fast);
-    EXPECT_EQ(message, "test.glsl:9: index 4 of an array of 4 elements");
+    return message;
+}
+
+TEST(Native, CheckedShadersNameTheLineOfAWrongIndex) {
+    EXPECT_EQ(failure_of("float a[4];\nfor (int i = 0; i < 4; ++i) a[i] = 1.0;\ngive(a[next + 4]);"),
+              "test.glsl:9: index 4 of an array of 4 elements");
+}
+
+TEST(Native, CheckedShadersNameTheLineOfADivisionByZero) {
+    testing::internal::CaptureStderr();
+    const std::string failure = failure_of("int zero = next;\ngive(float(7 / zero));");
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("test.glsl:8:"), std::string::npos);
+    EXPECT_NE(failure.find("the sanitizer's last line tells where"), std::string::npos) << failure;
 }
 
 TEST(Native, ACrashIsAnErrorAndNotTheEndOfTheProgram) {

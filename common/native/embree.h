@@ -1,0 +1,108 @@
+// Embree for translated shaders. It is no part of the lab's programs: like a shader it is compiled on the computer that runs it,
+// after the header of Embree 3 or 4 that this one has.
+#pragma once
+#include <algorithm>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "native/bindings.h"
+
+namespace lab::native {
+
+class EmbreeTracer final : public RayTracer {
+  public:
+    EmbreeTracer(const Triangle* triangles, size_t count) {
+        device_.reset(rtcNewDevice(nullptr));
+        rtcSetDeviceMemoryMonitorFunction(
+            device_.get(),
+            [](void* bytes, ssize_t change, bool) {
+                *static_cast<std::atomic<size_t>*>(bytes) += static_cast<size_t>(change);
+                return true;
+            },
+            &bytes_);
+        scene_.reset(rtcNewScene(device_.get()));
+        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        const auto buffer = [&](RTCBufferType type, RTCFormat format, size_t elements) {
+            return rtcSetNewGeometryBuffer(geometry, type, 0, format, 3 * sizeof(float), elements);
+        };
+        auto* corner = static_cast<float*>(buffer(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * count));
+        auto* index = static_cast<uint32_t*>(buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, count));
+        if (count > 0 && (!corner || !index)) throw std::bad_alloc();
+        places_.reserve(count);
+        for (size_t i = 0; i < count; ++i) {
+            places_.push_back({triangles[i].instance, triangles[i].triangle});
+            for (const auto& position : triangles[i].corners) corner = std::copy_n(position, 3, corner);
+            for (size_t j = 0; j < 3; ++j) *index++ = static_cast<uint32_t>(3 * i + j);
+        }
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_.get(), geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene_.get());
+        if (rtcGetDeviceError(device_.get()) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    }
+
+    bool trace(const float* origin, const float* direction, float t_max, RayHit* hit) const override {
+        RTCRayHit query;
+        query.ray = {.org_x = origin[0],
+                     .org_y = origin[1],
+                     .org_z = origin[2],
+                     .tnear = 0,
+                     .dir_x = direction[0],
+                     .dir_y = direction[1],
+                     .dir_z = direction[2],
+                     .time = 0,
+                     .tfar = t_max,
+                     .mask = ~0u,
+                     .id = 0,
+                     .flags = 0};
+        if (!hit) {
+            occluded(query.ray);
+            return query.ray.tfar < 0;
+        }
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        intersect(query);
+        if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+        const Place& place = places_[query.hit.primID];
+        *hit = {place.instance, place.triangle, {query.hit.u, query.hit.v}, query.ray.tfar};
+        return true;
+    }
+    size_t bytes() const override { return bytes_ + places_.size() * sizeof(Place); }
+
+  private:
+#if RTC_VERSION_MAJOR >= 4
+    void occluded(RTCRay& ray) const { rtcOccluded1(scene_.get(), &ray); }
+    void intersect(RTCRayHit& query) const { rtcIntersect1(scene_.get(), &query); }
+#else
+    void occluded(RTCRay& ray) const {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcOccluded1(scene_.get(), &context, &ray);
+    }
+    void intersect(RTCRayHit& query) const {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene_.get(), &context, &query);
+    }
+#endif
+
+    struct Release {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    };
+    struct Place {  // of a triangle in the scene
+        uint32_t instance, triangle;
+    };
+    std::vector<Place> places_;
+    std::atomic<size_t> bytes_ = 0;
+    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
+};
+
+}  // namespace lab::native
+
+extern "C" __attribute__((visibility("default"))) lab::native::RayTracer* lab_make_ray_tracer(
+    const lab::native::RayTracer::Triangle* triangles, size_t count) {
+    return new lab::native::EmbreeTracer(triangles, count);
+}
