@@ -70,7 +70,9 @@ class BugTest(ProgramTest):
             checked = {found.mistake["name"] for found in mistakes.catalogue() if found.chapter == chapter}
             for found in mistakes.bugs_of(chapter):
                 test, command = bug.caught_by(found)
-                if test:
+                if "sanitizer" in found.mistake:
+                    self.assertEqual((test, command), (None, f"./lab bug {chapter} {index_of(chapter, found.mistake['name'])} --sanitize"))
+                elif test:
                     self.assertIn(re.fullmatch(r"\w+\.(?:\w+/)?(\w+)\.(\w+)(?:/\w+)?", test).groups(), known)
                     self.assertEqual(command, f"./lab test -R mistakes.{found.mistake['name']}")
                 else:
@@ -97,6 +99,19 @@ class BugTest(ProgramTest):
         self.assertGreater(light[1], 1.2 * light[0])
         red, _, blue = (sum(channel.getdata()) for channel in difference.split())
         self.assertGreater(red, 1.2 * blue)  # too bright
+
+    def test_what_no_picture_shows_a_sanitizer_finds(self):
+        """As docs/debugging.md says."""
+        if not re.search(r"native +works", self.render("--list-devices")):
+            self.skipTest("no device has the backend native")
+        page = (PROJECT / "docs/debugging.md").read_text(encoding="utf-8")
+        chapter, index, finding = re.search(r"^    \./lab bug (\d+) (\d+) --sanitize\n\n```text\n(.*)\n```$", page, re.MULTILINE).groups()
+        self.assertEqual(int(index), index_of(int(chapter), "one-entry-too-far"))
+        code, out, err = self.run_tool("bug", chapter, index, "--sanitize")
+        self.assertEqual(code, 0, err)
+        self.assertIn(finding, out)
+        out = self.bug(chapter, index, "--samples", 4, "--scene", "microfacets_5", "--backend", "compute")
+        self.assertRegex(out, r"verdict +nothing shows")
 
     def test_noise_is_no_bias(self):
         with mock.patch.dict("os.environ", UNOPTIMISED):

@@ -3,6 +3,7 @@
     ./lab bug 3             lists the bugs of chapter 3, without their names
     ./lab bug 3 2           renders the second one next to the right picture, with the same random numbers: output/bug_3_2.png
     ./lab bug 3 2 --answer  explains what is wrong, in which line, and what catches it
+    ./lab bug 11 15 --sanitize  lets a sanitizer look for it, as docs/debugging.md says
 
 The picture shows right, wrong and their difference: red is too bright, blue too dark. The verdict compares its mean with the
 reference image, or with the right picture where the scene has none.
@@ -34,6 +35,7 @@ def parse():
     parser.add_argument("bug", type=number(int, 1), nargs="?", metavar="I", help="number of the bug; default: list them")
     parser.add_argument("--answer", action="store_true", help="tell what is wrong")
     parser.add_argument("--window", action="store_true", help="open the chapter with the bug in its window")
+    parser.add_argument("--sanitize", action="store_true", help="let the sanitizer look for it")
     parser.add_argument("--scene", help="name or file; default: of the scenes of ./lab check, where the bug shows most")
     parser.add_argument("--samples", type=number(int, 4), help="per pixel; default: twice those of a run of ./lab check")
     add_device_options(parser)
@@ -134,8 +136,21 @@ def open_window(bug, scene, program, options):
         raise UserError(f"the window of chapter {bug.chapter} ended with exit code {result.returncode}")
 
 
+def sanitize(bug, program, options):
+    """Prints what the sanitizer finds first."""
+    tree = Path(program).parents[1]
+    (tree / "common").symlink_to(ROOT / "common")  # compiled with the shader
+    scene = bug.mistake.get("sanitizer", "").split() if not options.scene else []
+    command = [program, *(scene or [find_scene(options.scene or SCENES[bug.chapter][1][0])[0]]), "--headless", "--quiet", "--sanitize",
+               "--width=64", "--height=64", f"--samples={options.samples or 16}", *(["--device", options.device] if options.device else [])]
+    result = subprocess.run(list(map(str, command)), cwd=tree, stderr=subprocess.PIPE, encoding="utf-8")
+    print(f"{'sanitizer':10} {result.stderr.replace(f'{tree}/', '').strip() or 'finds nothing'}")
+
+
 def caught_by(bug):
     """The test known to fail because of the bug, or None, and a command that finds it."""
+    if "sanitizer" in bug.mistake:
+        return None, f"./lab bug {bug.chapter} {1 + [other.text for other in bugs_of(bug.chapter)].index(bug.text)} --sanitize"
     test = bug.mistake.get("test")
     return test, f"./lab test -R mistakes.{bug.mistake['name']}" if test else f"./lab check {bug.chapter}"
 
@@ -173,6 +188,8 @@ def main():
         return
     chapter, own = CHAPTERS[bug.chapter], bug.file.read_text(encoding="utf-8")
     with program_with(chapter, own, bug.file) as right, program_with(chapter, bug.text, bug.file) as wrong:
+        if options.sanitize:
+            return sanitize(bug, wrong, options)
         scene = options.scene or telling_scene(bug.chapter, (right, wrong), options)
         if options.window:
             open_window(bug, scene, wrong, options)

@@ -3,6 +3,7 @@
 A record replaces the text `find`, which must occur exactly once, by `replace`: in a shader of its chapter's folder, in one that these
 include from other chapters, or in `file`. If a chapter can have an earlier chapter's mistake, it has its own record with that name. These
 need to be in one of the records only: the "explanation"; "hint" and "slide", for ./lab check; the "test" that the mistake turns red.
+A mistake that leaves the picture right has instead a "question", and under "sanitizer" a scene, and options, with which --sanitize finds it.
 """
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,7 +30,7 @@ class Bug:
 
     @property
     def question(self):
-        return self.mistake.get("hint", NO_QUESTION)
+        return self.mistake.get("hint") or self.mistake.get("question", NO_QUESTION)
 
 
 def own_shader(chapter):
