@@ -18,12 +18,9 @@
 namespace lab {
 namespace {
 
-struct Options {
-    std::string device;
-    uint32_t size = 256;
+struct Options : RecordSettings {
     double seconds = 0.2;
     uint64_t largest = 4'194'304;
-    std::filesystem::path output = "cost.json";
 };
 
 // Bytes of each array and image of a scene on the device.
@@ -179,13 +176,11 @@ int run(const Options& options) {
 
 int main(int argument_count, char** arguments) {
     CLI::App app("Measures what features cost and how cost grows, and writes a JSON record");
-    lab::Options options;
-    app.add_option("--device", options.device, "Number or part of the name of a device");
-    app.add_option("--size", options.size, "Width and height of the image")->check(CLI::Range(8, 4096))->capture_default_str();
+    lab::Options options{{.size = 256, .output = "cost.json"}};
+    add_record_options(app, options);
     app.add_option("--seconds", options.seconds, "Device time of a run: of each there are five, and one that warms up")
         ->check(CLI::Range(0.001, 100.0))
         ->capture_default_str();
     app.add_option("--largest", options.largest, "Largest number of triangles, pixels and so on")->capture_default_str();
-    app.add_option("--output", options.output, "JSON file to write")->capture_default_str();
     return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(options); });
 }

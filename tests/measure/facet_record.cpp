@@ -20,12 +20,9 @@ constexpr double sampled_roughnesses[] = {0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1};
 constexpr double furnace_roughnesses[] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1};
 constexpr double furnace_degrees[] = {0, 45, 80};
 
-struct Settings {
-    std::string device;
-    uint32_t size = 128;
+struct Settings : RecordSettings {
     uint32_t samples = 64;
     uint32_t runs = 8;
-    std::filesystem::path output = "facets.json";
 };
 
 // A scene on the device, and its renderer.
@@ -141,13 +138,11 @@ int run(const Settings& settings) {
 
 int main(int argument_count, char** arguments) {
     CLI::App app("Measures the ways to sample microfacets and what these lose, and writes a JSON record");
-    lab::Settings settings;
-    app.add_option("--device", settings.device, "Number or part of the name of a device");
-    app.add_option("--size", settings.size, "Width and height of the image")->check(CLI::Range(8, 4096))->capture_default_str();
+    lab::Settings settings{{.size = 128, .output = "facets.json"}};
+    add_record_options(app, settings);
     app.add_option("--samples", settings.samples, "Per pixel, of a run")->check(CLI::Range(2, 1 << 20))->capture_default_str();
     app.add_option("--runs", settings.runs, "Of each way to sample, beside one that warms up")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str();
-    app.add_option("--output", settings.output, "JSON file to write")->capture_default_str();
     return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(settings); });
 }

@@ -95,9 +95,10 @@ json measure(const Device& device, const Subject& subject) {
     return result;
 }
 
-int run(const std::string& choice, uint32_t size, const std::filesystem::path& output) {
-    check_writable(output, {".json"});  // fail before spending minutes
-    const Device device({choice});
+int run(const RecordSettings& settings) {
+    check_writable(settings.output, {".json"});  // fail before spending minutes
+    const Device device({settings.device});
+    const uint32_t size = settings.size;
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), size, size);
     json record = record_of(device);
@@ -107,7 +108,7 @@ int run(const std::string& choice, uint32_t size, const std::filesystem::path& o
         record["scenes"].push_back(measure(device, benchmark_subject(size, segments, rings)));
     for (const char* scene : {"cornell_box", "heart_light"})
         record["scenes"].push_back(measure(device, chapter_subject(size, scene)));
-    write_file(output, record.dump(2) + "\n");
+    write_file(settings.output, record.dump(2) + "\n");
     return 0;
 }
 
@@ -116,11 +117,7 @@ int run(const std::string& choice, uint32_t size, const std::filesystem::path& o
 
 int main(int argument_count, char** arguments) {
     CLI::App app("Measures the backends of a device and writes a JSON record");
-    std::string device;
-    uint32_t size = 1024;
-    std::filesystem::path output = "hardware.json";
-    app.add_option("--device", device, "Number or part of the name of a device");
-    app.add_option("--size", size, "Width and height of the image")->check(CLI::Range(8, 4096))->capture_default_str();
-    app.add_option("--output", output, "JSON file to write")->capture_default_str();
-    return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(device, size, output); });
+    lab::RecordSettings settings{.size = 1024, .output = "hardware.json"};
+    add_record_options(app, settings);
+    return lab::run_measurement(app, argument_count, arguments, [&] { return lab::run(settings); });
 }

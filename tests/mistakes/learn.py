@@ -26,7 +26,7 @@ from threading import Lock
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
 from check import grading  # noqa: E402
-from check.diagnosis import diagnose, observe, ratios_of  # noqa: E402
+from check.diagnosis import diagnose, observe, ratios_of, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
 from docs.ages import stamped  # noqa: E402
 from planting import catalogue, own_shader, trials  # noqa: E402
@@ -212,10 +212,8 @@ def confusion(workshop, chapters, is_anew):
             file = Path(folder) / "path_trace.glsl"
             file.write_text(trial.text, encoding="utf-8")
             result = grading.judge(trial.chapter, file, plan, shader=trial.shader)[0]
-            is_correct = result["verdict"] == "correct"
-            found = diagnose(trial.chapter, file, plan, trial.shader, is_correct)
-            verdict = "biased" if is_correct and found["is_beyond_doubt"] else result["verdict"]
-            answer = {"mistake": trial.mistake, "verdict": verdict, "named": [each["name"] for each in found["mistakes"]],
+            found = diagnose(trial.chapter, file, plan, trial.shader, is_correct=result["verdict"] == "correct")
+            answer = {"mistake": trial.mistake, "verdict": verdict_with(result["verdict"], found), "named": [each["name"] for each in found["mistakes"]],
                       "facts": len(found["facts"]), "measured": measured, **effect(result)}
         with lock:
             record["trials"][key] = answer

@@ -17,13 +17,13 @@ from threading import Lock
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 from check import grading  # noqa: E402  (found by the line above)
-from check.diagnosis import diagnose, known_sights, repeats_of  # noqa: E402
+from check.diagnosis import diagnose, known_sights, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
 from check.facts import readings  # noqa: E402
 from project import CHAPTERS, RECORDS, Parser, UserError, add_device_options, commit, number, read_json, run_tool, show_progress, write_json  # noqa: E402
 
 GOES_ON = True
-SEED, FACTOR = 9001, 4  # of the second measurement, which takes this many times the samples
+SEED, PICTURES = 9001, 4  # of the second measurement, per point
 AGREE = 3.5  # standard errors between two measurements of the same quantity
 ROUNDING = 0.005
 
@@ -42,8 +42,7 @@ def untrue(chapter, file, found, those):
             experiment = experiments_of(chapter)[name]
             if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
                 continue
-            kind = "factor" if repeats_of(chapter) == 1 else "repeats"
-            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, pool, **{kind: FACTOR}), known_sights(known[name]))
+            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, pool, repeats=PICTURES), known_sights(known[name]))
             contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
                              if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
     return contradicted
@@ -57,7 +56,7 @@ def grade(folder, options):
     result = grading.judge(says["chapter"], file, those)[0]
     seconds = [round(time.monotonic() - started, 1)]
     found = diagnose(says["chapter"], file, those, is_correct=result["verdict"] == "correct")
-    verdict = "biased" if result["verdict"] == "correct" and found["is_beyond_doubt"] else result["verdict"]
+    verdict = verdict_with(result["verdict"], found)
     row = {"chapter": says["chapter"], "is_right": says["is_right"], "mistake": says["mistake"], "means": says["means"], "verdict": verdict,
            "facts": found["facts"], "named": [each["name"] for each in found["mistakes"]], "next": found["next"],
            "seconds": [*seconds, found["seconds"]]}

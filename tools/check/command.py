@@ -20,7 +20,7 @@ import traceback
 from pathlib import Path
 
 from check.formats import as_gradescope, as_github
-from check.diagnosis import diagnose
+from check.diagnosis import diagnose, verdict_with
 from check.folder import UNGRADED, grade_all
 from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
 from check.words import explain, hint_lines, scene_words, tell_early
@@ -79,12 +79,11 @@ def check(options, file, picture=None):
     result["unfinished_line"] = None if is_correct else find_todo(file)
     if not result["unfinished_line"]:
         result["diagnosis"] = diagnose(options.chapter, file, settings, is_correct=is_correct)
-        if is_correct and result["diagnosis"]["is_beyond_doubt"]:  # where the pictures do not look
-            result["verdict"], is_correct = "biased", False
+        result["verdict"] = verdict_with(result["verdict"], result["diagnosis"])
         if not options.teacher:
             for mistake in result["diagnosis"]["mistakes"]:
                 del mistake["name"]
-    if picture or not is_correct:
+    if picture or result["verdict"] != "correct":
         from check.pictures import draw  # imported late: Matplotlib takes longer to load than everything else
         name = f"check_{options.chapter}.png"
         try:

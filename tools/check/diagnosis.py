@@ -49,8 +49,8 @@ def is_deciding(experiment, _):
 def look_at(program, points, settings, seed, pool, repeats, expected):
     """What a program shows at each of these points: a list of Sight. Only a point whose first picture looks wrong is rendered again."""
     seen = pictures(program, points, settings, seed, pool)
-    wrong = [index for index, reading in enumerate(readings(points, map(together, seen), expected)) if not reading.is_right]
     if repeats > 1:
+        wrong = [index for index, reading in enumerate(readings(points, map(together, seen), expected)) if not reading.is_right]
         more = pictures(program, [points[index] for index in wrong], settings, seed + len(points), pool, repeats=repeats - 1)
         for index, sights in zip(wrong, more):
             seen[index] += sights
@@ -197,3 +197,8 @@ def diagnose(chapter, file, settings, shader=None, is_correct=False):
         program, _ = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         facts, sights = observe(chapter, program, settings, known["experiments"], is_deciding if is_correct else is_called_for)
     return reason(chapter, facts, sights, known, is_correct) | {"seconds": round(time.monotonic() - started, 1)}
+
+
+def verdict_with(verdict, diagnosis):
+    """The verdict on a shader. Experiments may find a bias where the pictures of a correct one do not look."""
+    return "biased" if verdict == "correct" and diagnosis["is_beyond_doubt"] else verdict

@@ -202,16 +202,15 @@ def together(sights):
                  mean("rays"), mean("typical"), sum(sight.invalid for sight in sights))
 
 
-def pictures(program, points, settings, seed=1, pool=None, factor=1, repeats=1):
-    """What a program shows at each of these points, picture by picture: a list of Sight for each point. Takes `factor` times as many
-    samples as the points say, in each of `repeats` pictures."""
+def pictures(program, points, settings, seed=1, pool=None, repeats=1):
+    """What a program shows at each of these points in each of `repeats` pictures: a list of Sight for each point."""
     with tempfile.TemporaryDirectory() as folder:
         files = [write_scene(point.scene, Path(folder), f"point_{index}") for index, point in enumerate(points)]
 
         def render(item):
             index, turn = item
             case = new_case(files[index], None, points[index].at, program, points[index].options.split()) | {"width": SIZE, "height": SIZE}
-            picture, samples = Path(folder) / f"{index}_{turn}.exr", points[index].samples * factor
+            picture, samples = Path(folder) / f"{index}_{turn}.exr", points[index].samples
             report = run_case(case, settings, ["--samples", samples, "--seed", seed + index * repeats + turn, "--output", picture])
             return look(read_rgb(picture), report, samples, points[index].channel)
 
