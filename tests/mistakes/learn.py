@@ -31,6 +31,7 @@ from check.experiments import experiments_of, measure  # noqa: E402
 from docs.ages import stamped  # noqa: E402
 from planting import catalogue, own_shader, trials  # noqa: E402
 from project import CHAPTERS, RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
+from report.batch import Batch  # noqa: E402
 from report.sources import code  # noqa: E402
 
 GOES_ON = True
@@ -96,7 +97,8 @@ class Workshop:
     def own_sights(self, chapter, experiment):
         """What the chapter's own shader shows in an experiment, as lists."""
         # Not one picture of more samples: the spread of its pixels would tell more of what they show and less of their noise.
-        sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, repeats=OWN_PICTURES)
+        with Batch() as batch:
+            sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, batch, repeats=OWN_PICTURES)
         return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
 
     def shown(self, bug, expected):

@@ -20,6 +20,7 @@ from check import grading  # noqa: E402  (found by the line above)
 from check.diagnosis import diagnose, known_sights, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
 from check.facts import readings  # noqa: E402
+from report.batch import Batch  # noqa: E402
 from project import CHAPTERS, RECORDS, Parser, UserError, add_device_options, commit, number, read_json, run_tool, show_progress, write_json  # noqa: E402
 
 GOES_ON = True
@@ -36,13 +37,13 @@ def settings(options, seed):
 def untrue(chapter, file, found, those):
     """Numbers of wrong experiments that a second measurement contradicts: (experiment, point, number, second number)."""
     known, contradicted = read_json(grading.knowledge_file(chapter))["experiments"], []
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
+    with tempfile.TemporaryDirectory() as folder, Batch() as batch:
         program, _ = grading.make_tree(CHAPTERS[chapter], file, Path(folder))
         for name, seen in found["readings"].items():
             experiment = experiments_of(chapter)[name]
             if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
                 continue
-            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, pool, repeats=PICTURES), known_sights(known[name]))
+            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, batch, repeats=PICTURES), known_sights(known[name]))
             contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
                              if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
     return contradicted
