@@ -3,11 +3,30 @@ import os
 import subprocess
 import tempfile
 import threading
-from concurrent.futures import ThreadPoolExecutor
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
 
-from project import ROOT, UserError
+from project import ROOT, UserError, show_progress
 
 JOBS = 2  # programs at a time: while one prepares a picture, another renders
+
+
+def run_all(what, function, items, jobs):
+    """Calls a function, which uses a Batch, for all items, `jobs` at a time, with progress. After an error the others go on; after
+    Ctrl-C those that have begun come to their end."""
+    if jobs > 1:  # Mesa's driver for CPUs would start as many threads in each program as there are cores
+        os.environ["LP_NUM_THREADS"] = str(max(os.cpu_count() // (jobs * JOBS), 1))
+    started = time.monotonic()
+    with ThreadPoolExecutor(jobs) as threads:
+        calls = [threads.submit(function, item) for item in items]
+        try:
+            for done, _ in enumerate(as_completed(calls), 1):
+                show_progress(what, done, len(items), started)
+        except KeyboardInterrupt:
+            threads.shutdown(wait=False, cancel_futures=True)
+            raise
+    for call in calls:
+        call.result()
 
 
 def quoted(argument):
