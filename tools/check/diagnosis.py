@@ -57,6 +57,13 @@ def look_at(program, points, settings, seed, batch, repeats, expected):
     return [together(sights) for sights in seen]
 
 
+def from_both_ends(items):
+    """First, last, second, last but one and so on. Neighbouring experiments have the same shaders: two programs that begin one at the
+    same time would both compile them."""
+    count = len(items)
+    return [items[i // 2 if i % 2 == 0 else count - 1 - i // 2] for i in range(count)]
+
+
 def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIRST_SEED):
     """Name -> Fact and name -> list of Sight, for the experiments of a chapter."""
     facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
@@ -70,9 +77,9 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
             return error
 
     with Batch() as batch:
-        while waiting:  # at the same time those whose conditions are known: most of them have different shaders to compile
+        while waiting:  # at the same time those whose conditions are known
             ready = [name for name in waiting if not set(experiments[name].when) & set(waiting)]
-            names = [name for name in ready if chosen(experiments[name], facts)]
+            names = from_both_ends([name for name in ready if chosen(experiments[name], facts)])
             waiting = [name for name in waiting if name not in ready]
             for name, found in zip(names, list(batch.map(look, names))):
                 experiment = experiments[name]
