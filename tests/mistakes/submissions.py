@@ -4,9 +4,9 @@
     tests/mistakes/submissions.py FOLDER RECORD
 
 FOLDER has a folder for each submission, with a shader and submission.json. RECORD is the name of a file in docs/records/check. It
-gets the verdict, the facts and the names of each submission; what has them for the same shaders and experiments is not graded again,
-unless --anew asks for it. Each fact is measured again with other random numbers and more samples:
-it is true if both agree. A person decides whether the facts and names point at what the wrong line means, and whether a single name is
+gets the verdict, the facts and the names of each submission. Each fact is measured again with other random numbers and more samples:
+it is true if both agree. What has been graded with the same shaders and experiments is not graded again, unless --anew asks for it: use
+that if the check itself has changed. A person decides whether the facts and names point at what the wrong line means, and whether a single name is
 right: "points" and "name_is_right" in the record, true, false or null, which are kept as long as the answer stays the same.
 """
 import sys
@@ -98,8 +98,8 @@ def main():
             record.update({"commit": commit(), "submissions": dict(sorted(record["submissions"].items()))})
             write_json(path, record, 3)
 
-    is_done = {folder: not options.anew and record["submissions"].get(folder.name, {}).get("measured") == measured(folder, options.seed) for folder in folders}
-    run_all("submissions", grade_one, [folder for folder in folders if not is_done[folder]], options.jobs)
+    done = {} if options.anew else {name: row.get("measured") for name, row in record["submissions"].items()}
+    run_all("submissions", grade_one, [folder for folder in folders if done.get(folder.name) != measured(folder, options.seed)], options.jobs)
 
 
 if __name__ == "__main__":

@@ -173,12 +173,13 @@ def right_ones(facts):
 def noise_sentences(facts, sights, expected):
     """Where a shader is noisier or traces more rays than the chapter's own."""
     told = []
-    for kind, words in (("noise", "the variance of"), ("rays", "the rays of")):
+    for kind, words in (("noise", "noisier than the chapter's own shader: so many times its variance"),
+                        ("rays", "so many times the rays of the chapter's own shader")):
         for name, seen in ratios_of(sights, expected)[kind].items():
             experiment = facts[name].experiment
-            much = [f"{point.at} {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if value - 1 > 4 * error + 0.2]
+            much = [f"{point.at}: {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if value - 1 > 4 * error + 0.2]
             if much:
-                told.append(f"{experiment.subject}: so many times {words} the chapter's own shader: {', '.join(much)}")
+                told.append(f"{experiment.subject}: {words}; {', '.join(much)}")
     return told
 
 
