@@ -86,6 +86,7 @@ class HeadlessRender {
         }
         if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
+        remove_interrupt_handler();
         if (!options_.quiet)
             print_summary();
         else if (snapshot_.invalid_samples() > 0)  // never silent

@@ -107,6 +107,8 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
         ->delimiter(',')
         ->type_name("X,Y");
     app.add_flag("--quiet", run.quiet, "Print errors only");
+    app.add_flag("--batch", run.batch,
+                 "Render several pictures: each line of the standard input is a command line like this one");
 }
 
 // Options of this chapter only.
@@ -172,7 +174,7 @@ const std::vector<View>& views() {
     return all;
 }
 
-std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments) {
+std::optional<Options> parse_options(const Chapter& chapter, const std::vector<std::string>& arguments) {
     Options options;
     std::string scene = chapter.default_scene, view;
     CLI::App app(chapter.title, chapter.name);
@@ -181,7 +183,7 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
     add_options(app, options, view);
     add_chapter_options(app, chapter, options);
     try {
-        app.parse(argument_count, arguments);
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last one first
     } catch (const CLI::CallForHelp&) {
         std::cout << app.help();
         return std::nullopt;

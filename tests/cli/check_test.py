@@ -16,6 +16,7 @@ import project
 from check import command, diagnosis, grading
 from check.formats import as_github
 from course.mistakes import planted
+from report import batch
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
 TECHNIQUE = SHADER.with_name("direct_light.glsl")
@@ -27,10 +28,9 @@ ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
 """
 NO_UTF8 = [os.fsdecode(name) for name in (b"m\xfcller.glsl", b"m\xfdller.glsl")]  # as in archives from elsewhere
 FEW = (3, "--runs", 5, "--samples", 4)
-# A chapter that logs its arguments.
+# A chapter that logs its command lines.
 NOTING = """#!/bin/sh
-echo "$@" >>'{notes}'
-exec '{program}' "$@"
+tee -a '{notes}' | '{program}' "$@"
 """
 
 
@@ -41,7 +41,7 @@ class CheckTest(ProgramTest):
         super().setUp()
         self.judge = mock.Mock(side_effect=self.judge_once)
         # One render at a time, so that the others need not compile its shader as well.
-        for where, what, stand_in in ((command, "judge", self.judge), (command, "diagnose", self.diagnose_once), (grading, "JOBS", 1)):
+        for where, what, stand_in in ((command, "judge", self.judge), (command, "diagnose", self.diagnose_once), (batch, "JOBS", 1)):
             patch = mock.patch.object(where, what, stand_in)
             patch.start()
             self.addCleanup(patch.stop)
@@ -202,7 +202,7 @@ class CheckTest(ProgramTest):
                 self.check(3, "--runs", 2 + seed, "--samples", 1, "--seed", seed, "--time-limit", 100)
             notes = (self.folder / "notes").read_text()
             (self.folder / "notes").unlink()
-            seeds.append(set(re.findall(r"--seed (\d+)", notes)))
+            seeds.append(set(re.findall(r'check_room.*"--seed" "(\d+)"', notes)))
             self.assertEqual(len(seeds[-1]), 2 + seed)
         self.assertFalse(seeds[0] & seeds[1], seeds)
 

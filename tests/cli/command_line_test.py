@@ -7,7 +7,7 @@ from program import MERGE, ProgramTest
 OPTIONS = """--width --height --samples --seed --first-sample --max-path-length --only-path-length --backend --device
     --list-devices --headless --window --output --reference --report --target-error --time-limit --view --camera-position
     --camera-target --camera-up --vertical-fov --background --specular --exposure --resume --save-every --validation
-    --quiet --help --version""".split()
+    --quiet --batch --help --version""".split()
 
 NO_NUMBERS = ["", "abc", "nan", "inf", "-inf", "1e999", "0x", "1,", "--"]
 NO_COUNTS = NO_NUMBERS + ["-1", "1.5", "99999999999999999999"]

@@ -62,9 +62,9 @@ class FactsTest(unittest.TestCase):
 
     def test_light_where_none_should_be_and_light_that_is_missing(self):
         leak = seen([1.0, 0.3], expected=[0.5, 0.0]).sentence
-        self.assertRegex(leak, "light where none should be: at 40 0.30 ± 0.01 times that of the brightest place")
+        self.assertRegex(leak, "light where none should be: at 40: 0.30 ± 0.01 times that of the brightest place")
         self.assertIn("nothing of it is there", seen([0.0] * 3).sentence)
-        self.assertRegex(seen([0.0, 1.0]).sentence, "at 20 nothing; right at 40")
+        self.assertRegex(seen([0.0, 1.0]).sentence, "at 20: nothing; right: at 40")
 
     def test_the_same_factor_is_told_once(self):
         facts = {"angle": seen([2.0] * 3), "distance": seen([2.0] * 3, varies="the distance"), "size": seen([1.0] * 3, varies="the size")}
