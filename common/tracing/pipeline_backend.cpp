@@ -27,7 +27,7 @@ class PipelineTracer : public Tracer {
             compiled.push_back(compile_shader(source));
             key += key_of(compiled.back());
         }
-        pipeline_ = device.share_pipeline(key, [&] { return make_pipeline(device, compiled); });
+        pipeline_ = device.share_pipeline(key, [&] { return create_pipeline(device, compiled); });
         fill_shader_binding_table(device, static_cast<uint32_t>(shaders.size()));
     }
 
@@ -42,7 +42,7 @@ class PipelineTracer : public Tracer {
     }
 
   private:
-    Pipeline make_pipeline(const Device& device, const std::vector<std::vector<uint32_t>>& shaders) const {
+    Pipeline create_pipeline(const Device& device, const std::vector<std::vector<uint32_t>>& shaders) const {
         std::vector<vk::raii::ShaderModule> modules;
         std::vector<vk::PipelineShaderStageCreateInfo> stages;
         std::vector<vk::RayTracingShaderGroupCreateInfoKHR> groups;

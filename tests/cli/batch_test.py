@@ -6,7 +6,6 @@ import shlex
 import signal
 import subprocess
 import sys
-import threading
 import time
 import unittest
 
@@ -132,15 +131,12 @@ class BatchTest(ProgramTest):
     def test_at_the_end_nothing_goes_on(self):
         began = time.monotonic()
         with Batch() as batch:
-            pending = [threading.Thread(target=self.run_in, args=(batch, name)) for name in ("hang", "hang")]
-            for thread in pending:
-                thread.start()
-            while len(batch.workers) < len(pending):
+            found = batch.map(lambda name: self.run_in(batch, name), ["hang"] * 3)
+            while len(batch.workers) < 2:
                 time.sleep(0.01)
-        for thread in pending:
-            thread.join()
         self.assertLess(time.monotonic() - began, 30)
         self.assertEqual([worker.process.poll() for worker in batch.workers], [-9, -9])
+        self.assertEqual(next(found), (-9, ""))
         with self.assertRaises(UserError):
             self.run_in(batch, "picture")
 
