@@ -22,9 +22,11 @@ struct RayHit {
 // Rays by Embree: embree.h, which is compiled like a shader.
 class RayTracer {
   public:
-    struct Triangle {
-        float corners[3][3];
-        uint32_t instance, triangle;
+    struct Triangle {  // of the world; the last number of a row is instance, triangle and nothing
+        struct {
+            float corners[3];
+            uint32_t id;
+        } x, y, z;
     };
     virtual ~RayTracer() = default;
     // The closest hit nearer than t_max, or with a null `hit` whether there is any.

@@ -79,6 +79,9 @@ class DebugTest(CopiedLab):
             process = self.execute(self.program, *words[2:])
             self.assert_found(process.stderr, blocks)
             self.assertEqual(process.returncode, 3)
+        with self.subTest("Nothing is wrong"):
+            self.plant("")
+            self.assertEqual(self.execute(self.program, *words[2:], "--quiet").stderr, "")
 
     def test_it_stops_in_the_student_s_file_with_its_variables(self):
         seen = self.debug(1, "--pixel", "20,30", "--width", 40, "--height", 40, "--sample", 3, "--", "-batch", "-ex", "info locals",
