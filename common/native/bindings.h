@@ -1,6 +1,5 @@
 // What a translated shader gets from the program that runs it. Both are compiled with this header.
 #pragma once
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 
@@ -42,9 +41,11 @@ struct Bindings {
         size_t bytes;
     } ranges[64];
     std::byte* push_constants;
-    const std::atomic<bool>* is_stopped;  // loops of the shader end where this is true
+    const bool* is_stopped;  // loops of the shader end where this is true; other threads write it
 
     const RayTracer* rays;  // where shaders are compiled with BACKEND_EMBREE
+
+    bool must_stop() const { return __atomic_load_n(is_stopped, __ATOMIC_RELAXED); }
 };
 
 // How a workgroup has ended.

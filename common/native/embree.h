@@ -1,7 +1,7 @@
 // Embree for translated shaders. It is no part of the lab's programs: like a shader it is compiled on the computer that runs it,
 // after the header of Embree 3 or 4 that this one has.
 #pragma once
-#include <algorithm>
+#include <atomic>
 #include <memory>
 #include <new>
 #include <vector>
