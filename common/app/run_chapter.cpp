@@ -104,6 +104,20 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }
 
+// Builds a job without a window. If `auto` chooses `native` and that cannot run the shader, the device's backends have to.
+Build build_headless(const Device& device, const Chapter& chapter, RenderJob job) {
+    job.may_choose_native = job.options.run.backend == "auto" && suits_native(device, *job.scene);
+    if (!job.may_choose_native) return make_build(device, chapter, std::move(job));
+    try {
+        return make_build(device, chapter, job);
+    } catch (const std::exception& error) {
+        job.may_choose_native = false;
+        Build build = make_build(device, chapter, std::move(job));  // throws the same for what no backend can run
+        std::cerr << "note: " << error.what() << ": " << to_string(build.backend) << " renders instead\n";
+        return build;
+    }
+}
+
 // Renders a single pixel, for a debugger that stops in its shader.
 void debug_pixel(Build& build, uvec2 pixel) {
     const uvec2 size = build.job.parameters.image_size;
@@ -138,7 +152,7 @@ void run(const Chapter& chapter, Options options) {
         return;
 
     const Device device({options.run.device, options.run.validation});
-    Build build = make_build(device, chapter, std::move(job));
+    Build build = build_headless(device, chapter, std::move(job));
     if (!options.run.quiet) print_start(chapter, device, build);
     if (options.run.debug_pixel)
         debug_pixel(build, *options.run.debug_pixel);

@@ -144,7 +144,6 @@ void* load_function(const char* function, const std::string& text, const std::ve
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
     const fs::path file = cache_file(name);
-    if (file.empty()) throw UserError("the backend native has no folder for its code: set XDG_CACHE_HOME to one");
     if (!read_cache(name)) compile(text, arguments, name);
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library)
@@ -175,6 +174,7 @@ void return_from_crash(int signal) {
 std::vector<std::string> missing_tools() {
     std::vector<std::string> missing;
     if (std::getenv("LAB_WITHOUT_NATIVE")) missing.emplace_back("a permission: LAB_WITHOUT_NATIVE forbids it");
+    if (cache_file("").empty()) missing.emplace_back("a folder for its code (XDG_CACHE_HOME)");
     if (find_compiler().empty()) missing.emplace_back("a C++ compiler (c++)");
     if (!fs::exists(header_folder() / "native/glsl.h")) missing.emplace_back("the lab's sources (common/)");
     if (!fs::exists(fs::path(LAB_GLM_FOLDER) / "glm/glm.hpp")) missing.emplace_back("the headers of GLM (libglm-dev)");
