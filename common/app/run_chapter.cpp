@@ -108,6 +108,20 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
 }
 
+// Builds a job without a window. If `auto` chooses `native` and that cannot run the shader, the device's backends have to.
+Build build_headless(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first, const Build* before) {
+    job.may_choose_native = job.options.run.backend == "auto" && suits_native(device, *job.scene);
+    if (!job.may_choose_native) return make_build(device, chapter, std::move(job), first, before);
+    try {
+        return make_build(device, chapter, job, first, before);
+    } catch (const std::exception& error) {
+        job.may_choose_native = false;
+        Build build = make_build(device, chapter, std::move(job));  // throws the same for what no backend can run
+        std::cerr << "note: " << error.what() << ": " << to_string(build.backend) << " renders instead\n";
+        return build;
+    }
+}
+
 // Renders a single pixel, for a debugger that stops in its shader.
 void debug_pixel(Build& build, uvec2 pixel) {
     const uvec2 size = build.job.parameters.image_size;
@@ -185,7 +199,7 @@ class Commands {
         if (build_ && build_->job.options.run.backend == now.backend)
             first = std::min(first_difference(build_->job.options, job.options), BuildStage::renderer);
         if (first == BuildStage::scene) build_.reset();  // there may not be room for both
-        build_ = make_build(*device_, chapter_, std::move(job), first, build_ ? &*build_ : nullptr);
+        build_ = build_headless(*device_, chapter_, std::move(job), first, build_ ? &*build_ : nullptr);
     }
 
     const Chapter& chapter_;

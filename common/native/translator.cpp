@@ -224,7 +224,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         return text + take();
     }
     std::string body() {  // of a loop
-        return "{ if (bindings.is_stopped->load(std::memory_order_relaxed)) [[unlikely]] throw Stopped(); " + statement() + " }";
+        return "{ if (bindings.must_stop()) [[unlikely]] throw Stopped(); " + statement() + " }";
     }
     std::string simple() { return is_declaration() ? declaration(false) : expression().text; }
     std::string parenthesised() { return join({expect("("), simple(), expect(")")}); }
