@@ -85,6 +85,7 @@ class HandoutTest(ProgramTest):
             self.assertGreater(len(list((tree / "docs/diagrams").glob("*.svg"))), 5)
             # From step 5 on, the page shows the solution of exercise 1 of chapter 1.
             self.assertEqual(re.findall(r"^## (\d)", steps, re.MULTILINE), list("1234" if number == 1 else "12345678"))
+            self.assertIn("\n## Reading the check\n", steps)
 
     def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
         project = self.folder / "project"
