@@ -50,7 +50,7 @@ struct Bindings {
 
 // How a workgroup has ended.
 enum class Outcome { finished, stopped, failed };
-// Runs a workgroup. Of an error it leaves a line of text.
+// Runs a workgroup. On an error, writes one line of text to `error`.
 using RunGroup = Outcome (*)(const Bindings& bindings, uint32_t group, char* error, size_t error_size);
 
 }  // namespace lab::native

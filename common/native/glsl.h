@@ -384,7 +384,7 @@ struct ShaderBase : Builtins {
     }
 };
 
-// The program's way in.
+// The entry point that the program calls.
 template <typename Shader>
 Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) try {
     for (uint i = 0; i < Shader::local_size; ++i) {

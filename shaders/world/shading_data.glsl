@@ -78,7 +78,7 @@ SurfacePoint get_surface_point(Hit hit) {
     vec3 edge_1 = x_1 - x_0, edge_2 = x_2 - x_0;
     vec3 normal = get_scaled_normal(edge_1, edge_2);
     point.offset = get_error_bound(magnitude, normal);
-    // A triangle so narrow that its area underflows: any normal of its longer edge will do.
+    // A triangle so narrow that its area underflows: any direction perpendicular to its longer edge will do.
     if (normal == vec3(0.0))
         normal = get_shading_space(
             normalize_scaled(max_component(edge_1) > max_component(edge_2) ? edge_1 : edge_2))[0];

@@ -180,6 +180,11 @@ class CheckTest(ProgramTest):
         self.assertEqual([rows[row["submission"]] for row in table if row["verdict"] != "not graded"],
                          [row for row in table if row["verdict"] != "not graded"])
 
+    def test_a_folder_without_mistakes_has_no_list_of_them(self):
+        self.write("all/anna.glsl", SHADER.read_bytes())
+        code, out, err = self.check(*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
+        self.assertEqual((code, out), (0, "1 of 1: anna: correct\n"), err)
+
     def test_a_shader_may_have_a_path_of_its_own(self):
         text = SHADER.read_text(encoding="utf-8")
         own = "struct Path { Ray ray; };\nPath start_path(Ray ray) { return Path(ray); }\nvec3 path_trace("

@@ -108,7 +108,9 @@ class DebugTest(CopiedLab):
         section = re.search(rf"^## {title}.*?(?=^## )", PAGE, re.MULTILINE | re.DOTALL)[0]
         blocks = dict(re.findall(r"^```(\w+)\n(.*?)^```", section, re.MULTILINE | re.DOTALL))
         self.plant(section)
-        return re.search(r"^    \./lab (.*)$", section, re.MULTILINE)[1].split(), blocks
+        words = re.search(r"^    \./lab (.*)$", section, re.MULTILINE)[1].split()
+        self.assertEqual(words[1], "30", "the copy of chapter 1, for which chapter 1 stands here")
+        return [words[0], "1", *words[2:]], blocks
 
     def assert_found(self, seen, blocks):
         at = 0

@@ -24,6 +24,8 @@ from threading import Lock
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
+
+project.ensure_packages()
 from check import grading  # noqa: E402
 from check.diagnosis import diagnose, observe, ratios_of, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402

@@ -16,7 +16,10 @@ from pathlib import Path
 from threading import Lock
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
-from check import grading  # noqa: E402  (found by the line above)
+import project  # noqa: E402  (found by the line above)
+
+project.ensure_packages()
+from check import grading  # noqa: E402
 from check.diagnosis import diagnose, known_sights, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
 from check.facts import readings  # noqa: E402
