@@ -171,13 +171,13 @@ def right_ones(facts):
 
 
 def noise_sentences(facts, sights, expected):
-    """Where a shader is noisier or traces more rays than the chapter's own."""
+    """Where a shader is noisier than the chapter's own, or traces more rays, or fewer: then its paths end elsewhere."""
     told = []
-    for kind, words in (("noise", "noisier than the chapter's own shader: so many times its variance"),
-                        ("rays", "so many times the rays of the chapter's own shader")):
+    for kind, words, is_much in (("noise", "noisier than the chapter's own shader: so many times its variance", lambda value, error: value - 1 > 4 * error + 0.2),
+                                 ("rays", "so many times the rays of the chapter's own shader", lambda value, error: abs(value - 1) > 4 * error + 0.05)):
         for name, seen in ratios_of(sights, expected)[kind].items():
             experiment = facts[name].experiment
-            much = [f"{point.at}: {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if value - 1 > 4 * error + 0.2]
+            much = [f"{point.at}: {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if is_much(value, error)]
             if much:
                 told.append(f"{experiment.subject}: {words}; {', '.join(much)}")
     return told
