@@ -46,13 +46,18 @@ class WorldTriangles {
     }
 
     void bind(native::Bindings& bindings) const {
-        bindings.ranges[BINDING_WORLD_TRIANGLES] = range_of(std::span<const WorldTriangle>(triangles_));
+        bindings.ranges[BINDING_WORLD_TRIANGLES] = range_of(std::span<const CacheLine>(triangles_));
         bindings.ranges[BINDING_FIRST_WORLD_TRIANGLES] = range_of(std::span<const uint32_t>(firsts_));
     }
-    size_t bytes() const { return triangles_.size() * sizeof(WorldTriangle) + firsts_.size() * sizeof(uint32_t); }
+    size_t bytes() const { return triangles_.size() * sizeof(CacheLine) + firsts_.size() * sizeof(uint32_t); }
 
   private:
-    LargeArray<WorldTriangle> triangles_;
+    struct alignas(64) CacheLine {  // so that a triangle never lies in two of them
+        WorldTriangle triangle;
+    };
+    static_assert(sizeof(CacheLine) == sizeof(WorldTriangle));
+
+    LargeArray<CacheLine> triangles_;
     std::vector<uint32_t> firsts_;
 };
 
