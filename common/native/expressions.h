@@ -206,7 +206,7 @@ class ExpressionReader : protected TokenReader {
                 bool is_known_twice = globals_.contains(argument.root) || !argument.indices.empty();
                 for (size_t j = 0; j < arguments.size(); ++j) is_known_twice |= j != i && arguments[j].root == argument.root;
                 argument.text = is_known_twice ? " copied(" + argument.assignable() + ")" : argument.text;
-                if (is_ordered && !is_known_twice) argument.text = " reference(" + argument.text + ")";
+                if (is_ordered && !is_known_twice) argument.text = " Reference(" + argument.text + ")";
                 all.writes.insert(argument.root);
             }
             all.text += i == 0 ? "" : ",";

@@ -215,12 +215,9 @@ auto copied(Swizzled<V, i...> target) {
 template <typename T>
 struct Reference {
     T& target;
+    Reference(T& x) : target(x) {}
     operator T&() const { return target; }
 };
-template <typename T>
-Reference<T> reference(T& target) {
-    return {target};
-}
 
 // Operands that are evaluated from left to right.
 template <typename... T>
