@@ -9,11 +9,13 @@ from unittest import mock
 
 from program import PROJECT  # first: it finds the tools
 import learn
-from check import grading
-from check.diagnosis import names_of, right_ones, sentences
+from check import diagnosis, grading
+from check.diagnosis import reason, right_ones, sentences
 from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
 from check.facts import fact
 from check.grading import MOST_RUNS, RUNS, SEED_STEP, first_seed
+from check.names import names_of, similar_to
+from check.words import hint_lines
 from docs.confusion_table import rates
 from planting import CORRECT_CHECKS, catalogue
 from project import course
@@ -119,6 +121,38 @@ class NamesTest(unittest.TestCase):
     def test_what_the_experiments_cannot_tell_apart_is_told_together(self):
         facts = {"angle": seen([2.0] * 3)}
         self.assertEqual(sorted(names_of(facts, {}, self.KNOWN, {})), ["also-twice", "twice"])
+
+
+class SimilarNamesTest(unittest.TestCase):
+    """If no name fits, two may: those whose mistakes are wrong at most of the same points in the same direction."""
+    KNOWN = {"brighter": {"shows": {"angle": "1 2 4 8", "size": "2 2 2"}}, "darker": {"shows": {"angle": "1 0.5 0.3 0.1"}},
+             "elsewhere": {"shows": {"distance": "3 3 3"}}, "other-scene": {"shows": {"angle": "0 0 0 0", "size": "3 3 3"}}}
+
+    def names(self, **values):
+        return similar_to({name: seen(those, name=name) for name, those in values.items()}, self.KNOWN)
+
+    def test_the_same_points_in_the_same_direction(self):
+        self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 8.0], size=[2.0, 2.0, 2.0]), ["brighter", "other-scene"])
+        self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 0.1], size=[1.0] * 3)[0], "darker")
+
+    def test_none_if_the_nearest_explains_too_little(self):
+        self.assertEqual(self.names(angle=[0.6, 0.5, 2.0, 1.0], size=[1.0] * 3), [], "one point of four")
+        self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 5.0], size=[1.6] * 3), [], "directions alone")
+
+    def test_they_are_told_only_where_none_fits(self):
+        known = {"experiments": {}, "mistakes": {name: entry | {"hint": "?", "slide": "s"} for name, entry in self.KNOWN.items()}}
+        for values, fits, names in (([1.0, 2.0, 4.0, 8.0], True, ["brighter"]), ([1.0, 2.0, 4.0, 5.0], False, ["brighter", "other-scene"])):
+            facts = {"angle": seen(values), "size": seen([2.0] * 3, name="size")}
+            with mock.patch.object(diagnosis, "next_step"):
+                found = reason(3, facts, {}, known, False)
+            self.assertEqual((found["fits"], [each["name"] for each in found["mistakes"]]), (fits, names))
+
+    def test_a_student_reads_that_they_may_be_wrong(self):
+        found = {"facts": ["f"], "right": [], "next": None, "fits": False, "mistakes": [{"hint": f"{n}?", "slide": "s"} for n in (1, 2)]}
+        heads = [head for head, _ in hint_lines({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found})]
+        self.assertEqual(heads, ["seen", "not sure", "maybe", "read again", "maybe", "read again"])
+        heads = [head for head, _ in hint_lines({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found | {"fits": True}})]
+        self.assertEqual(heads, ["seen", "ask yourself", "read again", "or", "read again", "not sure"])
 
 
 class ExperimentsTest(unittest.TestCase):
@@ -241,6 +275,12 @@ class FreshKnowledge_all(unittest.TestCase):
                 self.assertEqual(rate.told, rate.found, f"{condition}: never silent")
                 self.assertGreaterEqual(rate.right / rate.alone, 0.98, f"{condition}: no wrong name alone")
                 self.assertGreaterEqual(rate.among / rate.found, 0.9 if condition == "new seeds" else 0.8, condition)
+        own = rates(self.record())["new seeds"]
+        self.assertGreaterEqual(own.fitting / own.found, 0.9, "in all numbers, if the shader is the one that was measured")
+
+    def test_a_name_that_may_fit_is_never_told_alone(self):
+        for key, trial in self.record()["trials"].items():
+            self.assertTrue(trial["fits"] or len(trial["named"]) != 1, key)
 
 
 if __name__ == "__main__":

@@ -27,8 +27,9 @@ import project  # noqa: E402  (found by the line above)
 
 project.ensure_packages()
 from check import grading  # noqa: E402
-from check.diagnosis import diagnose, observe, ratios_of, verdict_with  # noqa: E402
+from check.diagnosis import diagnose, observe, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
+from check.names import ratios_of  # noqa: E402
 from docs.ages import stamped  # noqa: E402
 from planting import catalogue, own_shader, trials  # noqa: E402
 from project import CHAPTERS, RECORDS, Parser, add_device_options, commit, number, read_json, write_json  # noqa: E402
@@ -210,7 +211,7 @@ def confusion(workshop, chapters, is_anew, jobs):
             result = grading.judge(trial.chapter, file, plan, shader=trial.shader)[0]
             found = diagnose(trial.chapter, file, plan, trial.shader, is_correct=result["verdict"] == "correct")
             answer = {"mistake": trial.mistake, "verdict": verdict_with(result["verdict"], found), "named": [each["name"] for each in found["mistakes"]],
-                      "facts": len(found["facts"]), "measured": measured, **effect(result)}
+                      "fits": found["fits"], "facts": len(found["facts"]), "measured": measured, **effect(result)}
         with lock:
             record["trials"][key] = answer
             write_json(RECORD, record, DEPTH)

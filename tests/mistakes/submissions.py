@@ -20,8 +20,8 @@ import project  # noqa: E402  (found by the line above)
 
 project.ensure_packages()
 from check import grading  # noqa: E402
-from check.diagnosis import diagnose, known_sights, verdict_with  # noqa: E402
-from check.experiments import experiments_of, measure  # noqa: E402
+from check.diagnosis import diagnose, verdict_with  # noqa: E402
+from check.experiments import experiments_of, known_sights, measure  # noqa: E402
 from check.facts import readings  # noqa: E402
 from learn import digest, own_text  # noqa: E402
 from report.batch import Batch, run_all  # noqa: E402
@@ -71,7 +71,7 @@ def grade(folder, options):
     found = diagnose(says["chapter"], file, those, is_correct=result["verdict"] == "correct")
     verdict = verdict_with(result["verdict"], found)
     row = {"chapter": says["chapter"], "is_right": says["is_right"], "mistake": says["mistake"], "means": says["means"], "verdict": verdict,
-           "facts": found["facts"], "named": [each["name"] for each in found["mistakes"]], "next": found["next"],
+           "facts": found["facts"], "named": [each["name"] for each in found["mistakes"]], "fits": found["fits"], "next": found["next"],
            "seconds": [*seconds, found["seconds"]], "measured": measured(folder, options.seed)}
     return row | ({"untrue": untrue(says["chapter"], file, found, those)} if verdict != "correct" else {"untrue": []})
 

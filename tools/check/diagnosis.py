@@ -3,33 +3,19 @@
 The chapter's experiments run in order, those with a condition (`when`) only if other experiments have met it.
 knowledge.json in the chapter's folder records what its own shader shows in each, and what the catalogue's mistakes do to it.
 """
-import math
 import tempfile
 import time
 from pathlib import Path
 
-from check.experiments import Sight, experiments_of, pictures, together, write_scene
+from check.experiments import experiments_of, known_sights, pictures, together, write_scene
 from check.facts import Fact, common_value, constant, fact, number, readings
 from check.grading import DESCRIPTIONS, knowledge_file, make_tree
+from check.names import names_of, ratios_of, similar_to
 from project import CHAPTERS, ROOT, UserError, read_json
 from report.batch import Batch
 
-# Another student's shader has the same mistake but not quite the same numbers: relative tolerance, and its minimum.
-LOOSENESS, LEAST = 0.03, 0.01
-FITS, EXCLUDED = 3.5, 5.0  # standard errors: within the first it fits, beyond the second it is a different mistake
-NOISE_LOOSENESS, RAYS_LOOSENESS = 0.25, 0.08  # of their logarithms
-MOST_NAMES = 2
 FIRST_SEED, REPEATS = 7001, 3
 PATIENCE = 15.0  # seconds per point's picture, which takes an idle core a tenth of a second
-
-
-def known_sights(entry):
-    """What the chapter's own shader shows, as a list of Sight, from lists in knowledge.json."""
-    return [Sight(*values, typical=values[0]) for values in zip(*(entry[key] for key in ("mean", "error", "noise", "noise_error", "rays")))]
-
-
-def numbers(text):
-    return [float(word) for word in text.split()]
 
 
 def repeats_of(chapter):
@@ -89,50 +75,6 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
                     sights[name] = found
                     facts[name] = fact(experiment, found, known_sights(expected[name]))
     return tuple({name: those[name] for name in experiments if name in those} for those in (facts, sights))
-
-
-# ---------------------------------------------------------------------------------------------- names
-def distance(shown, facts):
-    """How far what a mistake of the catalogue shows (name of an experiment -> text) is from the facts, in standard errors at the
-    point that contradicts it most."""
-    far = 0.0 if all(seen.readings for seen in facts.values()) else math.inf
-    for name, seen in facts.items():
-        for reading, known in zip(seen.readings, numbers(shown[name]) if name in shown else [r.expected for r in seen.readings]):
-            width = math.hypot(reading.error, LOOSENESS * max(abs(known), abs(reading.value)), LEAST)
-            far = max(far, abs(reading.value - known) / width)
-    return far
-
-
-def noise_distance(entry, ratios):
-    """The same for noise and rays, as multiples of those of the chapter's own shader."""
-    far = 0.0
-    for kind, looseness in (("noise", NOISE_LOOSENESS), ("rays", RAYS_LOOSENESS)):
-        for name, seen in ratios[kind].items():
-            for (value, error), known in zip(seen, numbers(entry.get(kind, {}).get(name, "")) or [1.0] * len(seen)):
-                far = max(far, abs(math.log(max(value, 0.01) / max(known, 0.01))) / math.hypot(error / max(value, 0.01), looseness))
-    return far
-
-
-def ratios_of(sights, expected):
-    """Noise and rays of what was seen, as multiples of the chapter's own, with errors; 1 where it has none."""
-    found = {"noise": {}, "rays": {}}
-    for name, seen in sights.items():
-        pairs = list(zip(seen, known_sights(expected[name])))
-        found["noise"][name] = [(now.noise / own.noise, math.hypot(now.noise_error / own.noise, now.noise * own.noise_error / own.noise**2))
-                                if own.noise > 1e-6 * own.mean**2 and now.noise > 0 else (1.0, 1.0) for now, own in pairs]
-        found["rays"][name] = [(now.rays / own.rays, 0.01) for now, own in pairs]
-    return found
-
-
-def names_of(facts, sights, known, expected):
-    """The names of the catalogue's mistakes that the facts leave: those that fit and those not far enough away to be excluded,
-    nearest first; empty if none fits."""
-    far = {name: distance(entry["shows"], facts) for name, entry in known.items() if "shows" in entry}
-    if all(seen.is_right for seen in facts.values()):
-        ratios = ratios_of(sights, expected)
-        far = {name: max(value, noise_distance(known[name], ratios)) for name, value in far.items()}
-    ordered = sorted(far, key=far.get)
-    return [name for name in ordered if far[name] <= EXCLUDED] if ordered and far[ordered[0]] <= FITS else []
 
 
 # ---------------------------------------------------------------------------------------------- words
@@ -199,12 +141,14 @@ def next_step(chapter, facts):
 
 
 def reason(chapter, facts, sights, known, is_correct):
-    """What the facts say: sentences about what is wrong, subjects that are right, mistakes of the catalogue that fit, and a
-    command that shows the first of the facts."""
+    """What the facts say: sentences about what is wrong, subjects that are right, mistakes of the catalogue that fit, or if
+    none fits, may fit, and a command that shows the first of the facts."""
     told = sentences(facts) or ([] if is_correct else noise_sentences(facts, sights, known["experiments"]))
-    names = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
+    wrong = [name for name, seen in facts.items() if not seen.is_right]
+    fitting = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
+    names = fitting or (similar_to(facts, known["mistakes"]) if wrong else [])
     return {"facts": told, "right": right_ones(facts), "next": next_step(chapter, facts),
-            "wrong": [name for name, seen in facts.items() if not seen.is_right],
+            "wrong": wrong, "fits": bool(fitting),
             "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
             "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
             "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()}}

@@ -56,6 +56,11 @@ class Sight:
     invalid: int = 0  # samples that are infinite or not a number
 
 
+def known_sights(entry):
+    """What the chapter's own shader shows, as a list of Sight, from lists in knowledge.json."""
+    return [Sight(*values, typical=values[0]) for values in zip(*(entry[key] for key in ("mean", "error", "noise", "noise_error", "rays")))]
+
+
 def merged(base, change):
     """A dictionary with the changes of `change`, at any depth; None removes an entry."""
     result = dict(base)

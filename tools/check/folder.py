@@ -50,7 +50,7 @@ def grade_one(options, check, name, file, folder):
         found = result["diagnosis"] or {}
         row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
                "text": explain(result), "questions": " ".join(text for head, text in hint_lines(result) if head in ("ask yourself", "or")),
-               "wrong": found.get("wrong", []), "facts": " | ".join(found.get("facts", [])), "mistakes": " ".join(each.get("name", "") for each in found.get("mistakes", [])),
+               "wrong": found.get("wrong", []), "facts": " | ".join(found.get("facts", [])), "mistakes": " ".join(each.get("name", "") for each in found.get("mistakes", []) if found["fits"]),
                "error": ""}
     except Exception as error:  # whatever it is, grading continues with the next submission
         row = {"verdict": "not graded", "error": printable(str(error)), "text": printable(str(error))}

@@ -3,6 +3,7 @@ from check.grading import early_bias
 from project import CHAPTERS
 
 MOST_QUESTIONS = 2
+SIMILAR = "no common mistake fits all that was seen, but two are similar: it may be one of them, or neither"
 NOTHING_SEEN = ("none of the experiments finds what is wrong in the pictures, so all that they look at is right: look at the places that the "
                 "picture of the differences frames")
 
@@ -53,11 +54,13 @@ def hint_lines(result):
     lines = [("seen", fact) for fact in found["facts"]] or [("seen", NOTHING_SEEN)]
     lines += [("right", "; ".join(found["right"]))] if found["right"] else []
     page, mistakes = f"chapters/{CHAPTERS[result['chapter']]}/README.md", found["mistakes"]
+    if mistakes and not found["fits"]:
+        lines.append(("not sure", SIMILAR))
     if len(mistakes) <= MOST_QUESTIONS:
-        for first, mistake in zip(("ask yourself", "or"), mistakes):
+        for first, mistake in zip(("ask yourself", "or") if found["fits"] else ("maybe", "maybe"), mistakes):
             name = f"{mistake['name']}: " if "name" in mistake else ""
             lines += [(first, name + mistake["hint"]), ("read again", f"{mistake['slide']} (docs/slides.md), {page}")]
-    if len(mistakes) > 1:
+    if len(mistakes) > 1 and found["fits"]:
         lines.append(("not sure", f"{len(mistakes)} common mistakes show the same in all experiments"))
     if found["next"] and len(mistakes) != 1:
         lines.append(("next", f"see it with your shader in the chapter's folder: {found['next']}"))

@@ -9,17 +9,18 @@ LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
 
 class Rate:
-    """Counts of trials. `alone` counts those with a single name, `right` those where that is the mistake, `among` those where the
-    mistake is among the names that fit, and `told` those with facts or names."""
+    """Counts of trials. `alone` counts those with a single name, `right` those where that is the mistake, `fitting` those where the
+    mistake is among the names that fit, `among` those where it is among these or those that may fit, and `told` those with facts
+    or names."""
 
     def __init__(self, trials):
         large = [trial for trial in trials if trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE]
-        right = [trial for trial in trials if trial["named"][:1] == [trial["mistake"]]]
         self.tried, self.large = len(trials), len(large)
         self.found, self.found_of_large = (sum(trial["verdict"] != "correct" for trial in some) for some in (trials, large))
         alone = [trial for trial in trials if len(trial["named"]) == 1]
         self.alone, self.right = len(alone), sum(trial["named"] == [trial["mistake"]] for trial in alone)
-        self.among = sum(trial["mistake"] in trial["named"] for trial in trials)
+        among = [trial for trial in trials if trial["mistake"] in trial["named"]]
+        self.among, self.fitting = len(among), sum(trial["fits"] for trial in among)
         self.told = sum(bool(trial["facts"] or trial["named"]) for trial in trials)
 
 
@@ -39,9 +40,15 @@ def part(count, of):
     return f"{count} of {of} ({100 * interval.low:.0f} – {100 * interval.high:.0f} %)"
 
 
+def names(trial):
+    """The names that a check has told. Submissions that were graded before names could merely be similar have no `fits`."""
+    told = ", ".join(trial["named"]) or "-"
+    return told if trial.get("fits", True) or not trial["named"] else f"may fit: {told}"
+
+
 def row(words, rate):
     return [words, str(rate.tried), part(rate.found_of_large, rate.large), str(rate.found), part(rate.told, rate.found),
-            part(rate.among, rate.found), part(rate.right, rate.alone)]
+            part(rate.fitting, rate.found), part(rate.among, rate.found), part(rate.right, rate.alone)]
 
 
 def submission_row(words, submissions):
@@ -63,7 +70,7 @@ def submission_table():
         if file.exists():
             submissions = read_json(file)["submissions"]
             rows.append(submission_row(SUBMISSIONS[key], submissions.values()))
-            told += [[f"{name}, {SUBMISSIONS[key]}", row["mistake"] or "none", row["verdict"], ", ".join(row["named"]) or "-"]
+            told += [[f"{name}, {SUBMISSIONS[key]}", row["mistake"] or "none", row["verdict"], names(row)]
                      for name, row in submissions.items() if not row["is_right"] or row["verdict"] != "correct"]
     head = ["submissions", "right ones refused", "wrong ones found", "not silent", "all facts true", "pointing at the mistake", "a single name is right"]
     text = "\nShaders that others wrote, without a look at the catalogue:\n\n" + table(head, rows)
@@ -72,7 +79,7 @@ def submission_table():
 
 def confusion_table(record):
     """A table of rates by condition, one by chapter, and a list of missed or misnamed mistakes."""
-    head = ["tried", "large ones found", "found", "not silent", "the mistake is one of the names that fit", "a single name is right"]
+    head = ["tried", "large ones found", "found", "not silent", "the mistake is one of the names that fit", "or of those that may fit", "a single name is right"]
     conditions = rates(record)
     correct = conditions.pop("correct", Rate([]))
     text = f"\nThe check refused correct shaders {part(correct.found, correct.tried)} times.\n\n"
@@ -87,6 +94,6 @@ def confusion_table(record):
             condition, chapter, *variant, _ = key.split("/")
             place = ", ".join([f"chapter {numbers[chapter]}", *variant])
             effect = f"{100 * trial['bias']:.2g} %, × {trial['noise']:.2g}"
-            missed.append([f"{place}, {condition}", trial["mistake"], effect, trial["verdict"], ", ".join(trial["named"]) or "-"])
+            missed.append([f"{place}, {condition}", trial["mistake"], effect, trial["verdict"], names(trial)])
     head = ["where", "mistake", "change of mean and error", "verdict", "named"]
     return text + "\nNot found, not named alone, or taken for another:\n\n" + table(head, missed, left=5)
