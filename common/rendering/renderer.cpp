@@ -123,7 +123,8 @@ bool Renderer::advance(uint32_t target_samples) {
     // A pass brings all blocks to pass_samples_, several samples at a time if all blocks fit into one dispatch.
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
-        const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, 1.0));
+        // On the CPU more at once keep lanes busy: one whose pixel is finished waits for its neighbours.
+        const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, is_on_host_ ? samples_per_group : 1.0));
         pass_samples_ = finished_samples_ + std::min(step, target_samples - finished_samples_);
     }
     const uint32_t step = pass_samples_ - finished_samples_;
