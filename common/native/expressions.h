@@ -268,7 +268,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         for (size_t i = 0; i < arguments.size(); ++i) {
             Expression& argument = arguments[i];
             const bool is_out = is_out_argument(i);
-            if (has_lanes() && i == 0 && word.starts_with("atomic")) {
+            if (has_lanes() && i == 0 && (word.starts_with("atomic") || (word == "texelFetch" && !argument.place.empty()))) {
                 if (argument.place.empty()) refuse();
                 argument.text = argument.place;
             } else if (is_out) {

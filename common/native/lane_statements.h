@@ -145,6 +145,7 @@ LAB_INLINE Ref<T> ref_to(T& first, const Lanes<int>& offset) {
     return {&first, offset};
 }
 template <typename C, typename I>
+requires requires(C& container) { container[0]; }
 LAB_INLINE auto at(C&& container, const I& index) {
     return ref_to(container[0], Lanes<int>(index) * word_count<std::remove_reference_t<decltype(container[0])>>);
 }
