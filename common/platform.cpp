@@ -36,11 +36,11 @@ static std::string variable(const char* name) {
     return value ? value : "";
 }
 
-static volatile std::sig_atomic_t interrupted = 0;
+static volatile std::sig_atomic_t interrupted = 0;  // by this signal
 
 void install_interrupt_handler() {
     const auto handler = [](int signal) {
-        interrupted = 1;
+        interrupted = signal;
         std::signal(signal, SIG_DFL);
     };
     std::signal(SIGINT, handler);
@@ -53,6 +53,16 @@ void install_interrupt_handler() {
 void interrupt_after([[maybe_unused]] double seconds) {
 #ifndef _WIN32
     alarm(static_cast<unsigned>(std::min(std::ceil(seconds), 1e9)));
+#endif
+}
+
+void remove_interrupt_handler() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+#ifndef _WIN32
+    alarm(0);
+    std::signal(SIGALRM, SIG_DFL);
+    if (interrupted == SIGALRM) interrupted = 0;
 #endif
 }
 

@@ -51,5 +51,7 @@ void install_interrupt_handler();
 bool is_interrupted();
 // Does the same after this many seconds, if the operating system can.
 void interrupt_after(double seconds);
+// From now on Ctrl-C ends the program at once, and what interrupt_after() has done or would do is void.
+void remove_interrupt_handler();
 
 }  // namespace lab

@@ -48,6 +48,9 @@ SHARED_CONSTANT BINDING_MICROFACETS = 23u;
 #ifdef __cplusplus
 SHARED_CONSTANT BINDING_COUNT = 24u;
 #endif
+// Of the backend `native` alone. Macros leave the shaders of the others as they are.
+#define BINDING_WORLD_TRIANGLES 24u
+#define BINDING_FIRST_WORLD_TRIANGLES 25u
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -94,6 +97,14 @@ struct Microfacets {
 struct Instance {
     mat4x3 object_to_world;  // columns: images of the axes, then the translation
     mat3 normal_to_world;    // inverse transpose of the linear part: keeps the front side, mirrored or not
+};
+
+// A triangle of an instance as rays meet it, 64 bytes. What get_surface_point() needs to compute but once.
+struct WorldTriangle {
+    mat3 corners;  // columns: positions
+    vec3 normal;   // geometric, unit length, on the front
+    vec3 offsets;  // at the corners, as SurfacePoint has it
+    uint padding;
 };
 
 // An emissive triangle in the alias table of all of them, see common/scene/light_table.h.

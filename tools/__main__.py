@@ -24,8 +24,9 @@ def main():
     try:
         tool = import_module(TOOLS[name])
     except ModuleNotFoundError as error:
+        project.ensure_packages()
         sys.exit(f"error: {error}: {project.INSTALL} installs what Python needs")
-    except project.UserError as error:
+    except (project.UserError, OSError) as error:
         sys.exit(f"error: {error}")
     project.run_tool(tool)
 

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -23,6 +24,13 @@ INSTALL = "./lab install" if os.name == "posix" else "python -m pip install nump
 def program_file(name):
     """The file of a program that the lab has built."""
     return (BINARIES / name).with_suffix("" if os.name == "posix" else ".exe")
+
+
+def ensure_packages():
+    """Starts the running program again in Debian's Python if this one lacks what ./lab install installs for that one."""
+    debians = Path("/usr/bin/python3")
+    if not all(map(find_spec, ("matplotlib", "numpy", "PIL", "scipy"))) and sys.executable != str(debians) and debians.exists():
+        os.execv(debians, [debians, *sys.orig_argv[1:]])
 
 
 class UserError(Exception):

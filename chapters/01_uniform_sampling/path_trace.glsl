@@ -2,7 +2,7 @@
 //
 // On the slides path_trace(x_{k-1}, ω_{k-1}, k-1) calls itself to estimate the radiance L_k that arrives at x_k:
 //     L_{k-1} = L_{e,k} + π² L_k ρ(x_k, ω_k, -ω_{k-1}) n(x_k)·ω_k sin(π/2 u_y)
-// A shader runs faster as a loop. Instead of multiplying L_k on the way back, it keeps the product of the factors
+// A shader cannot recurse, so this is a loop. Instead of multiplying L_k on the way back, it carries the product of the factors
 // π² ρ n·ω sin(π/2 u_y) of all bounces so far, called throughput, and adds throughput · L_{e,k} at every hit.
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     vec3 radiance = vec3(0.0);

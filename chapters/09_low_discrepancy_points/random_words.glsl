@@ -30,7 +30,7 @@ uvec2 random_start_state(uint pixel_index, uint sample_index, uvec2 key) {
     return uvec2(sample_index >> 1u, get_state(pixel_index, scramble, key).x);
 }
 
-// The words of the pixel's next point. The hash in the state is incremented, so it repeats after 2^32 pairs only: hashing the
+// The words of the pixel's next point. The hash in the state is incremented, so it repeats only after 2^32 pairs: hashing the
 // hash again and again would soon run into a short cycle.
 uvec2 get_random_words(inout uvec2 seed) {
     uvec2 keys = uvec2(seed.y, 0u);

@@ -1,4 +1,4 @@
-// What surfaces do with light: where the material has microfacets these decide, elsewhere it is as in the chapters before.
+// How surfaces scatter light: by microfacets if the material has them, else as in earlier chapters.
 #define get_brdf get_smooth_brdf
 #include "world/brdf.glsl"
 #undef get_brdf

@@ -30,14 +30,14 @@ float get_glass_fresnel(ShadingData s, float cos_m) {
     return square > 0.0 ? get_fresnel_reflectance(cos_m, s.relative_index, sqrt(square)) : 1.0;
 }
 
-// The same of an opaque surface, by Schlick's approximation where it is metal: Kd is its colour at normal incidence.
+// The same for an opaque surface, by Schlick's approximation where it is metal: Kd is its colour at normal incidence.
 vec3 get_fresnel(ShadingData s, float cos_m) {
     float root = max(1.0 - cos_m, 0.0);
     vec3 metal = s.diffuse_albedo + (1.0 - s.diffuse_albedo) * (root * root * root * root * root);
     return mix(vec3(get_glass_fresnel(s, cos_m)), metal, s.metalness);
 }
 
-// E(ω): the part of light from this direction that facets reflect, of the coat and of a surface with F = 1.
+// E(ω): the fraction of light from this direction that facets reflect: x for the coat, y for a surface with F = 1.
 vec2 get_facet_albedo(ShadingData s, float cos_theta) {
     float position = sqrt(clamp(cos_theta, 0.0, 1.0)) * float(MICROFACET_ALBEDO_COUNT - 1u);
     uint i = min(uint(position), MICROFACET_ALBEDO_COUNT - 2u);
@@ -46,7 +46,7 @@ vec2 get_facet_albedo(ShadingData s, float cos_theta) {
 
 // What leaves evenly after it has not been reflected by the facets: the diffuse light from below the coat (Kelemen and
 // Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", Eurographics 2001). Of white light from ω_i it
-// takes the part 1 - E(ω_i) that the coat lets through. With the same factor on the way out nothing is lost, and the BRDF
+// takes the fraction 1 - E(ω_i) that the coat lets through. With the same factor on the way out nothing is lost, and the BRDF
 // is reciprocal.
 vec3 get_diffuse_brdf(ShadingData s, float cos_i, float cos_o) {
     vec2 rest = (1.0 - get_facet_albedo(s, cos_i)) * (1.0 - get_facet_albedo(s, cos_o)) /
@@ -54,7 +54,7 @@ vec3 get_diffuse_brdf(ShadingData s, float cos_i, float cos_o) {
     vec3 brdf = (1.0 - s.metalness) * s.diffuse_albedo * rest.x;
 #ifdef FEATURE_MULTIPLE_SCATTERING
     // Light that facets of metal reflect several times (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks",
-    // SIGGRAPH 2017 courses): each time the mean of F is left of it, and a part Ē escapes.
+    // SIGGRAPH 2017 courses): each time the mean of F remains, and the fraction Ē of that escapes.
     vec3 mean_fresnel = s.diffuse_albedo + (1.0 - s.diffuse_albedo) / 21.0;
     float mean_albedo = microfacets[s.material].mean_albedo.y;
     brdf += s.metalness * mean_fresnel * mean_fresnel * mean_albedo / (1.0 - mean_fresnel * (1.0 - mean_albedo)) * rest.y;
@@ -81,7 +81,7 @@ Facet get_facet(ShadingData s, vec3 in_direction) {
     return Facet(m, dot(m, in_direction), dot(m, s.out_direction));
 }
 
-// Whether ω_o and ω_i lie on the sides of the facet on which they lie of the surface.
+// Whether ω_o and ω_i are each on the same side of the facet as of the surface.
 bool is_facet_seen(Facet facet, float cos_i) { return facet.cos_o > 0.0 && facet.cos_i * cos_i > 0.0; }
 
 // The BRDF of rough metal and plastic.

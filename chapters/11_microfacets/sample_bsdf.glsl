@@ -8,8 +8,8 @@
 #include "sample_normal.glsl"
 #ifdef FEATURE_MICROFACETS
 
-// The probability with which a bounce follows the facets, and not the cosine: of an opaque surface, their share of the
-// light that it reflects if its colour is as bright as its brightest channel.
+// The probability with which a bounce follows the facets, and not the cosine: for an opaque surface, the facets' share
+// of the reflected light, taking its brightest channel as its colour.
 float get_facet_probability(ShadingData s) {
     if (s.is_rough_dielectric) return 1.0;
     if (FACET_SAMPLING == SAMPLES_COSINES) return 0.0;

@@ -33,7 +33,7 @@ vec3 sample_normal(vec3 out_direction, float alpha, vec2 u) {
     return sample_visible_normal(out_direction, alpha, u);
 }
 
-// With respect to solid angle. Of a facet, a part G_1 is visible, and ω_o sees it ω_o·m / n·ω_o times as large.
+// With respect to solid angle. The fraction G_1 of the facets is visible, and from ω_o each appears larger by ω_o·m / n·ω_o.
 float get_normal_density(ShadingData s, Facet facet) {
     float distribution = get_facet_distribution(s, facet.normal);
     if (FACET_SAMPLING == SAMPLES_NORMALS) return distribution * dot(s.normal, facet.normal);

@@ -86,6 +86,7 @@ class HeadlessRender {
         }
         if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
+        remove_interrupt_handler();
         if (!options_.quiet)
             print_summary();
         else if (snapshot_.invalid_samples() > 0)  // never silent
@@ -198,10 +199,11 @@ class HeadlessRender {
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = record_.seconds - job_.record.seconds;
+        const bool shows_radiance = !job_.options.image.view;
         const std::optional<ErrorMetrics> error = find_error();
         // Pixels are independent. Against a reference the error would include bias.
         const bool is_spread = error && !reference_;
-        std::printf("mean radiance  %.5g %.5g %.5g", mean[0], mean[1], mean[2]);
+        std::printf("%-15s%.5g %.5g %.5g", shows_radiance ? "mean radiance" : "mean", mean[0], mean[1], mean[2]);
         if (is_spread) std::printf(" ± %.2g", std::sqrt(error->mse / static_cast<double>(snapshot_.pixels.size())));
         std::printf(" (red, green, blue%s)\n", is_spread ? "; standard error, on average" : "");
         std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(), short_number(paths()).c_str(),
@@ -211,7 +213,7 @@ class HeadlessRender {
         std::printf("acceleration   structure of %s bytes, built in %s\n",
                     short_number(static_cast<double>(acceleration_structure_.bytes())).c_str(),
                     duration_text(acceleration_structure_.build_seconds()).c_str());
-        if (error)
+        if (error && shows_radiance)
             std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n", 100 * error->rel_rmse,
                         reference_ ? "against the reference" : "estimated");
         if (snapshot_.invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());

@@ -1,7 +1,11 @@
 #include "app/run_chapter.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <iomanip>
 #include <iostream>
+#include <optional>
+#include <sstream>
 
 #include "error.h"
 #include "files/file.h"
@@ -102,8 +106,22 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
     if (chapter.unlimited_path_length && !job.options.light.max_path_length)
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
-    if (build.backend == Backend::native)
+    if (build.backend == Backend::native && native::invocations_at_once() > 1)
         std::cout << "at once        " << native::invocations_at_once() << " paths on each core" << std::endl;
+}
+
+// Builds a job without a window. If `auto` chooses `native` and that cannot run the shader, the device's backends have to.
+Build build_headless(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first, const Build* before) {
+    job.may_choose_native = job.options.run.backend == "auto" && suits_native(device, *job.scene);
+    if (!job.may_choose_native) return make_build(device, chapter, std::move(job), first, before);
+    try {
+        return make_build(device, chapter, job, first, before);
+    } catch (const std::exception& error) {
+        job.may_choose_native = false;
+        Build build = make_build(device, chapter, std::move(job));  // throws the same for what no backend can run
+        std::cerr << "note: " << error.what() << ": " << to_string(build.backend) << " renders instead\n";
+        return build;
+    }
 }
 
 // Renders a single pixel, for a debugger that stops in its shader.
@@ -119,34 +137,104 @@ void debug_pixel(Build& build, uvec2 pixel) {
                 sum.sum.g, sum.sum.b);
 }
 
-void run(const Chapter& chapter, Options options) {
-    native::set_mode(options.run.sanitize      ? native::Mode::checked
-                     : options.run.debug_pixel ? native::Mode::debug
-                                               : native::Mode::fast);
-    choose_outputs(options.run);
-    check_outputs(options.run);
-    const auto scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
-    RenderJob job = make_job(chapter, options, scene);
-    if (features_of(*scene).microfacets && !chapter.microfacets) {
-        const std::string use = ": use a chapter that has them, see ./lab run";
-        if (!options.run.report.empty())  // it would describe a different picture
-            throw UserError("--report: " + chapter.name + " cannot render the microfacets (Pr) of " + scene->file.string() + use);
-        scene->warnings.push_back(scene->file.string() + ": has microfacets (Pr), which " + chapter.name + " leaves out" + use);
+// Prints what is worth knowing about the scene of a job. Throws UserError if a report would describe another picture.
+void print_warnings(const Chapter& chapter, const RenderJob& job) {
+    std::vector<std::string> warnings = job.scene->warnings;
+    if (features_of(*job.scene).microfacets && !chapter.microfacets) {
+        const std::string scene = job.scene->file.string(), use = ": use a chapter that has them, see ./lab run";
+        if (!job.options.run.report.empty())
+            throw UserError("--report: " + chapter.name + " cannot render the microfacets (Pr) of " + scene + use);
+        warnings.push_back(scene + ": has microfacets (Pr), which " + chapter.name + " leaves out" + use);
     }
-    for (const auto& warning : scene->warnings)
-        if (!options.run.quiet) std::cerr << "note: " << warning << "\n";
-    if (const auto window = open_window(chapter, options, job.parameters.image_size);
-        window && run_in_window(*window, chapter, job))
-        return;
+    for (const auto& warning : warnings)
+        if (!job.options.run.quiet) std::cerr << "note: " << warning << "\n";
+}
 
-    const Device device({options.run.device, options.run.validation});
-    Build build = make_build(device, chapter, std::move(job));
-    if (!options.run.quiet) print_start(chapter, device, build);
-    if (options.run.debug_pixel)
-        debug_pixel(build, *options.run.debug_pixel);
-    else
-        render_headless(build);
-    check_validation(device, options.run);
+// Runs command lines of a chapter. They share the device with its pipelines, and consecutive ones the scene if it is the same.
+class Commands {
+  public:
+    explicit Commands(const Chapter& chapter) : chapter_(chapter) {}
+
+    void run(const std::vector<std::string>& arguments) {
+        auto options = parse_options(chapter_, arguments);
+        if (!options) return;
+        if (options->run.batch) throw UserError("--batch goes alone: other options belong into the lines of the standard input");
+        if (options->run.list_devices)
+            print_devices();
+        else
+            render(std::move(*options));
+    }
+
+  private:
+    void render(Options options) {
+        native::set_mode(options.run.sanitize      ? native::Mode::checked
+                         : options.run.debug_pixel ? native::Mode::debug
+                                                   : native::Mode::fast);
+        choose_outputs(options.run);
+        check_outputs(options.run);
+        const auto scene = build_ && build_->job.options.scene == options.scene
+                               ? build_->job.scene
+                               : std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
+        RenderJob job = make_job(chapter_, options, scene);
+        print_warnings(chapter_, job);
+        if (const auto window = open_window(chapter_, options, job.parameters.image_size);
+            window && run_in_window(*window, chapter_, job))
+            return;
+
+        rebuild(std::move(job));
+        if (!options.run.quiet) print_start(chapter_, *device_, *build_);
+        if (options.run.debug_pixel)
+            debug_pixel(*build_, *options.run.debug_pixel);
+        else
+            render_headless(*build_);
+        check_validation(*device_, options.run);
+    }
+
+    // Builds a job, as far as it differs from the one before. Shaders are read again, since they may have been edited.
+    void rebuild(RenderJob job) {
+        const RunOptions& now = job.options.run;
+        if (!build_ || build_->job.options.run.device != now.device || build_->job.options.run.validation != now.validation) {
+            build_.reset();
+            device_.emplace(DeviceOptions{now.device, now.validation});
+        }
+        BuildStage first = BuildStage::scene;
+        if (build_ && build_->job.options.run.backend == now.backend)
+            first = std::min(first_difference(build_->job.options, job.options), BuildStage::renderer);
+        if (first == BuildStage::scene) build_.reset();  // there may not be room for both
+        build_ = build_headless(*device_, chapter_, std::move(job), first, build_ ? &*build_ : nullptr);
+    }
+
+    const Chapter& chapter_;
+    std::optional<Device> device_;
+    std::optional<Build> build_;  // of the last command line
+};
+
+// Prints an error in one line and returns the exit code.
+int report(const std::exception& error, const std::string& place = "") {
+    const Failure failure = failure_of(error);
+    std::cerr << "error: " << place << failure.message << "\n";
+    return failure.exit_code;
+}
+
+// Runs the command lines in the standard input up to the first error, and tells of each when it is done. Arguments with spaces
+// are in double quotes, in which \" stands for a quote and \\ for a backslash.
+int run_batch(Commands& commands) {
+    std::vector<char> line(1 << 16);
+    int number = 1;
+    try {
+        for (; std::cin.getline(line.data(), static_cast<std::streamsize>(line.size())); ++number) {
+            std::vector<std::string> arguments{"--headless"};
+            std::istringstream words(line.data());
+            for (std::string word; words >> std::quoted(word);) arguments.push_back(word);
+            if (arguments.size() > 1) commands.run(arguments);
+            if (is_interrupted()) throw UserError("interrupted: the lines after it were not run");
+            std::cout << "line " << number << " is done" << std::endl;
+        }
+        if (!std::cin.eof()) throw UserError("is longer than " + std::to_string(line.size() - 1) + " bytes");
+        return 0;
+    } catch (const std::exception& error) {
+        return report(error, "line " + std::to_string(number) + " of the standard input: ");
+    }
 }
 
 }  // namespace
@@ -155,17 +243,13 @@ int run_chapter(const std::string& name, int argument_count, char** arguments) {
     prepare_terminal();
     try {
         const Chapter chapter = load_chapter(name);
-        const auto options = parse_options(chapter, argument_count, arguments);
-        if (!options) return 0;
-        if (options->run.list_devices)
-            print_devices();
-        else
-            run(chapter, *options);
+        Commands commands(chapter);
+        const std::vector<std::string> given(arguments + 1, arguments + argument_count);
+        if (given == std::vector<std::string>{"--batch"}) return run_batch(commands);
+        commands.run(given);
         return 0;
     } catch (const std::exception& error) {
-        const Failure failure = failure_of(error);
-        std::cerr << "error: " << failure.message << "\n";
-        return failure.exit_code;
+        return report(error);
     }
 }
 

@@ -27,6 +27,8 @@ DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bind
     };
     for (const auto& binding : bindings) {
         layout_bindings.emplace_back(binding.index, binding.type, count(binding), stages);
+        layout_text_ +=
+            std::to_string(binding.index) + " " + vk::to_string(binding.type) + " " + std::to_string(count(binding)) + "\n";
         sizes.emplace_back(binding.type, count(binding));
     }
     layout_ = {device.handle(), vk::DescriptorSetLayoutCreateInfo({}, layout_bindings)};
@@ -48,20 +50,27 @@ ComputeKernel::ComputeKernel(const Device& device, const ShaderSource& source, s
                              uint32_t push_constant_size)
     : descriptors_(device, bindings, vk::ShaderStageFlagBits::eCompute), push_constant_size_(push_constant_size) {
     const auto words = compile_shader(source);
-    const vk::raii::ShaderModule module(device.handle(), vk::ShaderModuleCreateInfo({}, words));
-    const auto set_layout = descriptors_.layout();
-    const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_size);
-    layout_ = {device.handle(), vk::PipelineLayoutCreateInfo({}, 1, &set_layout, push_constant_size > 0, &range)};
-    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
-    pipeline_ = {device.handle(), device.pipeline_cache(), vk::ComputePipelineCreateInfo({}, stage, *layout_)};
+    const std::string key = descriptors_.layout_text() + std::to_string(push_constant_size) + "\n" + key_of(words);
+    pipeline_ = device.share_pipeline(key, [&] {
+        Pipeline made;
+        const vk::raii::ShaderModule module(device.handle(), vk::ShaderModuleCreateInfo({}, words));
+        const auto set_layout = descriptors_.layout();
+        const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, push_constant_size);
+        made.layout = {device.handle(), vk::PipelineLayoutCreateInfo({}, 1, &set_layout, push_constant_size > 0, &range)};
+        const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
+        made.handle = {device.handle(), device.pipeline_cache(), vk::ComputePipelineCreateInfo({}, stage, *made.layout)};
+        return made;
+    });
 }
+
+std::string key_of(std::span<const uint32_t> words) { return {reinterpret_cast<const char*>(words.data()), words.size_bytes()}; }
 
 void ComputeKernel::record(const vk::raii::CommandBuffer& commands, const void* push_constants, uint32_t group_count,
                            vk::ArrayProxy<const uint32_t> offsets) const {
-    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
-    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, descriptors_.handle(), offsets);
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_->handle);
+    commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *pipeline_->layout, 0, descriptors_.handle(), offsets);
     if (push_constant_size_ > 0)
-        (*commands).pushConstants(*layout_, vk::ShaderStageFlagBits::eCompute, 0, push_constant_size_, push_constants,
+        (*commands).pushConstants(*pipeline_->layout, vk::ShaderStageFlagBits::eCompute, 0, push_constant_size_, push_constants,
                                   *commands.getDispatcher());
     commands.dispatch(group_count, 1, 1);
 }

@@ -26,10 +26,13 @@ class DescriptorSet {
     DescriptorSet(const Device& device, std::span<const Binding> bindings, vk::ShaderStageFlags stages);
 
     vk::DescriptorSetLayout layout() const { return *layout_; }
+    // Sets with equal descriptions of their layouts fit the same pipelines.
+    const std::string& layout_text() const { return layout_text_; }
     vk::DescriptorSet handle() const { return *set_; }
 
   private:
     vk::raii::DescriptorSetLayout layout_ = nullptr;
+    std::string layout_text_;
     vk::raii::DescriptorPool pool_ = nullptr;
     vk::raii::DescriptorSet set_ = nullptr;
 };
@@ -47,8 +50,10 @@ class ComputeKernel {
   private:
     DescriptorSet descriptors_;
     uint32_t push_constant_size_;
-    vk::raii::PipelineLayout layout_ = nullptr;
-    vk::raii::Pipeline pipeline_ = nullptr;
+    std::shared_ptr<const Pipeline> pipeline_;
 };
+
+// SPIR-V as part of a key for Device::share_pipeline().
+std::string key_of(std::span<const uint32_t> words);
 
 }  // namespace lab

@@ -305,6 +305,14 @@ void Device::load_pipeline_cache() {
     pipeline_cache_size_ = cached.size();
 }
 
+std::shared_ptr<const Pipeline> Device::share_pipeline(const std::string& key, const std::function<Pipeline()>& make) const {
+    const std::lock_guard lock(pipelines_mutex_);
+    if (const auto found = pipelines_.find(key); found != pipelines_.end()) return found->second;
+    constexpr size_t most = 64;  // a window that watches its shader makes a new one after each edit
+    if (pipelines_.size() == most) pipelines_.clear();
+    return pipelines_[key] = std::make_shared<const Pipeline>(make());
+}
+
 Device::~Device() {
     try {
         const auto contents = pipeline_cache_.getData();

@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -44,6 +45,12 @@ struct DeviceDescription {
     bool supports(Backend backend) const { return missing.at(backend).empty(); }
 };
 
+// A compiled pipeline, and the layout that it needs.
+struct Pipeline {
+    vk::raii::PipelineLayout layout = nullptr;
+    vk::raii::Pipeline handle = nullptr;
+};
+
 class Device {
   public:
     // Throws DeviceError without a driver (saying what to install), without such a device, or if it lacks a feature.
@@ -55,6 +62,9 @@ class Device {
     const vk::raii::Device& handle() const { return device_; }
     const vk::raii::PhysicalDevice& physical() const { return physical_; }
     const vk::raii::PipelineCache& pipeline_cache() const { return pipeline_cache_; }
+    // A pipeline that was made for the same `key` before, or else what `make` returns. The key holds all that it depends on. Any
+    // thread may call this.
+    std::shared_ptr<const Pipeline> share_pipeline(const std::string& key, const std::function<Pipeline()>& make) const;
     const DeviceDescription& description() const { return description_; }
     const vk::PhysicalDeviceLimits& limits() const { return limits_; }
     // Properties from an extension's own structure.
@@ -112,6 +122,8 @@ class Device {
     vk::raii::QueryPool timestamps_ = nullptr;
     vk::raii::PipelineCache pipeline_cache_ = nullptr;
     size_t pipeline_cache_size_ = 0;
+    mutable std::mutex pipelines_mutex_;
+    mutable std::map<std::string, std::shared_ptr<const Pipeline>> pipelines_;  // by key
 };
 
 // A full memory barrier: later commands see, and may overwrite, everything written before.

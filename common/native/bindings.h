@@ -1,6 +1,5 @@
 // What a translated shader gets from the program that runs it. Both are compiled with this header.
 #pragma once
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 
@@ -37,9 +36,11 @@ struct alignas(64) RayPacket {
 // Rays by Embree: embree.h, which is compiled like a shader.
 class RayTracer {
   public:
-    struct Triangle {
-        float corners[3][3];
-        uint32_t instance, triangle;
+    struct Triangle {  // of the world; the last number of a row is instance, triangle and nothing
+        struct {
+            float corners[3];
+            uint32_t id;
+        } x, y, z;
     };
     virtual ~RayTracer() = default;
     // The closest hit nearer than t_max, or with a null `hit` whether there is any.
@@ -58,14 +59,22 @@ struct Bindings {
         size_t bytes;
     } ranges[64];
     std::byte* push_constants;
-    const std::atomic<bool>* is_stopped;  // loops of the shader end where this is true
+    const bool* is_stopped;  // loops of the shader end where this is true; other threads write it
 
     const RayTracer* rays;  // where shaders are compiled with BACKEND_EMBREE
+
+    bool must_stop() const { return __atomic_load_n(is_stopped, __ATOMIC_RELAXED); }
 };
 
 // How a workgroup has ended.
 enum class Outcome { finished, stopped, failed };
-// Runs a workgroup. Of an error it leaves a line of text.
+// Runs a workgroup. On an error, writes one line of text to `error`.
 using RunGroup = Outcome (*)(const Bindings& bindings, uint32_t group, char* error, size_t error_size);
+
+// What ends a shader early: an interrupt, or what a checked shader finds.
+struct Stopped {};
+struct Failed {
+    char text[512];
+};
 
 }  // namespace lab::native

@@ -1,7 +1,7 @@
 // Embree for translated shaders. It is no part of the lab's programs: like a shader it is compiled on the computer that runs it,
 // after the header of Embree 3 or 4 that this one has.
 #pragma once
-#include <algorithm>
+#include <atomic>
 #include <memory>
 #include <new>
 #include <vector>
@@ -32,9 +32,12 @@ class EmbreeTracer final : public RayTracer {
         if (count > 0 && (!corner || !index)) throw std::bad_alloc();
         places_.reserve(count);
         for (size_t i = 0; i < count; ++i) {
-            places_.push_back({triangles[i].instance, triangles[i].triangle});
-            for (const auto& position : triangles[i].corners) corner = std::copy_n(position, 3, corner);
-            for (size_t j = 0; j < 3; ++j) *index++ = static_cast<uint32_t>(3 * i + j);
+            const auto& [x, y, z] = triangles[i];
+            places_.push_back({x.id, y.id});
+            for (size_t j = 0; j < 3; ++j) {
+                for (const auto& row : {x, y, z}) *corner++ = row.corners[j];
+                *index++ = static_cast<uint32_t>(3 * i + j);
+            }
         }
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene_.get(), geometry);

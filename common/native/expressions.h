@@ -282,7 +282,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 argument.text = is_known_twice
                                     ? (has_lanes() ? " lanes::copied(active__, " : " copied(") + argument.assignable() + ")"
                                     : argument.text;
-                if (is_ordered && !is_known_twice) argument.text = "std::ref(" + argument.text + ")";
+                if (is_ordered && !is_known_twice) argument.text = " Reference(" + argument.text + ")";
             } else if (has_lanes() && kind == Call::function &&
                        (globals_.contains(argument.root) || all.writes.contains(argument.root))) {
                 argument.text = " lanes::copy(" + argument.text + ")";  // it may change while the function reads it

@@ -3,7 +3,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <glm/glm.hpp>
 #include <source_location>
 #include <tuple>
@@ -14,11 +13,6 @@
 namespace lab::native {
 
 using namespace glm;  // for names of types alone: a shader's functions are those of `Builtins`
-
-struct Stopped {};
-struct Failed {
-    char text[512];
-};
 
 // An index of an array. Where shaders are checked it knows the line that uses it.
 #ifdef LAB_CHECKED
@@ -212,6 +206,14 @@ auto copied(Swizzled<V, i...> target) {
     return Copied<Swizzled<V, i...>, typename Swizzled<V, i...>::Value>{target, target};
 }
 
+// An argument of such a parameter among operands that are Ordered, which are copied.
+template <typename T>
+struct Reference {
+    T& target;
+    Reference(T& x) : target(x) {}
+    operator T&() const { return target; }
+};
+
 // Operands that are evaluated from left to right.
 template <typename... T>
 struct Ordered {
@@ -316,14 +318,14 @@ struct Builtins {
         return a - b;
     }
 
-#define LAB_ATOMIC(name, change)                                                \
-    template <typename T>                                                       \
-    static T name(T& target, std::type_identity_t<T> operand) {                 \
-        std::atomic_ref<T> atomic(target);                                      \
-        T before = atomic;                                                      \
-        while (!atomic.compare_exchange_weak(before, static_cast<T>(change))) { \
-        }                                                                       \
-        return before;                                                          \
+#define LAB_ATOMIC(name, change)                                                                                \
+    template <typename T>                                                                                       \
+    static T name(T& target, std::type_identity_t<T> operand) {                                                 \
+        T before, after;                                                                                        \
+        __atomic_load(&target, &before, __ATOMIC_RELAXED);                                                      \
+        do after = change;                                                                                      \
+        while (!__atomic_compare_exchange(&target, &before, &after, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)); \
+        return before;                                                                                          \
     }
     LAB_ATOMIC(atomicAdd, before + operand)
     LAB_ATOMIC(atomicMin, before < operand ? before : operand)
@@ -374,7 +376,7 @@ struct ShaderBase : Builtins {
     }
 };
 
-// The program's way in.
+// The entry point that the program calls.
 template <typename Run>
 Outcome run_group(char* error, size_t error_size, const Run& run) try {
     run();

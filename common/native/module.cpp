@@ -51,7 +51,7 @@ int at_once = 1;  // invocations of the shader that was loaded last
 // Whether this CPU, Embree's packets and the C library have what lanes need.
 bool has_lanes() {
 #if defined(__x86_64__) && defined(__GLIBC__)
-    return __builtin_cpu_supports("avx2") && !std::getenv("LAB_WITHOUT_LANES");
+    return __builtin_cpu_supports("avx2") && std::getenv("LAB_LANES");
 #else
     return false;
 #endif
@@ -73,15 +73,15 @@ fs::path find_compiler() {
 fs::path header_folder() { return project_folder() / "common"; }
 
 std::vector<std::string> compiler_arguments() {
-    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-fvisibility=hidden",          "-g",
+    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-fvisibility=hidden",
                                        "-fno-finite-loops", "-ffp-contract=off", "-w",    "-I" + header_folder().string()};
     if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
     if (mode == Mode::fast)  // in one large function, structs need not be copied from one to the next
         arguments.insert(arguments.end(),
                          {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG", "-finline-limit=4000",
                           "--param=large-function-growth=2000", "--param=inline-unit-growth=1000"});
-    if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-DNDEBUG"});
-    if (mode == Mode::checked) arguments.insert(arguments.end(), {"-O1", "-DLAB_CHECKED", "-fsanitize=undefined"});
+    if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-g", "-DNDEBUG"});
+    if (mode == Mode::checked) arguments.insert(arguments.end(), {"-O1", "-g", "-DLAB_CHECKED", "-fsanitize=undefined"});
     return arguments;
 }
 
@@ -156,7 +156,6 @@ void* load_library(const std::vector<std::string>& texts, const std::vector<std:
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
     const fs::path file = cache_file(name);
-    if (file.empty()) throw UserError("the backend native has no folder for its code: set XDG_CACHE_HOME to one");
     for (size_t i = 0; !read_cache(name); ++i) {
         try {
             compile(texts[i], arguments, name);
@@ -193,6 +192,7 @@ void return_from_crash(int signal) {
 std::vector<std::string> missing_tools() {
     std::vector<std::string> missing;
     if (std::getenv("LAB_WITHOUT_NATIVE")) missing.emplace_back("a permission: LAB_WITHOUT_NATIVE forbids it");
+    if (cache_file("").empty()) missing.emplace_back("a folder for its code (XDG_CACHE_HOME)");
     if (find_compiler().empty()) missing.emplace_back("a C++ compiler (c++)");
     if (!fs::exists(header_folder() / "native/glsl.h")) missing.emplace_back("the lab's sources (common/)");
     if (!fs::exists(fs::path(LAB_GLM_FOLDER) / "glm/glm.hpp")) missing.emplace_back("the headers of GLM (libglm-dev)");
@@ -236,8 +236,9 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
         return true;
     }();
     (void)handles_crashes;
-    std::atomic<bool> is_stopped = false;
+    bool is_stopped = false;
     bindings.is_stopped = &is_stopped;
+    const std::atomic_ref stop(is_stopped);
     // Interrupts are seen while a shader runs, since it may never end.
     const std::jthread watch([&](const std::stop_token& finished) {
         std::mutex mutex;
@@ -246,7 +247,7 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
         while (!changed.wait_for(lock, finished, std::chrono::milliseconds(50), [] { return is_interrupted(); }) &&
                !finished.stop_requested()) {
         }
-        is_stopped = is_interrupted();
+        stop = is_interrupted();
     });
     in_parallel(end - first, 1, [&](size_t begin, size_t) {
         sigjmp_buf here;
@@ -257,7 +258,7 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
             signal == 0 ? run(bindings, first + static_cast<uint32_t>(begin), error, sizeof error) : Outcome::failed;
         way_back = nullptr;
         if (outcome != Outcome::failed) return;
-        is_stopped = true;
+        stop = true;
         if (signal == 0) throw DeviceFailure(error);
         throw DeviceFailure(std::string("the shader crashed (") + strsignal(signal) +
                             (mode == Mode::checked ? "): the sanitizer's last line tells where"

@@ -7,8 +7,8 @@
 
 namespace lab::native {
 
-// What this computer lacks for that, as --list-devices says it. With LAB_WITHOUT_NATIVE in the environment it lacks a permission:
-// shaders of strangers are not to become programs.
+// What this computer lacks for that, as --list-devices says it. With LAB_WITHOUT_NATIVE in the environment it
+// reports missing permission, so that strangers' shaders never run as native code.
 std::vector<std::string> missing_tools();
 
 enum class Mode {

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "files/cache.h"
 #include "files/file.h"
+#include "native/module.h"
 #include "rendering/render_job.h"
 #include "tracing/gpu_bvh.h"
 
@@ -30,11 +31,13 @@ double measure_speed(Backend backend, const Device& device, const GpuScene& scen
     return (renderer.samples() - first_samples) / std::max(renderer.device_seconds() - first_seconds, 1e-9);
 }
 
-std::string cache_name(const Device& device, const GpuScene& scene) {
+std::string cache_name(const RenderJob& job, const Device& device, const GpuScene& scene) {
     const uint64_t triangles = instanced_triangle_count(scene.scene());
     const auto decade = static_cast<int>(std::log10(static_cast<double>(std::max<uint64_t>(triangles, 1))));
     const auto& description = device.description();
-    return "backend-" + std::to_string(hash_text(description.name + description.driver)) + "-" + std::to_string(decade);
+    const std::string candidates = job.may_choose_native ? native::ray_tracer_name() : "";
+    return "backend-" + std::to_string(hash_text(description.name + description.driver + candidates)) + "-" +
+           std::to_string(decade);
 }
 
 std::optional<Backend> find_backend(const std::string& name) {
@@ -51,12 +54,11 @@ bool fits_compute(const Device& device, const Scene& scene) try {
 }
 
 Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {
-    // `native` only on request: it compiles every changed shader, and a crash in a shader crashes the program.
     const auto is_usable = [&](Backend backend) {
-        if (backend == Backend::native) return false;
+        if (backend == Backend::native) return job.may_choose_native;
         return device.description().supports(backend) && (backend != Backend::compute || fits_compute(device, *job.scene));
     };
-    const std::string entry = cache_name(device, scene);
+    const std::string entry = cache_name(job, device, scene);
     if (const auto cached = read_cache(entry))
         if (const auto backend = find_backend(*cached); backend && is_usable(*backend)) return *backend;
 
@@ -78,6 +80,13 @@ Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene&
 }
 
 }  // namespace
+
+bool suits_native(const Device& device, const Scene& scene) {
+    constexpr uint64_t bytes_per_triangle = 512;  // while its tree is built
+    const DeviceDescription& description = device.description();
+    return description.kind == "CPU" && description.supports(Backend::native) &&
+           instanced_triangle_count(scene) < description.memory / bytes_per_triangle;
+}
 
 bool can_show(const View& view, Backend backend) {
     if (backend == Backend::compute) return true;

@@ -37,7 +37,7 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
 void add_options(CLI::App& app, Options& options, std::string& view) {
     auto& [scene, estimator, image, camera, light, samples, appearance, run] = options;
     constexpr uint32_t max_count = 4294967295u;
-    const auto whole = [&](const char* name, auto& value, uint32_t low, uint32_t high, const char* help) {
+    const auto whole = [&](const char* name, auto& value, uint32_t low, uint32_t high, const std::string& help) {
         app.add_option(name, value, help)->transform(whole_number(low, high));
     };
     const auto number = [&](const char* name, auto& value, double low, double high, const char* meaning, const char* help) {
@@ -57,12 +57,15 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
     std::vector<std::string> view_names;
     for (const auto& known : views()) view_names.push_back(known.name);
 
-    whole("--width", image.width, 1, max_image_extent, "Pixels in a row");
-    whole("--height", image.height, 1, max_image_extent, "Pixels in a column");
-    whole("--samples", appearance.sample_count, 1, max_count, "Samples per pixel");
+    const RenderDefaults defaults;
+    const auto unless_given = [](uint32_t value) { return "; default: the scene's, or else " + std::to_string(value); };
+    whole("--width", image.width, 1, max_image_extent, "Pixels in a row" + unless_given(defaults.width));
+    whole("--height", image.height, 1, max_image_extent, "Pixels in a column" + unless_given(defaults.height));
+    whole("--samples", appearance.sample_count, 1, max_count, "Samples per pixel" + unless_given(defaults.samples));
     whole("--seed", samples.seed, 0, max_count, "Chooses the random numbers");
     whole("--first-sample", samples.first_sample, 0, max_count, "Index of the first sample: splits a render into ranges");
-    whole("--max-path-length", light.max_path_length, 0, path_length_limit, "Bounces after which a path ends; 0: emission only");
+    whole("--max-path-length", light.max_path_length, 0, path_length_limit,
+          "Bounces after which a path ends, 0 for emission only" + unless_given(defaults.max_path_length));
     whole("--only-path-length", light.only_path_length, 0, path_length_limit, "Show only light after exactly this many bounces");
     number("--target-error", run.target_error, 1e-12, 1e12, "a positive number",
            "Stop when the relative error is below this: 0.01 is 1 %");
@@ -107,6 +110,8 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
         ->delimiter(',')
         ->type_name("X,Y");
     app.add_flag("--quiet", run.quiet, "Print errors only");
+    app.add_flag("--batch", run.batch,
+                 "Render several pictures: each line of the standard input is a command line like this one");
 }
 
 // Options of this chapter only.
@@ -172,7 +177,7 @@ const std::vector<View>& views() {
     return all;
 }
 
-std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments) {
+std::optional<Options> parse_options(const Chapter& chapter, const std::vector<std::string>& arguments) {
     Options options;
     std::string scene = chapter.default_scene, view;
     CLI::App app(chapter.title, chapter.name);
@@ -181,7 +186,7 @@ std::optional<Options> parse_options(const Chapter& chapter, int argument_count,
     add_options(app, options, view);
     add_chapter_options(app, chapter, options);
     try {
-        app.parse(argument_count, arguments);
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last one first
     } catch (const CLI::CallForHelp&) {
         std::cout << app.help();
         return std::nullopt;

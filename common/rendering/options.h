@@ -91,6 +91,7 @@ struct RunOptions {
     bool sanitize = false;
     std::optional<uvec2> debug_pixel;  // renders only this one, for a debugger
     bool quiet = false;
+    bool batch = false;  // more command lines are in the standard input
 };
 
 // In groups that can be compared and copied as a whole.
@@ -108,8 +109,8 @@ struct Options {
 // Whether options ask for measurements or limits, which only headless runs support.
 bool needs_no_window(const Options& options);
 
-// Parses the command line. Prints and returns nothing for --help and --version. Throws UserError for anything it does not
-// understand.
-std::optional<Options> parse_options(const Chapter& chapter, int argument_count, char** arguments);
+// Parses the arguments of a command line. Prints and returns nothing for --help and --version. Throws UserError for anything it
+// does not understand.
+std::optional<Options> parse_options(const Chapter& chapter, const std::vector<std::string>& arguments);
 
 }  // namespace lab

@@ -1,6 +1,6 @@
 // The `native` backend: the shaders of `compute` as C++ on the CPU. Embree traces the rays where it is installed.
 #include "clock.h"
-#include "error.h"
+#include "files/project_folder.h"
 #include "native/module.h"
 #include "tracing/backends.h"
 #include "tracing/bvh.h"
@@ -13,22 +13,66 @@ native::Bindings::Range range_of(std::span<const T> data) {  // const is cast aw
     return {reinterpret_cast<std::byte*>(const_cast<T*>(data.data())), data.size_bytes()};
 }
 
+// Binds the host's view of buffers.
+void bind_host(native::Bindings& bound, std::span<const Binding> bindings) {
+    for (const Binding& binding : bindings) bound.ranges[binding.index] = {binding.host.data(), binding.host.size()};
+}
+
+// Compiles a shader. Reports errors in it as the other backends do: they compile `checked`.
+native::RunGroup load_shader(const ShaderSource& checked, const ShaderSource& source) {
+    compile_shader(checked);
+    return native::load(preprocess_shader(source));
+}
+
+// What get_surface_point() knows of each triangle, see shaders/engine/trace_ray/world_triangles.comp.
+class WorldTriangles {
+  public:
+    WorldTriangles(const GpuScene& scene, std::span<const BvhTriangle> triangles) : triangles_(triangles.size()) {
+        uint32_t first = 0;
+        for (uint32_t instance = 0; instance < scene.scene().instances.size(); ++instance) {
+            const Mesh& mesh = scene.scene().mesh_of(instance);
+            firsts_.push_back(first - mesh.first_triangle);
+            first += mesh.triangle_count;
+        }
+        ShaderSource source{.file = project_folder() / "shaders/engine/trace_ray/world_triangles.comp"};
+        if (features_of(scene.scene()).transforms) source.defines.emplace_back("FEATURE_TRANSFORMS");
+        native::Bindings bound{};
+        bind_host(bound, scene.bindings());
+        const RenderParameters parameters{};  // are declared, but not used
+        bound.ranges[BINDING_RENDER_PARAMETERS] = range_of(std::span(&parameters, 1));
+        bound.ranges[BINDING_BVH_TRIANGLES] = range_of(triangles);
+        bind(bound);
+        native::run_groups(load_shader(source, source), bound, 0, static_cast<uint32_t>((triangles.size() + 63) / 64));
+    }
+
+    void bind(native::Bindings& bindings) const {
+        bindings.ranges[BINDING_WORLD_TRIANGLES] = range_of(std::span<const CacheLine>(triangles_));
+        bindings.ranges[BINDING_FIRST_WORLD_TRIANGLES] = range_of(std::span<const uint32_t>(firsts_));
+    }
+    size_t bytes() const { return triangles_.size() * sizeof(CacheLine) + firsts_.size() * sizeof(uint32_t); }
+
+  private:
+    struct alignas(64) CacheLine {  // so that a triangle never lies in two of them
+        WorldTriangle triangle;
+    };
+    static_assert(sizeof(CacheLine) == sizeof(WorldTriangle));
+
+    LargeArray<CacheLine> triangles_;
+    std::vector<uint32_t> firsts_;
+};
+
 // Embree's tree where that is installed, or else our own.
 class NativeTree {
   public:
-    explicit NativeTree(const Scene& scene) {
-        const auto triangles = world_triangles(scene);
+    explicit NativeTree(std::span<const BvhTriangle> triangles) {
+        using Triangle = native::RayTracer::Triangle;
+        static_assert(sizeof(Triangle) == sizeof(BvhTriangle) && offsetof(Triangle, z) == offsetof(BvhTriangle, z));
         const auto make_ray_tracer = native::load_embree();
         const auto start = Clock::now();
-        if (make_ray_tracer) {
-            std::vector<native::RayTracer::Triangle> copies;
-            copies.reserve(triangles.size());
-            for (const auto& [x, instance, y, triangle, z, padding] : triangles)
-                copies.push_back({{{x[0], y[0], z[0]}, {x[1], y[1], z[1]}, {x[2], y[2], z[2]}}, instance, triangle});
-            rays_.reset(make_ray_tracer(copies.data(), copies.size()));
-        } else {
+        if (make_ray_tracer)
+            rays_.reset(make_ray_tracer(reinterpret_cast<const Triangle*>(triangles.data()), triangles.size()));
+        else
             bvh_ = build_bvh(triangles);
-        }
         build_seconds_ = seconds_since(start);
     }
 
@@ -72,7 +116,8 @@ class NativeTracer : public Tracer {
 
 class NativeBackend : public AccelerationStructure {
   public:
-    explicit NativeBackend(const GpuScene& scene) : scene_(scene), tree_(scene.scene()) {
+    NativeBackend(const GpuScene& scene, std::span<const BvhTriangle> triangles)
+        : scene_(scene), tree_(triangles), triangles_(scene, triangles) {
         for (const Texture& texture : scene.scene().textures)
             textures_.push_back(
                 {texture.pixels.data(), static_cast<int>(texture.width), static_cast<int>(texture.height), false});
@@ -84,33 +129,36 @@ class NativeBackend : public AccelerationStructure {
     }
 
     std::vector<ShaderSource> shaders(const Estimator& estimator) const override {
-        ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
-        for (const auto& define : tree_.defines()) source.defines.push_back(define);
-        return {source};
+        return {shader_with(tree_.defines(), estimator)};
     }
 
     std::unique_ptr<Tracer> make_tracer(const Estimator& estimator, std::span<const Binding> bindings) const override {
-        // Reports errors in a shader as the other backends do.
-        ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
-        source.defines.insert(source.defines.end(), {"BVH_STACK_SIZE 1", "BVH_IN_STORAGE_BUFFERS"});
-        compile_shader(source);
         native::Bindings bound{};
-        std::vector<Binding> all(bindings.begin(), bindings.end());
-        all.insert(all.end(), scene_.bindings().begin(), scene_.bindings().end());
-        for (const Binding& binding : all) bound.ranges[binding.index] = {binding.host.data(), binding.host.size()};
+        bind_host(bound, bindings);
+        bind_host(bound, scene_.bindings());
         bound.ranges[BINDING_TEXTURES] = range_of(std::span<const native::Texture>(textures_));
         bound.ranges[BINDING_LIGHT_PROBE] = range_of(std::span<const native::Texture>(&probe_, 1));
         tree_.bind(bound);
-        return std::make_unique<NativeTracer>(native::load(preprocess_shader(shaders(estimator).front())), bound);
+        triangles_.bind(bound);
+        const auto checked = shader_with({"BVH_STACK_SIZE 1", "BVH_IN_STORAGE_BUFFERS"}, estimator);
+        return std::make_unique<NativeTracer>(load_shader(checked, shaders(estimator).front()), bound);
     }
 
     bool is_on_host() const override { return true; }
-    size_t bytes() const override { return tree_.bytes(); }
+    size_t bytes() const override { return tree_.bytes() + triangles_.bytes(); }
     double build_seconds() const override { return tree_.build_seconds(); }
 
   private:
+    ShaderSource shader_with(const std::vector<std::string>& defines, const Estimator& estimator) const {
+        ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
+        source.defines.insert(source.defines.end(), defines.begin(), defines.end());
+        source.defines.emplace_back("WORLD_TRIANGLES");
+        return source;
+    }
+
     const GpuScene& scene_;
     NativeTree tree_;
+    WorldTriangles triangles_;
     std::vector<native::Texture> textures_;
     std::vector<glm::vec4> probe_texels_;
     native::Texture probe_{};
@@ -119,7 +167,7 @@ class NativeBackend : public AccelerationStructure {
 }  // namespace
 
 std::unique_ptr<AccelerationStructure> build_native_backend(const GpuScene& scene) {
-    return std::make_unique<NativeBackend>(scene);
+    return std::make_unique<NativeBackend>(scene, world_triangles(scene.scene()));
 }
 
 }  // namespace lab

@@ -21,29 +21,32 @@ class PipelineTracer : public Tracer {
   public:
     PipelineTracer(const Device& device, const std::vector<ShaderSource>& shaders, const std::vector<Binding>& bindings)
         : descriptors_(device, bindings, all_stages) {
-        const auto set_layout = descriptors_.layout();
-        const vk::PushConstantRange range(all_stages, 0, sizeof(DispatchParameters));
-        layout_ = {device.handle(), vk::PipelineLayoutCreateInfo({}, set_layout, range)};
-        create_pipeline(device, shaders);
+        std::vector<std::vector<uint32_t>> compiled;
+        std::string key = descriptors_.layout_text();
+        for (const ShaderSource& source : shaders) {
+            compiled.push_back(compile_shader(source));
+            key += key_of(compiled.back());
+        }
+        pipeline_ = device.share_pipeline(key, [&] { return create_pipeline(device, compiled); });
         fill_shader_binding_table(device, static_cast<uint32_t>(shaders.size()));
     }
 
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
                 uint32_t film_offset) const override {
-        commands.bindPipeline(vk::PipelineBindPoint::eRayTracingKHR, *pipeline_);
-        commands.bindDescriptorSets(vk::PipelineBindPoint::eRayTracingKHR, *layout_, 0, descriptors_.handle(), film_offset);
-        (*commands).pushConstants(*layout_, all_stages, 0, sizeof dispatch, &dispatch, *commands.getDispatcher());
+        commands.bindPipeline(vk::PipelineBindPoint::eRayTracingKHR, *pipeline_->handle);
+        commands.bindDescriptorSets(vk::PipelineBindPoint::eRayTracingKHR, *pipeline_->layout, 0, descriptors_.handle(),
+                                    film_offset);
+        (*commands).pushConstants(*pipeline_->layout, all_stages, 0, sizeof dispatch, &dispatch, *commands.getDispatcher());
         commands.traceRaysKHR(ray_generation_records_, miss_records_, hit_records_, {},
                               block_count * dispatch.threads_per_pixel * BLOCK_SIZE, 1, 1);
     }
 
   private:
-    void create_pipeline(const Device& device, const std::vector<ShaderSource>& shaders) {
+    Pipeline create_pipeline(const Device& device, const std::vector<std::vector<uint32_t>>& shaders) const {
         std::vector<vk::raii::ShaderModule> modules;
         std::vector<vk::PipelineShaderStageCreateInfo> stages;
         std::vector<vk::RayTracingShaderGroupCreateInfoKHR> groups;
-        for (const ShaderSource& source : shaders) {
-            const auto words = compile_shader(source);
+        for (const auto& words : shaders) {
             modules.emplace_back(device.handle(), vk::ShaderModuleCreateInfo({}, words));
             const auto index = static_cast<uint32_t>(stages.size());
             const bool is_hit = index >= first_hit_group;
@@ -58,8 +61,13 @@ class PipelineTracer : public Tracer {
         }
         // Only the ray generation shader traces rays: the loop over a path needs no recursion.
         constexpr uint32_t max_recursion_depth = 1;
-        const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {}, *layout_);
-        pipeline_ = {device.handle(), nullptr, device.pipeline_cache(), info};
+        Pipeline made;
+        const auto set_layout = descriptors_.layout();
+        const vk::PushConstantRange range(all_stages, 0, sizeof(DispatchParameters));
+        made.layout = {device.handle(), vk::PipelineLayoutCreateInfo({}, set_layout, range)};
+        const vk::RayTracingPipelineCreateInfoKHR info({}, stages, groups, max_recursion_depth, {}, {}, {}, *made.layout);
+        made.handle = {device.handle(), nullptr, device.pipeline_cache(), info};
+        return made;
     }
 
     // Fills the shader binding table with the driver's handles. Sections of records must be aligned to the larger of two
@@ -69,7 +77,8 @@ class PipelineTracer : public Tracer {
         const vk::DeviceSize handle_size = properties.shaderGroupHandleSize;
         const vk::DeviceSize alignment = std::max(properties.shaderGroupBaseAlignment, properties.shaderGroupHandleAlignment);
         const vk::DeviceSize stride = align(handle_size, alignment);
-        const auto handles = pipeline_.getRayTracingShaderGroupHandlesKHR<uint8_t>(0, group_count, group_count * handle_size);
+        const auto handles =
+            pipeline_->handle.getRayTracingShaderGroupHandlesKHR<uint8_t>(0, group_count, group_count * handle_size);
         // Buffers start at arbitrary addresses, so the table is moved to the next aligned one.
         table_.emplace(device, group_count * stride + alignment,
                        vk::BufferUsageFlagBits::eShaderBindingTableKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress);
@@ -87,8 +96,7 @@ class PipelineTracer : public Tracer {
     }
 
     DescriptorSet descriptors_;
-    vk::raii::PipelineLayout layout_ = nullptr;
-    vk::raii::Pipeline pipeline_ = nullptr;
+    std::shared_ptr<const Pipeline> pipeline_;
     std::optional<Buffer> table_;
     vk::StridedDeviceAddressRegionKHR ray_generation_records_, miss_records_, hit_records_;
 };

@@ -1,6 +1,6 @@
 // Views: an estimator that shows what a camera ray hits instead of the radiance that it carries.
 
-// A colour that tells neighbouring numbers apart.
+// A pseudorandom colour for each number, so that neighbours differ.
 vec3 get_colour(uint id) {
     uvec2 seed = uvec2(id, 0u);
     vec2 u = get_random_numbers(seed);

@@ -57,6 +57,15 @@ float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
     return 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
 }
 
+#ifdef WORLD_TRIANGLES
+// The same as below, from a table that world_triangles.comp has filled.
+SurfacePoint get_surface_point(Hit hit) {
+    uint triangle = first_world_triangles[hit.instance] + hit.triangle;
+    vec3 w = get_vertex_weights(hit);
+    return SurfacePoint(world_triangles[triangle].corners * w, world_triangles[triangle].normal,
+                        dot(world_triangles[triangle].offsets, w));
+}
+#else
 // Interpolates the vertices of the hit triangle. The normal points to the front.
 SurfacePoint get_surface_point(Hit hit) {
     SurfacePoint point;
@@ -69,7 +78,7 @@ SurfacePoint get_surface_point(Hit hit) {
     vec3 edge_1 = x_1 - x_0, edge_2 = x_2 - x_0;
     vec3 normal = get_scaled_normal(edge_1, edge_2);
     point.offset = get_error_bound(magnitude, normal);
-    // A triangle so narrow that its area underflows: any normal of its longer edge will do.
+    // A triangle so narrow that its area underflows: any direction perpendicular to its longer edge will do.
     if (normal == vec3(0.0))
         normal = get_shading_space(
             normalize_scaled(max_component(edge_1) > max_component(edge_2) ? edge_1 : edge_2))[0];
@@ -88,6 +97,7 @@ SurfacePoint get_surface_point(Hit hit) {
 #endif
     return point;
 }
+#endif
 
 // Computes the shading data where a ray with this unit direction hits.
 ShadingData get_shading_data(Hit hit, vec3 ray_direction) {

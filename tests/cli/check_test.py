@@ -16,6 +16,7 @@ import project
 from check import command, diagnosis, grading
 from check.formats import as_github
 from course.mistakes import planted
+from report import batch
 
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
 TECHNIQUE = SHADER.with_name("direct_light.glsl")
@@ -27,10 +28,9 @@ ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
 """
 NO_UTF8 = [os.fsdecode(name) for name in (b"m\xfcller.glsl", b"m\xfdller.glsl")]  # as in archives from elsewhere
 FEW = (3, "--runs", 5, "--samples", 4)
-# A chapter that logs its arguments.
+# A chapter that logs its command lines.
 NOTING = """#!/bin/sh
-echo "$@" >>'{notes}'
-exec '{program}' "$@"
+tee -a '{notes}' | '{program}' "$@"
 """
 
 
@@ -41,7 +41,7 @@ class CheckTest(ProgramTest):
         super().setUp()
         self.judge = mock.Mock(side_effect=self.judge_once)
         # One render at a time, so that the others need not compile its shader as well.
-        for where, what, stand_in in ((command, "judge", self.judge), (command, "diagnose", self.diagnose_once), (grading, "JOBS", 1)):
+        for where, what, stand_in in ((command, "judge", self.judge), (command, "diagnose", self.diagnose_once), (batch, "JOBS", 1)):
             patch = mock.patch.object(where, what, stand_in)
             patch.start()
             self.addCleanup(patch.stop)
@@ -180,6 +180,11 @@ class CheckTest(ProgramTest):
         self.assertEqual([rows[row["submission"]] for row in table if row["verdict"] != "not graded"],
                          [row for row in table if row["verdict"] != "not graded"])
 
+    def test_a_folder_without_mistakes_has_no_list_of_them(self):
+        self.write("all/anna.glsl", SHADER.read_bytes())
+        code, out, err = self.check(*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
+        self.assertEqual((code, out), (0, "1 of 1: anna: correct\n"), err)
+
     def test_a_shader_may_have_a_path_of_its_own(self):
         text = SHADER.read_text(encoding="utf-8")
         own = "struct Path { Ray ray; };\nPath start_path(Ray ray) { return Path(ray); }\nvec3 path_trace("
@@ -202,7 +207,7 @@ class CheckTest(ProgramTest):
                 self.check(3, "--runs", 2 + seed, "--samples", 1, "--seed", seed, "--time-limit", 100)
             notes = (self.folder / "notes").read_text()
             (self.folder / "notes").unlink()
-            seeds.append(set(re.findall(r"--seed (\d+)", notes)))
+            seeds.append(set(re.findall(r'check_room.*"--seed" "(\d+)"', notes)))
             self.assertEqual(len(seeds[-1]), 2 + seed)
         self.assertFalse(seeds[0] & seeds[1], seeds)
 

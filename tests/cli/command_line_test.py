@@ -7,7 +7,7 @@ from program import MERGE, ProgramTest
 OPTIONS = """--width --height --samples --seed --first-sample --max-path-length --only-path-length --backend --device
     --list-devices --headless --window --output --reference --report --target-error --time-limit --view --camera-position
     --camera-target --camera-up --vertical-fov --background --specular --exposure --resume --save-every --validation
-    --quiet --help --version""".split()
+    --quiet --batch --help --version""".split()
 
 NO_NUMBERS = ["", "abc", "nan", "inf", "-inf", "1e999", "0x", "1,", "--"]
 NO_COUNTS = NO_NUMBERS + ["-1", "1.5", "99999999999999999999"]
@@ -18,6 +18,8 @@ class Information(ProgramTest):
         out = self.render("--help")
         for option in OPTIONS:
             self.assertRegex(out, rf"{option}\b")
+        for option, default in (("width", 512), ("samples", 64), ("max-path-length", 8)):
+            self.assertRegex(out, rf"--{option} ((?!--)[^;])*;\s+default:\s+the\s+scene's,\s+or\s+else\s+{default}\n")
 
     def test_version(self):
         self.assertRegex(self.render("--version"), r"\A01_uniform_sampling \d+\.\d+\S*\n\Z")
@@ -37,6 +39,11 @@ class Information(ProgramTest):
         self.assertIn("output/01_uniform_sampling.exr", out)
         written = {path.name for path in (self.folder / "output").iterdir()}
         self.assertEqual(written, {"01_uniform_sampling.png", "01_uniform_sampling.exr"})
+
+    def test_a_view_tells_a_mean_but_no_error_of_a_radiance_that_it_does_not_show(self):
+        out = self.render("quad.json", "--width", 8, "--height", 8, "--samples", 4, "--view", "normals")
+        self.assertRegex(out, r"(?m)^mean +[\d.e+-]+ [\d.e+-]+ [\d.e+-]+")
+        self.assertNotRegex(out, r"radiance|(?m:^error )")
 
     def test_zeros_in_front_of_a_number_do_not_matter(self):
         out = self.render("quad.json", "--width=008", "--height=00008", "--samples=0000000000010", "--seed=09")

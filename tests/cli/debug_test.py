@@ -20,6 +20,7 @@ SHADER = "chapters/01_uniform_sampling/path_trace.glsl"
 
 class CopiedLab(ProgramTest):
     """A copy of the lab with its own shaders and the program of chapter 1."""
+    SIZE = ("--headless", "--width=32", "--height=32", "--samples=2")
 
     def setUp(self):
         super().setUp()
@@ -54,13 +55,62 @@ class CopiedLab(ProgramTest):
         return self.execute(sys.executable, "-B", "tools", "debug", *words).stdout
 
 
+    def render(self, *arguments, backend="native", **environment):
+        return subprocess.run([self.program, *self.SIZE, f"--backend={backend}", "--output=picture.exr", *arguments], cwd=self.tree, capture_output=True, encoding="utf-8", timeout=120,
+                              env=os.environ | {"XDG_CACHE_HOME": str(self.tree / "cache")} | environment)
+
+    def compiler(self, script):
+        path = self.tree / "fake/c++"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("#!/bin/sh\n" + script, encoding="utf-8")
+        path.chmod(0o755)
+        return {"PATH": f"{path.parent}:{os.environ['PATH']}"}
+
+
+class AutomaticNativeTest(CopiedLab):
+    """--backend auto may choose native on a CPU."""
+
+    def automatic(self, chosen, **environment):
+        """Renders after a measurement that has found a backend to be the fastest."""
+        self.assertEqual(self.render(backend="auto", **environment).returncode, 0)
+        for entry in (self.tree / "cache/path_tracing_lab").glob("backend-*"):
+            checksum = 0xcbf29ce484222325
+            for byte in chosen:
+                checksum = (checksum ^ byte) * 0x100000001b3 % 2**64
+            entry.write_bytes(chosen + checksum.to_bytes(8, "little"))
+        return self.render(backend="auto", **environment)
+
+    def test_it_uses_what_is_fastest(self):
+        for name in ("native", "compute"):
+            self.assertIn(f"backend {name}\n", self.automatic(name.encode()).stdout)
+
+    def test_a_shader_that_native_cannot_run_is_rendered_all_the_same(self):
+        self.automatic(b"native")
+        process = self.render(backend="auto", **self.compiler("echo broken; exit 1\n"))
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertRegex(process.stderr, r"\Anote: [^\n]* does not compile its code: broken[^\n]* renders instead\n\Z")
+        self.assertRegex(process.stdout, "backend (compute|query|pipeline)\n")
+        self.assertIn("backend native\n", self.render(backend="auto").stdout)  # the choice is still known
+
+    def test_what_no_backend_can_run_is_one_error(self):
+        self.automatic(b"native")
+        self.shader.write_text("nothing", encoding="utf-8")
+        process = self.render(backend="auto")
+        self.assertEqual((process.returncode, process.stderr.count("note")), (1, 0), process.stderr)
+
+    def test_it_needs_permission(self):
+        self.assertRegex(self.automatic(b"native", LAB_WITHOUT_NATIVE="1").stdout, "backend (compute|query|pipeline)\n")
+
+
 class DebugTest(CopiedLab):
     def search(self, title):
         """A section of the page with its blocks: the command, gdb's input, and the output to expect."""
         section = re.search(rf"^## {title}.*?(?=^## )", PAGE, re.MULTILINE | re.DOTALL)[0]
         blocks = dict(re.findall(r"^```(\w+)\n(.*?)^```", section, re.MULTILINE | re.DOTALL))
         self.plant(section)
-        return re.search(r"^    \./lab (.*)$", section, re.MULTILINE)[1].split(), blocks
+        words = re.search(r"^    \./lab (.*)$", section, re.MULTILINE)[1].split()
+        self.assertEqual(words[1], "30", "the copy of chapter 1, for which chapter 1 stands here")
+        return [words[0], "1", *words[2:]], blocks
 
     def assert_found(self, seen, blocks):
         at = 0
@@ -79,6 +129,9 @@ class DebugTest(CopiedLab):
             process = self.execute(self.program, *words[2:])
             self.assert_found(process.stderr, blocks)
             self.assertEqual(process.returncode, 3)
+        with self.subTest("Nothing is wrong"):
+            self.plant("")
+            self.assertEqual(self.execute(self.program, *words[2:], "--quiet").stderr, "")
 
     def test_it_stops_in_the_student_s_file_with_its_variables(self):
         seen = self.debug(1, "--pixel", "20,30", "--width", 40, "--height", 40, "--sample", 3, "--", "-batch", "-ex", "info locals",
@@ -113,24 +166,11 @@ class DebugTest(CopiedLab):
 
 class NativeFailures_all(CopiedLab):
     """What can go wrong when shaders are compiled into programs."""
-    SIZE = ("--headless", "--width=32", "--height=32", "--samples=2")
-
-    def render(self, *arguments, backend="native", **environment):
-        return subprocess.run([self.program, *self.SIZE, f"--backend={backend}", "--output=picture.exr", *arguments], cwd=self.tree, capture_output=True, encoding="utf-8", timeout=120,
-                              env=os.environ | {"XDG_CACHE_HOME": str(self.tree / "cache")} | environment)
-
     def assert_error(self, process, code, *words):
         self.assertEqual(process.returncode, code, process.stderr)
         self.assertEqual(process.stderr.count("\n"), 1, process.stderr)
         for word in words:
             self.assertIn(word, process.stderr)
-
-    def compiler(self, script):
-        path = self.tree / "fake/c++"
-        path.parent.mkdir(exist_ok=True)
-        path.write_text("#!/bin/sh\n" + script, encoding="utf-8")
-        path.chmod(0o755)
-        return {"PATH": f"{path.parent}:{os.environ['PATH']}"}
 
     def test_without_a_compiler(self):
         self.assert_error(self.render(PATH=str(self.tree)), 2, "a C++ compiler", "these work on it", "compute")

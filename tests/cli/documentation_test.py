@@ -88,7 +88,7 @@ class DocumentationTest(unittest.TestCase):
     def test_links_lead_to_files_and_headings(self):
         for page in PAGES:
             for target in re.findall(r"\]\(([^)\s]+)\)", text_of(page)):
-                if "://" in target or target.startswith("../../actions/"):  # of the repository's site
+                if "://" in target or re.match(r"(\.\./)+(actions|releases)\b", target):  # of the repository's site
                     continue
                 name, _, anchor = target.partition("#")
                 path = page.parent / name if name else page
@@ -146,6 +146,19 @@ class DocumentationTest(unittest.TestCase):
         subprocess.run([sys.executable, "-B", TOOLS, "tables", "--check"], check=True)
         for page in PAGES:
             self.assertNotRegex(text_of(page), r"<!-- table: .* -->\n\s*<!-- end of table -->", page)
+
+    def test_the_page_of_scenes_has_every_key_and_keyword(self):
+        page = text_of(ROOT / "docs/scenes.md")
+        keys = {key for keys in re.findall(r'\{("\w+"(?:,\s*"\w+")+)\}', text_of(ROOT / "common/scene/scene_file.cpp")) for key in re.findall(r"\w+", keys)}
+        keywords = set(re.findall(r'"(\w+)"', re.search(r"number_keywords = .*?other_keywords = .*?;", text_of(ROOT / "common/scene/mtl_file.cpp"), re.DOTALL)[0]))
+        for heading, names in (("Keys of a scene file", keys), ("Keywords of a material", keywords)):
+            rows = re.search(rf"^## {heading}$.*?^(\|.*?)\n\n", page, re.MULTILINE | re.DOTALL)[1]
+            first = {name for row in rows.split("\n")[2:] for name in re.findall(r"`(\w+)`", row.split("|")[1])}
+            self.assertGreater(len(names), 10)
+            nested = names & {"axis", "degrees", "position", "target"}  # told beside their objects
+            self.assertEqual(first | nested & set(re.findall(r"`(\w+)`", rows)), names, heading)
+        for key, default in re.findall(r"uint32_t (\w+) = (\d+);", re.search(r"struct RenderDefaults .*?};", text_of(ROOT / "common/scene/scene.h"), re.DOTALL)[0]):
+            self.assertTrue(re.search(rf"(?m)^\| .*`{key}`.* {default} \|$", page), f"the default of {key} is {default}")
 
     def test_every_numerical_trap_has_tests_that_exist(self):
         cases = numerics.load_cases()

@@ -12,6 +12,8 @@ from program import BINARIES, PROJECT, TOOLS, ProgramTest
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
 EXERCISES = {name: json.loads((PROJECT / "chapters" / name / "exercise.json").read_text(encoding="utf-8")) for name in CHAPTERS}
+MISTAKES = {mistake["name"] for name in CHAPTERS
+            for mistake in json.loads((PROJECT / "chapters" / name / "mistakes.json").read_text(encoding="utf-8"))}
 # What other pages could reveal of chapter 3's solution, and what is for teachers only.
 QUOTATION = """
 <!-- code: chapters/03_next_event_estimation/path_trace.glsl | V: a shadow ray | * y.emission; -->
@@ -63,7 +65,11 @@ class HandoutTest(ProgramTest):
             self.assertEqual([path for path in tree.glob("chapters/*/*") if path.name in TEACHERS], [])
             for path in (path for name in ("chapters", "shaders", "tools", "docs") for path in (tree / name).rglob("*")):
                 if path.suffix in (".glsl", ".md", ".py", ".json"):
-                    self.assertNotIn(exercise["last"], path.read_text(encoding="utf-8"), path)
+                    text = path.read_text(encoding="utf-8")
+                    self.assertNotIn(exercise["last"], text, path)
+                    self.assertEqual([mistake for mistake in MISTAKES if f'"{mistake}"' in text], [], path)
+            knowledge = json.loads((tree / "chapters" / name / "knowledge.json").read_text(encoding="utf-8"))
+            self.assertEqual(next(iter(knowledge["mistakes"])), "1")
 
             pages = "".join(page.read_text(encoding="utf-8") for page in tree.rglob("*.md"))
             for later in CHAPTERS[number:]:
@@ -79,6 +85,7 @@ class HandoutTest(ProgramTest):
             self.assertGreater(len(list((tree / "docs/diagrams").glob("*.svg"))), 5)
             # From step 5 on, the page shows the solution of exercise 1 of chapter 1.
             self.assertEqual(re.findall(r"^## (\d)", steps, re.MULTILINE), list("1234" if number == 1 else "12345678"))
+            self.assertIn("\n## Reading the check\n", steps)
 
     def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
         project = self.folder / "project"

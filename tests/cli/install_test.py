@@ -3,9 +3,10 @@
 import re
 import subprocess
 import unittest
+import venv
 from pathlib import Path
 
-from program import PROJECT, ProgramTest
+from program import PROJECT, TOOLS, ProgramTest
 
 LAB = (PROJECT / "lab").read_text(encoding="utf-8")
 
@@ -49,3 +50,14 @@ class BareMachineTest(ProgramTest):
             code, _, err = self.run_program(*command, program=PROJECT / "lab", environment={"PATH": str(commands)})
             self.assertEqual(code, 1, err)
             self.assertRegex(err, r"these packages are needed[^\n]*\n +python3 +\w")
+
+
+class OtherPythonTest(ProgramTest):
+    """In a Python that has no packages, as one has that the user installed."""
+
+    def test_programs_go_on_in_the_one_with_the_packages(self):
+        venv.create(self.folder / "bare")
+        for program in ([TOOLS, "tables"], [PROJECT / "tests/mistakes/learn.py"]):
+            code, out, err = self.run_program("-B", *program, "--help", program=self.folder / "bare/bin/python")
+            self.assertEqual((code, err), (0, ""))
+            self.assertIn("usage:", out)

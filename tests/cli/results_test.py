@@ -145,8 +145,8 @@ class AgesTest(unittest.TestCase):
                 self.assertEqual(sources.changed_since(record), changed, (name, text))
                 files[name].write_text(kept)
 
-    def test_records_without_a_digest_are_older(self):
-        self.assertEqual(ages.state({}), "older: it does not say what it measured")
+    def test_the_age_of_records_without_a_digest_is_unknown(self):
+        self.assertEqual(ages.state({}), "unknown: recorded before versions were stored")
 
     def test_a_stamped_record_is_up_to_date(self):
         record = ages.stamped({"tests": {"chapter_05_russian_roulette": "passes"}})

@@ -1,4 +1,4 @@
-// The rectangular light of the benchmark's box, for the shader and for its native twin.
+// The rectangular light of the benchmark's box, for its shader and for the scene.
 const vec3 LIGHT_CORNER = vec3(-0.25f, 0.99f, -0.25f);
 const vec3 LIGHT_EDGE_1 = vec3(0.5f, 0.0f, 0.0f);
 const vec3 LIGHT_EDGE_2 = vec3(0.0f, 0.0f, 0.5f);

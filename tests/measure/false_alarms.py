@@ -13,12 +13,14 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from scipy.stats import kstest
-
 TESTS = Path(__file__).resolve().parents[1]
 sys.path += [str(TESTS), str(TESTS.parent / "tools")]
-import test_report  # noqa: E402  (found by the line above)
+import project  # noqa: E402  (found by the line above)
+
+project.ensure_packages()
+import test_report  # noqa: E402
 from project import BINARIES  # noqa: E402
+from scipy.stats import kstest  # noqa: E402
 
 PROGRAMS = ["shaders_tests", "convergence_tests", "hard_cases_tests"]
 SIGNIFICANCE = 1e-6  # per expectation, as in tests/support/expect_statistics.h

@@ -1,7 +1,8 @@
-// Paths per second of the `compute` backend, compared with a native twin of the same estimator that uses Embree.
+// Paths per second of the `compute` backend, compared with `native`, whose rays are traced by Embree if that is installed.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <vector>
 
 #include "error.h"
@@ -9,9 +10,6 @@
 #include "measure/box_scene.h"
 #include "measure/measurement.h"
 #include "rendering/renderer.h"
-#ifdef EMBREE_VERSION
-#include "measure/embree_twin.h"
-#endif
 
 namespace lab {
 namespace {
@@ -30,9 +28,29 @@ double median(Runs runs) {
     return runs[runs.size() / 2];
 }
 
-void print(const char* name, const Runs& runs, const glm::dvec3& mean) {
-    std::printf("  %-7s median %8.3f million paths/s; runs:", name, median(runs));
-    for (const double run : runs) std::printf(" %.3f", run);
+// A backend that renders the scene.
+struct Side {
+    Side(Backend which, const Device& device, const GpuScene& scene, const RenderParameters& parameters)
+        : backend(which),
+          structure(build_acceleration_structure(which, device, scene)),
+          renderer(device, *structure, {project_folder() / "tests/measure/path_trace.glsl"}, parameters) {
+        renderer.set_dispatch_seconds(1);
+    }
+    glm::dvec3 mean() const {
+        const auto mean = renderer.film().read().mean_radiance();
+        return {mean[0], mean[1], mean[2]};
+    }
+
+    Backend backend;
+    std::unique_ptr<AccelerationStructure> structure;
+    Renderer renderer;
+    Runs runs;
+};
+
+void print(const Side& side) {
+    std::printf("  %-7s median %8.3f million paths/s; runs:", to_string(side.backend).c_str(), median(side.runs));
+    for (const double run : side.runs) std::printf(" %.3f", run);
+    const auto mean = side.mean();
     std::printf("; image mean %.5f %.5f %.5f\n", mean.r, mean.g, mean.b);
 }
 
@@ -46,44 +64,26 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
     parameters.seed_key = seed_key(1);
     parameters.max_path_length = 8;
     parameters.only_path_length = -1;
-    const auto timed = [&](const auto& render) {
-        const auto start = std::chrono::steady_clock::now();
-        render();
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        return 1e-6 * options.size * options.size * options.samples / seconds;
-    };
 
     const GpuScene gpu_scene(device, scene);
-    const auto acceleration_structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-    Renderer renderer(device, *acceleration_structure, {project_folder() / "tests/measure/path_trace.glsl"}, parameters);
-    renderer.set_dispatch_seconds(1);
-#ifdef EMBREE_VERSION
-    EmbreeTwin twin(scene, parameters);
-#endif
-    Runs device_runs, twin_runs;
-    for (uint32_t run = 0; run <= options.runs; ++run) {
-        const uint32_t target = (run + 1) * options.samples;
-        device_runs.push_back(timed([&] {
-            while (renderer.advance(target)) continue;
-        }));
-#ifdef EMBREE_VERSION
-        twin_runs.push_back(timed([&] { twin.advance(target); }));
-#endif
-    }
-    device_runs.erase(device_runs.begin());
-    const auto mean = renderer.film().read().mean_radiance();
-    print("device", device_runs, {mean[0], mean[1], mean[2]});
-#ifdef EMBREE_VERSION
-    twin_runs.erase(twin_runs.begin());
-    const glm::dvec3 twin_mean = twin.mean();
-    print("twin", twin_runs, twin_mean);
-    const glm::dvec3 difference = glm::dvec3(mean[0], mean[1], mean[2]) / twin_mean - 1.0;
+    std::vector<Side> sides;
+    for (const Backend backend : {Backend::compute, Backend::native})
+        if (device.description().supports(backend)) sides.emplace_back(backend, device, gpu_scene, parameters);
+    for (uint32_t run = 0; run <= options.runs; ++run)
+        for (Side& side : sides) {
+            const auto start = std::chrono::steady_clock::now();
+            while (side.renderer.advance((run + 1) * options.samples)) continue;
+            const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            if (run > 0) side.runs.push_back(1e-6 * options.size * options.size * options.samples / seconds);
+        }
+    for (const Side& side : sides) print(side);
+    if (sides.size() < 2) return;
     Runs ratios;
-    for (size_t i = 0; i < device_runs.size(); ++i) ratios.push_back(device_runs[i] / twin_runs[i]);
+    for (size_t i = 0; i < options.runs; ++i) ratios.push_back(sides[0].runs[i] / sides[1].runs[i]);
     const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
-    std::printf("  device / twin %.3f (%.3f to %.3f); relative difference of the means %.1e %.1e %.1e\n", median(ratios), *least,
-                *most, difference.r, difference.g, difference.b);
-#endif
+    const auto difference = sides[0].mean() / sides[1].mean() - 1.0;
+    std::printf("  compute / native %.3f (%.3f to %.3f); relative difference of the means %.1e %.1e %.1e\n", median(ratios),
+                *least, *most, difference.r, difference.g, difference.b);
 }
 
 int run(const Options& options) {

@@ -18,19 +18,21 @@ import random
 import sys
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from statistics import fmean
 from threading import Lock
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
 import project  # noqa: E402  (found by the line above)
+
+project.ensure_packages()
 from check import grading  # noqa: E402
 from check.diagnosis import diagnose, observe, ratios_of, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
 from docs.ages import stamped  # noqa: E402
 from planting import catalogue, own_shader, trials  # noqa: E402
-from project import CHAPTERS, RECORDS, Parser, add_device_options, commit, number, read_json, show_progress, write_json  # noqa: E402
+from project import CHAPTERS, RECORDS, Parser, add_device_options, commit, number, read_json, write_json  # noqa: E402
+from report.batch import Batch, run_all  # noqa: E402
 from report.sources import code  # noqa: E402
 
 GOES_ON = True
@@ -71,7 +73,7 @@ def digest(*parts):
 
 
 class Workshop:
-    """Renders shaders, several at a time."""
+    """Renders shaders."""
 
     def __init__(self, options):
         self.options = options
@@ -96,7 +98,8 @@ class Workshop:
     def own_sights(self, chapter, experiment):
         """What the chapter's own shader shows in an experiment, as lists."""
         # Not one picture of more samples: the spread of its pixels would tell more of what they show and less of their noise.
-        sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, repeats=OWN_PICTURES)
+        with Batch() as batch:
+            sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, batch, repeats=OWN_PICTURES)
         return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
 
     def shown(self, bug, expected):
@@ -112,13 +115,6 @@ class Workshop:
                                        if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)},
                 "rays": {name: to_digits((v for v, _ in those), 3) for name, those in ratios["rays"].items()
                          if any(abs(v - 1) > 0.05 for v, _ in those)}}
-
-    def map(self, what, function, items):
-        """Calls a function for all items, with progress."""
-        started = time.monotonic()
-        with ThreadPoolExecutor(self.options.jobs) as pool:
-            for done, _ in enumerate(pool.map(function, items), 1):
-                show_progress(what, done, len(items), started)
 
 
 def to_digits(values, digits=4):
@@ -162,7 +158,7 @@ def unmeasured(knowledge):
     return missing + [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["mistakes"].items() if "shows" not in seen]
 
 
-def learn(workshop, chapters, is_anew):
+def learn(workshop, chapters, is_anew, jobs):
     """Completes the knowledge files."""
     knowledge, lock = planned_knowledge(chapters, {} if is_anew else read_knowledge(chapters)), Lock()
 
@@ -183,11 +179,11 @@ def learn(workshop, chapters, is_anew):
         knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] |= workshop.shown(bug, knowledge[bug.chapter]["experiments"])
         write(bug.chapter)
 
-    workshop.map("levels", learn_levels, [chapter for chapter in chapters if not knowledge[chapter]["levels"]])
-    workshop.map("experiments", learn_experiment, [(chapter, name) for chapter in chapters
-                                                   for name, seen in knowledge[chapter]["experiments"].items() if "mean" not in seen])
-    workshop.map("mistakes", learn_mistake, [bug for bug in catalogue() if bug.chapter in chapters
-                                             and "shows" not in knowledge[bug.chapter]["mistakes"][bug.mistake["name"]]])
+    run_all("levels", learn_levels, [chapter for chapter in chapters if not knowledge[chapter]["levels"]], jobs)
+    run_all("experiments", learn_experiment, [(chapter, name) for chapter in chapters
+                                              for name, seen in knowledge[chapter]["experiments"].items() if "mean" not in seen], jobs)
+    run_all("mistakes", learn_mistake, [bug for bug in catalogue() if bug.chapter in chapters
+                                        and "shows" not in knowledge[bug.chapter]["mistakes"][bug.mistake["name"]]], jobs)
     for chapter in chapters:
         write(chapter)
 
@@ -199,7 +195,7 @@ def planned_trials(chapters):
             for key, trial in trials().items() if trial.chapter in chapters}
 
 
-def confusion(workshop, chapters, is_anew):
+def confusion(workshop, chapters, is_anew, jobs):
     done = read_json(RECORD)["trials"] if RECORD.exists() and not is_anew else {}
     everything, lock = planned_trials(project.course()), Lock()
     record = {"commit": commit(), "trials": {key: trial for key, trial in done.items()
@@ -221,7 +217,7 @@ def confusion(workshop, chapters, is_anew):
 
     missing = [(key, everything[key]) for key in planned_trials(chapters) if key not in record["trials"]]
     random.Random(0).shuffle(missing)  # what an interrupted run has done is a fair sample
-    workshop.map("naming", try_naming, missing)
+    run_all("naming", try_naming, missing, jobs)
     record["trials"] = {key: record["trials"][key] for key in everything if key in record["trials"]}
     write_json(RECORD, stamped(record), DEPTH)
 
@@ -241,7 +237,7 @@ def main():
     parser.add_argument("--chapters", type=number(int, 1), nargs="+", default=project.course(), metavar="N", help="default: all")
     add_device_options(parser)
     options = parser.parse_args()
-    {"learn": learn, "confusion": confusion}[options.action](Workshop(options), options.chapters, options.anew)
+    {"learn": learn, "confusion": confusion}[options.action](Workshop(options), options.chapters, options.anew, options.jobs)
 
 
 if __name__ == "__main__":

@@ -5,22 +5,28 @@
 
 FOLDER has a folder for each submission, with a shader and submission.json. RECORD is the name of a file in docs/records/check. It
 gets the verdict, the facts and the names of each submission. Each fact is measured again with other random numbers and more samples:
-it is true if both agree. A person decides whether the facts and names point at what the wrong line means, and whether a single name is
+it is true if both agree. What has been graded with the same shaders and experiments is not graded again, unless --anew asks for it: use
+that if the check itself has changed. A person decides whether the facts and names point at what the wrong line means, and whether a single name is
 right: "points" and "name_is_right" in the record, true, false or null, which are kept as long as the answer stays the same.
 """
 import sys
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Lock
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools"))
-from check import grading  # noqa: E402  (found by the line above)
+import project  # noqa: E402  (found by the line above)
+
+project.ensure_packages()
+from check import grading  # noqa: E402
 from check.diagnosis import diagnose, known_sights, verdict_with  # noqa: E402
 from check.experiments import experiments_of, measure  # noqa: E402
 from check.facts import readings  # noqa: E402
-from project import CHAPTERS, RECORDS, Parser, UserError, add_device_options, commit, number, read_json, run_tool, show_progress, write_json  # noqa: E402
+from learn import digest, own_text  # noqa: E402
+from report.batch import Batch, run_all  # noqa: E402
+from report.sources import code  # noqa: E402
+from project import CHAPTERS, RECORDS, Parser, UserError, add_device_options, commit, number, read_json, run_tool, write_json  # noqa: E402
 
 GOES_ON = True
 SEED, PICTURES = 9001, 4  # of the second measurement, per point
@@ -36,16 +42,23 @@ def settings(options, seed):
 def untrue(chapter, file, found, those):
     """Numbers of wrong experiments that a second measurement contradicts: (experiment, point, number, second number)."""
     known, contradicted = read_json(grading.knowledge_file(chapter))["experiments"], []
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
+    with tempfile.TemporaryDirectory() as folder, Batch() as batch:
         program, _ = grading.make_tree(CHAPTERS[chapter], file, Path(folder))
         for name, seen in found["readings"].items():
             experiment = experiments_of(chapter)[name]
             if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
                 continue
-            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, pool, repeats=PICTURES), known_sights(known[name]))
+            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, batch, repeats=PICTURES), known_sights(known[name]))
             contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
                              if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
     return contradicted
+
+
+def measured(folder, seed):
+    """Digest of what the answer to a submission depends on, besides ./lab check itself."""
+    says = read_json(folder / "submission.json")
+    return digest(says, [code(file.read_text(encoding="utf-8")) for file in folder.glob("*.glsl")], seed, own_text(says["chapter"]),
+                  [repr(experiment) for experiment in experiments_of(says["chapter"]).values()])
 
 
 def grade(folder, options):
@@ -59,7 +72,7 @@ def grade(folder, options):
     verdict = verdict_with(result["verdict"], found)
     row = {"chapter": says["chapter"], "is_right": says["is_right"], "mistake": says["mistake"], "means": says["means"], "verdict": verdict,
            "facts": found["facts"], "named": [each["name"] for each in found["mistakes"]], "next": found["next"],
-           "seconds": [*seconds, found["seconds"]]}
+           "seconds": [*seconds, found["seconds"]], "measured": measured(folder, options.seed)}
     return row | ({"untrue": untrue(says["chapter"], file, found, those)} if verdict != "correct" else {"untrue": []})
 
 
@@ -69,6 +82,7 @@ def main():
     parser.add_argument("record")
     parser.add_argument("--jobs", type=number(int, 1), default=1, help="submissions that are graded at a time; default: 1")
     parser.add_argument("--seed", type=number(int, 0), default=0, help="default: 0")
+    parser.add_argument("--anew", action="store_true", help="grade everything again")
     parser.add_argument("--only", nargs="+", default=[""], metavar="TEXT", help="submissions whose names begin so")
     add_device_options(parser)
     options = parser.parse_args()
@@ -77,7 +91,7 @@ def main():
     folders = sorted(file.parent for file in options.folder.glob("*/submission.json") if file.parent.name.startswith(tuple(options.only)))
     if not folders:
         raise UserError(f"{options.folder}: has no folders with submission.json")
-    started, lock = time.monotonic(), Lock()
+    lock = Lock()
 
     def grade_one(folder):
         before, row = record["submissions"].get(folder.name, {}), grade(folder, options)
@@ -87,9 +101,8 @@ def main():
             record.update({"commit": commit(), "submissions": dict(sorted(record["submissions"].items()))})
             write_json(path, record, 3)
 
-    with ThreadPoolExecutor(options.jobs) as pool:
-        for done, _ in enumerate(pool.map(grade_one, folders), 1):
-            show_progress("submissions", done, len(folders), started)
+    done = {} if options.anew else {name: row.get("measured") for name, row in record["submissions"].items()}
+    run_all("submissions", grade_one, [folder for folder in folders if done.get(folder.name) != measured(folder, options.seed)], options.jobs)
 
 
 if __name__ == "__main__":

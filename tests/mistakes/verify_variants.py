@@ -6,11 +6,13 @@ import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 sys.path.append(str(HERE.parents[1] / "tools"))
-from check.grading import DESCRIPTIONS, SCENES, make_tree  # noqa: E402  (found by the line above)
+import project  # noqa: E402  (found by the line above)
+
+project.ensure_packages()
+import numpy as np  # noqa: E402
+from check.grading import DESCRIPTIONS, SCENES, make_tree  # noqa: E402
 from planting import own_shader, variants  # noqa: E402
 from project import CHAPTERS, Parser, number, read_json, run_program, show_progress  # noqa: E402
 from references.images import read_rgb  # noqa: E402

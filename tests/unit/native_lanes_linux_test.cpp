@@ -1,6 +1,7 @@
 // Shaders in lanes give what they give one invocation at a time: random programs of everything that may divide lanes.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <numeric>
 #include <random>
 
@@ -188,6 +189,7 @@ std::vector<uint32_t> run(const std::string& glsl, size_t program_count) {
 }
 
 void expect_equal_results(uint32_t first_seed, uint32_t count) {
+    setenv("LAB_LANES", "1", 1);
     std::vector<uint32_t> seeds(count);
     std::iota(seeds.begin(), seeds.end(), first_seed);
     const std::string glsl = shader_of(seeds);
@@ -197,13 +199,14 @@ void expect_equal_results(uint32_t first_seed, uint32_t count) {
     const std::vector<uint32_t> one_by_one = run(glsl, count);
     ASSERT_EQ(native::invocations_at_once(), 1);
     native::set_mode(native::Mode::fast);
+    unsetenv("LAB_LANES");
     for (size_t i = 0; i < in_lanes.size(); ++i)
         ASSERT_EQ(in_lanes[i], one_by_one[i]) << "invocation " << i % (invocations * group_count) << " of\n"
                                               << shader_of({seeds[i / (invocations * group_count)]});
 }
 
 TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) {
-    for (uint32_t i = 0; i < 4; ++i) expect_equal_results(50 * i, 50);
+    expect_equal_results(0, 50);
 }
 TEST(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) {
     for (uint32_t i = 0; i < 200; ++i) expect_equal_results(1000 + 50 * i, 50);

@@ -6,13 +6,13 @@ knowledge.json in the chapter's folder records what its own shader shows in each
 import math
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from check.experiments import JOBS, Sight, experiments_of, pictures, together, write_scene
+from check.experiments import Sight, experiments_of, pictures, together, write_scene
 from check.facts import Fact, common_value, constant, fact, number, readings
 from check.grading import DESCRIPTIONS, knowledge_file, make_tree
 from project import CHAPTERS, ROOT, UserError, read_json
+from report.batch import Batch
 
 # Another student's shader has the same mistake but not quite the same numbers: relative tolerance, and its minimum.
 LOOSENESS, LEAST = 0.03, 0.01
@@ -46,30 +46,49 @@ def is_deciding(experiment, _):
     return experiment.decides
 
 
-def look_at(program, points, settings, seed, pool, repeats, expected):
+def look_at(program, points, settings, seed, batch, repeats, expected):
     """What a program shows at each of these points: a list of Sight. Only a point whose first picture looks wrong is rendered again."""
-    seen = pictures(program, points, settings, seed, pool)
+    seen = pictures(program, points, settings, seed, batch)
     if repeats > 1:
         wrong = [index for index, reading in enumerate(readings(points, map(together, seen), expected)) if not reading.is_right]
-        more = pictures(program, [points[index] for index in wrong], settings, seed + len(points), pool, repeats=repeats - 1)
+        more = pictures(program, [points[index] for index in wrong], settings, seed + len(points), batch, repeats=repeats - 1)
         for index, sights in zip(wrong, more):
             seen[index] += sights
     return [together(sights) for sights in seen]
 
 
+def from_both_ends(items):
+    """First, last, second, last but one and so on. Neighbouring experiments have the same shaders: two programs that begin one at the
+    same time would both compile them."""
+    count = len(items)
+    return [items[i // 2 if i % 2 == 0 else count - 1 - i // 2] for i in range(count)]
+
+
 def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIRST_SEED):
     """Name -> Fact and name -> list of Sight, for the experiments of a chapter."""
     facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
-    with ThreadPoolExecutor(JOBS) as pool:
-        for name, experiment in experiments_of(chapter).items():
-            if name not in expected or not chosen(experiment, facts):
-                continue
-            try:
-                sights[name] = look_at(program, experiment.points, settings, seed, pool, repeats_of(chapter), known_sights(expected[name]))
-                facts[name] = fact(experiment, sights[name], known_sights(expected[name]))
-            except UserError as error:  # for example an endless loop that only this scene triggers
-                facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {error}")
-    return facts, sights
+    experiments = experiments_of(chapter)
+    waiting = [name for name in experiments if name in expected]
+
+    def look(name):
+        try:
+            return look_at(program, experiments[name].points, settings, seed, batch, repeats_of(chapter), known_sights(expected[name]))
+        except UserError as error:  # for example an endless loop that only this scene triggers
+            return error
+
+    with Batch() as batch:
+        while waiting:  # at the same time those whose conditions are known
+            ready = [name for name in waiting if not set(experiments[name].when) & set(waiting)]
+            names = from_both_ends([name for name in ready if chosen(experiments[name], facts)])
+            waiting = [name for name in waiting if name not in ready]
+            for name, found in zip(names, list(batch.map(look, names))):
+                experiment = experiments[name]
+                if isinstance(found, UserError):
+                    facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {found}")
+                else:
+                    sights[name] = found
+                    facts[name] = fact(experiment, found, known_sights(expected[name]))
+    return tuple({name: those[name] for name in experiments if name in those} for those in (facts, sights))
 
 
 # ---------------------------------------------------------------------------------------------- names
@@ -152,14 +171,15 @@ def right_ones(facts):
 
 
 def noise_sentences(facts, sights, expected):
-    """Where a shader is noisier or traces more rays than the chapter's own."""
+    """Where a shader is noisier than the chapter's own, or traces more rays, or fewer: then its paths end elsewhere."""
     told = []
-    for kind, words in (("noise", "the variance of"), ("rays", "the rays of")):
+    for kind, words, is_much in (("noise", "noisier than the chapter's own shader: so many times its variance", lambda value, error: value - 1 > 4 * error + 0.2),
+                                 ("rays", "so many times the rays of the chapter's own shader", lambda value, error: abs(value - 1) > 4 * error + 0.05)):
         for name, seen in ratios_of(sights, expected)[kind].items():
             experiment = facts[name].experiment
-            much = [f"{point.at} {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if value - 1 > 4 * error + 0.2]
+            much = [f"{point.at}: {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if is_much(value, error)]
             if much:
-                told.append(f"{experiment.subject}: so many times {words} the chapter's own shader: {', '.join(much)}")
+                told.append(f"{experiment.subject}: {words}; {', '.join(much)}")
     return told
 
 

@@ -20,7 +20,6 @@ OF_THE_SCENE = ("specular", "multiple_scattering")  # keys of a scene file that 
 SIZE = 32  # pixels per row and per column
 CAMERA = {"from": [0.0, 1.2, 1.2], "to": [0.0, 0.0, 0.0], "fov": 3.0}
 BLOCKS = 16  # of pixels: their spread gives the error of a variance
-JOBS = 2
 
 
 @dataclass
@@ -202,21 +201,22 @@ def together(sights):
                  mean("rays"), mean("typical"), sum(sight.invalid for sight in sights))
 
 
-def pictures(program, points, settings, seed=1, pool=None, repeats=1):
-    """What a program shows at each of these points in each of `repeats` pictures: a list of Sight for each point."""
+def pictures(program, points, settings, seed, batch, repeats=1):
+    """What a program shows at each of these points in each of `repeats` pictures, one after another: a list of Sight for each
+    point."""
+    sights = []
     with tempfile.TemporaryDirectory() as folder:
-        files = [write_scene(point.scene, Path(folder), f"point_{index}") for index, point in enumerate(points)]
-
-        def render(item):
-            index, turn = item
-            case = new_case(files[index], None, points[index].at, program, points[index].options.split()) | {"width": SIZE, "height": SIZE}
-            picture, samples = Path(folder) / f"{index}_{turn}.exr", points[index].samples
-            report = run_case(case, settings, ["--samples", samples, "--seed", seed + index * repeats + turn, "--output", picture])
-            return look(read_rgb(picture), report, samples, points[index].channel)
-
-        work = [(index, turn) for index in range(len(points)) for turn in range(repeats)]
-        sights = list(pool.map(render, work)) if pool else [render(item) for item in work]
-        return [sights[i:i + repeats] for i in range(0, len(sights), repeats)]
+        picture = Path(folder) / "picture.exr"
+        for index, point in enumerate(points):
+            scene = write_scene(point.scene, Path(folder), f"point_{index}")
+            case = new_case(scene, None, point.at, program, point.options.split()) | {"width": SIZE, "height": SIZE}
+            seen = []
+            for turn in range(repeats):
+                report = run_case(case, settings, ["--samples", point.samples, "--seed", seed + index * repeats + turn, "--output", picture],
+                                  batch.run)
+                seen.append(look(read_rgb(picture), report, point.samples, point.channel))
+            sights.append(seen)
+    return sights
 
 
 def measure(*those, **others):

@@ -153,16 +153,16 @@ def sentence(experiment, those):
                 words.append(f"wrong by a factor {'of' if 'per' in experiment.quantity else 'that follows'} {phrase}{times}")
             words.append(", ".join(map(in_words, wrong)).replace(" times", " times as bright as it should be", 1))
             right = [reading.at for reading in lit if reading.is_surely_right]
-            words += [f"right {', '.join(right)}"] if right else []
-    words += [f"light where none should be: {reading.at} {number(reading.value, reading.error)} times that of the brightest place"
+            words += [f"right: {', '.join(right)}"] if right else []
+    words += [f"light where none should be: {reading.at}: {number(reading.value, reading.error)} times that of the brightest place"
               for reading in leaks]
     return f"{subject}: {'; '.join(words or ['what is counted of it is right'])}"
 
 
 def in_words(reading):
     if reading.value == 0:
-        return f"{reading.at} nothing"
-    return f"{reading.at} {number(reading.value, reading.error)} times{constant(reading.value, reading.error)}"
+        return f"{reading.at}: nothing"
+    return f"{reading.at}: {number(reading.value, reading.error)} times{constant(reading.value, reading.error)}"
 
 
 def fact(experiment, sights, expected):

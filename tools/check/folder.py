@@ -102,6 +102,7 @@ def grade_all(options, check):
             writer.writeheader()
             writer.writerows({key: in_a_table(value) for key, value in row.items()} for row in rows)
         write_page(options, rows, folder / "index.html")
-    print("\n".join(["what is wrong most often", *common_facts(options.chapter, rows)]))
+    if common := common_facts(options.chapter, rows):
+        print("\n".join(["what is wrong most often", *common]))
     print(f"{folder / 'results.csv'}\n{folder / 'index.html'}", file=sys.stderr)
     return UNGRADED if any(row["verdict"] == "not graded" for row in rows) else 0

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from course.pages import clean_pages
 from package.make import pack
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress, write_json
 
 HERE = Path(__file__).parent
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
@@ -59,6 +59,10 @@ def write_handout(chapter, folder):
         shutil.copy(ROOT / name, folder / name)
     for path in [path for pattern in TEACHERS for path in folder.glob(pattern)]:
         shutil.rmtree(path) if path.is_dir() else path.unlink()
+    for file in folder.glob("chapters/*/knowledge.json"):  # the names of mistakes give them away
+        knowledge = read_json(file)
+        numbered = {str(i): seen for i, seen in enumerate(knowledge["mistakes"].values(), 1)}
+        write_json(file, knowledge | {"mistakes": numbered}, 2)
     exercise = read_json(exercise_file(chapter))
     shader = folder / "chapters" / CHAPTERS[chapter] / exercise["file"]
     text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)

@@ -31,10 +31,11 @@ def source_of(target):
 
 
 def end_before_secrets(text, secret):
-    """The sections of a page before the first one whose code contains a secret."""
+    """A page without the numbered sections from the first one on whose code contains a secret."""
     sections = re.split(r"^(?=## )", text, flags=re.MULTILINE)
     kept = list(takewhile(lambda section: secret.isdisjoint(map(str.strip, section.splitlines())), sections))
-    return text if len(kept) == len(sections) else "".join(kept) + "The next steps are your exercise.\n"
+    others = [section for section in sections[len(kept):] if not re.match(r"## \d", section)]
+    return text if len(kept) == len(sections) else "".join([*kept, "The next steps are your exercise.\n\n", *others])
 
 
 def leave_out_commands(text, missing):

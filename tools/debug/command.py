@@ -2,10 +2,10 @@
 
     ./lab debug 3 --pixel 200,300                   gdb, or lldb if there is no gdb
     ./lab debug 3 torus --pixel 20,30 --sample 5    all other options are the chapter's
-    ./lab debug 3 --pixel 200,300 -- -batch -ex 'info locals'    passes what follows -- to the debugger
+    ./lab debug 1 -- -batch -ex 'break 29' -ex continue -ex 'info locals'    passes what follows -- to the debugger
     ./lab debug --vscode                            writes .vscode/launch.json and .vscode/tasks.json, to press F5 there
 
-docs/debugging.md shows what you can do there.
+docs/debugging.md, which handouts leave out, shows what you can do there.
 """
 import json
 import os

@@ -23,7 +23,7 @@ def state(record):
     """In words, whether the sources are still those that were measured."""
     changed = changed_since(record)
     if changed is None:
-        return "older: it does not say what it measured"
+        return "unknown: recorded before versions were stored"
     return f"older: {', '.join(changed)} changed since" if changed else "up to date"
 
 

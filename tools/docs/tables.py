@@ -110,7 +110,7 @@ def expected_table():
         best = max(rates, key=lambda name: rates[name]["paths_per_second"])
         paths = rates[best]["paths_per_second"]
         text += (f"{record['device']}, `{best}`: {paths / 1e6:.0f} million paths per second in a Cornell box by next event estimation with Russian roulette. "
-                 f"So many samples take {1e3 * pixels * samples / paths:.2g} ms.\n\n")
+                 f"The picture above takes {1e3 * pixels * samples / paths:.2g} ms.\n\n")
     return text
 
 

@@ -1,5 +1,5 @@
-"""Shows the lesson of chapter N: how its path_trace.glsl differs from the previous chapter's, and the other shaders that its
-folder adds, in full. Counts what is new.
+"""Shows the lesson of chapter N: how its path_trace.glsl differs from that of the previous chapter, and the other shaders that its
+folder adds, in full. Counts what is new. A copy of a chapter is compared with this chapter, as long as it has the same title.
 """
 import os
 import re
@@ -8,10 +8,11 @@ import sys
 from collections import Counter
 from difflib import SequenceMatcher
 
-from project import CHAPTERS, ROOT, Parser
+from project import CHAPTERS, ROOT, Parser, original
 
 CONTEXT = 3  # unchanged lines around a change
-BEFORE = dict(zip(list(CHAPTERS)[1:], CHAPTERS))  # number of a chapter: that of the previous one
+# Number of a chapter: that of the one to compare it with.
+BEFORE = {number: previous if original(number) == number else original(number) for previous, number in zip(CHAPTERS, list(CHAPTERS)[1:])}
 STYLES = {"-": "\033[31m", "+": "\033[32m", "@": "\033[36m", " ": ""}  # ANSI: red, green, cyan
 STRONG, RESET = "\033[7m", "\033[0m"
 INCLUDE = re.compile(r'#include "(?:\.\./)?([\w/]+\.glsl)"')

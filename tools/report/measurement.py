@@ -87,17 +87,22 @@ def working_variants():
     return works
 
 
-def run_case(case, settings, arguments):
-    """The report of one run, with the seconds of the whole command, minus those of a peer's discarded renders."""
+def run_once(program, arguments, timeout):
+    return run_program([*program, *arguments], timeout=timeout)
+
+
+def run_case(case, settings, arguments, run=run_once):
+    """The report of one run, with the seconds of the whole command, minus those of a peer's discarded renders. `run` is Batch.run
+    or alike."""
     with tempfile.TemporaryDirectory() as folder:
         limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
-        command = [*peer_command(case["program"])] if case["is_peer"] else [*limited, program_file(case["program"]), "--quiet"]
-        command += [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
+        program = peer_command(case["program"]) if case["is_peer"] else [*limited, program_file(case["program"])]
+        command = [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
         if case["reference_file"]:
             command += ["--max-path-length", case["max_path_length"]]
             command += ["--reference", ROOT / case["reference_file"]] if case["scale"] == 1 else []
         if not case["is_peer"]:
-            command += ["--backend", case["backend"] or settings["backend"]]
+            command += ["--quiet", "--backend", case["backend"] or settings["backend"]]
             command += ["--device", settings["device"]] if settings["device"] else []
         if "--output" not in arguments:
             arguments = [*arguments, "--output", Path(folder) / "picture.exr"]
@@ -105,7 +110,7 @@ def run_case(case, settings, arguments):
         started = time.perf_counter()
         limit = settings.get("time_limit")
         try:
-            process = run_program(command, timeout=limit)
+            process = run(program, command, limit)
         except subprocess.TimeoutExpired:
             raise UserError(f"{case['scene']}, {case['case']}: ended after {limit:g} s: does each loop of the shader end, and each path? "
                             "On a slow machine allow more by --time-limit") from None
