@@ -202,8 +202,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         return text;
     }
     std::string body(int depth = 0) {  // of a loop
-        return "{ if (bindings.must_stop()) [[unlikely]] throw Stopped(); " +
-               inner_statement(depth) + " }";
+        return "{ if (bindings.must_stop()) [[unlikely]] throw Stopped(); " + inner_statement(depth) + " }";
     }
     Expression simple() { return is_declaration() ? Expression{declaration(false)} : expression(); }
     Expression parenthesised() {

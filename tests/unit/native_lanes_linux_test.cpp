@@ -205,9 +205,7 @@ void expect_equal_results(uint32_t first_seed, uint32_t count) {
                                               << shader_of({seeds[i / (invocations * group_count)]});
 }
 
-TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) {
-    expect_equal_results(0, 50);
-}
+TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 50); }
 TEST(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) {
     for (uint32_t i = 0; i < 200; ++i) expect_equal_results(1000 + 50 * i, 50);
 }
