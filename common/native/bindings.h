@@ -18,6 +18,21 @@ struct RayHit {
     float distance;
 };
 
+// How many invocations run at once where lanes run a shader.
+inline constexpr int lane_count = 8;
+
+// A ray for each lane. The first numbers are those of Embree's RTCRayHit8.
+struct alignas(64) RayPacket {
+    float origin[3][lane_count], t_min[lane_count], direction[3][lane_count], time[lane_count];
+    float t_max[lane_count];  // then the distance of the hit
+    uint32_t mask[lane_count], id[lane_count], flags[lane_count];
+    float normal[3][lane_count], barycentrics[2][lane_count];
+    uint32_t primitive[lane_count], geometry[lane_count], unused[4][lane_count];
+    uint32_t instance[lane_count], triangle[lane_count];
+    int32_t is_active[lane_count];  // 0 or -1; then whether it hits something
+    bool is_coherent;               // whether all start at one point
+};
+
 // Rays by Embree: embree.h, which is compiled like a shader.
 class RayTracer {
   public:
@@ -30,6 +45,9 @@ class RayTracer {
     virtual ~RayTracer() = default;
     // The closest hit nearer than t_max, or with a null `hit` whether there is any.
     virtual bool trace(const float* origin, const float* direction, float t_max, RayHit* hit) const = 0;
+    // The same for rays that lanes trace together.
+    virtual void find_closest_hits(RayPacket& packet) const = 0;
+    virtual void find_any_hits(RayPacket& packet) const = 0;
     virtual size_t bytes() const = 0;
 };
 using MakeRayTracer = RayTracer* (*)(const RayTracer::Triangle* triangles, size_t count);
@@ -52,5 +70,11 @@ struct Bindings {
 enum class Outcome { finished, stopped, failed };
 // Runs a workgroup. On an error, writes one line of text to `error`.
 using RunGroup = Outcome (*)(const Bindings& bindings, uint32_t group, char* error, size_t error_size);
+
+// What ends a shader early: an interrupt, or what a checked shader finds.
+struct Stopped {};
+struct Failed {
+    char text[512];
+};
 
 }  // namespace lab::native

@@ -71,22 +71,66 @@ class EmbreeTracer final : public RayTracer {
         *hit = {place.instance, place.triangle, {query.hit.u, query.hit.v}, query.ray.tfar};
         return true;
     }
+    void find_closest_hits(RayPacket& packet) const override {
+        static_assert(sizeof(RTCRayHit8) <= offsetof(RayPacket, instance));
+        static_assert(offsetof(RTCRayHit8, hit.primID) == offsetof(RayPacket, primitive));
+        std::fill_n(packet.geometry, lane_count, RTC_INVALID_GEOMETRY_ID);
+        intersect(packet.is_active, *reinterpret_cast<RTCRayHit8*>(&packet), packet.is_coherent);
+        for (int i = 0; i < lane_count; ++i) {
+            packet.is_active[i] &= packet.geometry[i] == RTC_INVALID_GEOMETRY_ID ? 0 : -1;
+            if (!packet.is_active[i]) continue;
+            const Place& place = places_[packet.primitive[i]];
+            packet.instance[i] = place.instance;
+            packet.triangle[i] = place.triangle;
+        }
+    }
+    void find_any_hits(RayPacket& packet) const override {
+        occluded(packet.is_active, *reinterpret_cast<RTCRay8*>(&packet), packet.is_coherent);
+        for (int i = 0; i < lane_count; ++i) packet.is_active[i] &= packet.t_max[i] < 0 ? -1 : 0;
+    }
     size_t bytes() const override { return bytes_ + places_.size() * sizeof(Place); }
 
   private:
 #if RTC_VERSION_MAJOR >= 4
     void occluded(RTCRay& ray) const { rtcOccluded1(scene_.get(), &ray); }
     void intersect(RTCRayHit& query) const { rtcIntersect1(scene_.get(), &query); }
+    static RTCRayQueryFlags flags(bool is_coherent) {
+        return is_coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+    }
+    void occluded(const int* valid, RTCRay8& rays, bool is_coherent) const {
+        RTCOccludedArguments arguments;
+        rtcInitOccludedArguments(&arguments);
+        arguments.flags = flags(is_coherent);
+        rtcOccluded8(valid, scene_.get(), &rays, &arguments);
+    }
+    void intersect(const int* valid, RTCRayHit8& query, bool is_coherent) const {
+        RTCIntersectArguments arguments;
+        rtcInitIntersectArguments(&arguments);
+        arguments.flags = flags(is_coherent);
+        rtcIntersect8(valid, scene_.get(), &query, &arguments);
+    }
 #else
+    struct Context : RTCIntersectContext {
+        explicit Context(bool is_coherent = false) {
+            rtcInitIntersectContext(this);
+            if (is_coherent) flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        }
+    };
     void occluded(RTCRay& ray) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        Context context;
         rtcOccluded1(scene_.get(), &context, &ray);
     }
     void intersect(RTCRayHit& query) const {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
+        Context context;
         rtcIntersect1(scene_.get(), &context, &query);
+    }
+    void occluded(const int* valid, RTCRay8& rays, bool is_coherent) const {
+        Context context(is_coherent);
+        rtcOccluded8(valid, scene_.get(), &context, &rays);
+    }
+    void intersect(const int* valid, RTCRayHit8& query, bool is_coherent) const {
+        Context context(is_coherent);
+        rtcIntersect8(valid, scene_.get(), &context, &query);
     }
 #endif
 

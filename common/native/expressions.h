@@ -2,35 +2,13 @@
 #pragma once
 #include <map>
 
-#include "native/tokens.h"
+#include "native/variance.h"
 
 namespace lab::native {
 
-struct Expression {
-    std::string text;
-    std::string root = {};                  // the variable that it is a part of
-    std::string target = {}, indices = {};  // of a swizzle, which `text` reads
-    Names reads = {}, writes = {};          // variables; it writes those that it passes as `out` arguments
-
-    void add(const Expression& part) {
-        text += part.text;
-        reads.insert(part.reads.begin(), part.reads.end());
-        writes.insert(part.writes.begin(), part.writes.end());
-    }
-    std::string assignable() const { return indices.empty() ? text : " swizzled<" + indices + ">(" + target + ")"; }
-};
-
-inline bool overlap(const Names& a, const Names& b) {
-    return std::any_of(a.begin(), a.end(), [&](const auto& name) { return b.contains(name); });
-}
-// Whether the order of evaluation matters: C++ leaves it open.
-inline bool depend(const Expression& a, const Expression& b) {
-    return overlap(a.writes, b.reads) || overlap(b.writes, a.reads) || overlap(a.writes, b.writes);
-}
-
-class ExpressionReader : protected TokenReader {
+class ExpressionReader : protected TokenReader, protected Variance {
   protected:
-    using TokenReader::TokenReader;
+    ExpressionReader(const std::string& glsl, Variance variance) : TokenReader(glsl), Variance(std::move(variance)) {}
 
     bool is_type(const std::string& token) const {
         return scalar_types.contains(token) || is_vector_type(token) || structs_.contains(token);
@@ -63,22 +41,64 @@ class ExpressionReader : protected TokenReader {
     Expression assignment() {
         Expression left = conditional();
         static const Names operators{"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="};
-        if (!operators.contains(peek())) return left;
-        left.text = left.assignable();
-        left.writes.insert(left.root);
-        left.text += take();
-        left.add(assignment());
-        left.target = left.indices = "";
-        return left;
+        const std::string symbol = peek();
+        if (!operators.contains(symbol)) return left;
+        const std::string token = take();
+        const Expression right = assignment();
+        return assign(left, token, symbol, right);
+    }
+    // `target` op= `value` becomes `target` = `target` op `value` where lanes differ.
+    Expression assign(const Expression& target, const std::string& token, const std::string& symbol, const Expression& value) {
+        Expression all = target;
+        const Change change = note_change(target, value.is_varying);
+        all.add(value);
+        all.writes.insert(target.root);
+        all.text = target.assignable() + token + value.text;
+        if (change != Change::uniform) {
+            std::string changed = value.text;
+            if (symbol != "=") changed = target.text + " " + symbol.substr(0, symbol.size() - 1) + " (" + value.text + ")";
+            all.text = change == Change::of_all_lanes ? target.assignable() + " = " + changed
+                                                      : " lanes::assign(active__, " + target.assignable() + ", " + changed + ")";
+            all.is_varying = all.is_masked = true;
+        }
+        all.target = all.indices = all.place = "";
+        return all;
+    }
+    // A part of an expression that is not evaluated in all lanes that come to the whole.
+    template <typename F>
+    Expression inside(bool is_branch, F read) {
+        depth_ += is_branch ? 1 : 0;
+        Expression part = read();
+        depth_ -= is_branch ? 1 : 0;
+        return part;
+    }
+    static void load(Expression& memory) {
+        memory.text = " lanes::load(active__, " + memory.place + ")";
+        memory.is_varying = memory.is_masked = true;
+    }
+    static std::string lazy(const Expression& part) {
+        return "[&](lanes::Mask active__) __attribute__((always_inline)) { return " + part.text + "; }";
     }
     Expression conditional() {
         Expression all = binary(0);
         if (peek() != "?") return all;
-        all.text += take();
-        all.add(expression());
-        all.text += expect(":");
-        all.add(assignment());
-        all.root = all.indices = "";
+        const std::string question = take();
+        const bool is_branch = all.is_varying;
+        const Expression first = inside(is_branch, [&] { return expression(); });
+        const std::string colon = expect(":");
+        const Expression second = inside(is_branch, [&] { return assignment(); });
+        const std::string condition = all.text;
+        all.add(first);
+        all.add(second);
+        all.text = condition + question + first.text + colon + second.text;
+        if (is_branch && (first.is_masked || second.is_masked))
+            all.text = " lanes::select_lazily(active__, " + condition + ", " + lazy(first) + ", " + lazy(second) + ")";
+        else if (is_branch)
+            all.text = " lanes::select(" + condition + ", " + first.text + ", " + second.text + ")";
+        else if (all.is_varying)
+            all.text = "(" + condition + question + "lanes::varying(" + first.text + ")" + colon + "lanes::varying(" +
+                       second.text + "))";
+        all.root = all.indices = all.place = "";
         return all;
     }
     Expression binary(int lowest) {
@@ -88,53 +108,90 @@ class ExpressionReader : protected TokenReader {
         Expression left = unary();
         for (auto found = strengths.find(peek()); found != strengths.end() && found->second > lowest;
              found = strengths.find(peek())) {
-            const std::string symbol = found->first, token = take();
-            Expression right = binary(found->second);
-            left.root = left.indices = "";
+            const std::string symbol = found->first, token = take(), first = left.text;
             const bool is_lazy = symbol == "||" || symbol == "&&";
-            if (symbol == "^^") {
-                left.text = "(bool(" + left.text + ") != bool(";
-                right.text += "))";
-            } else if (!is_lazy && depend(left, right)) {
-                left.text = " Ordered{" + left.text + ", ";
-                right.text += "}.pass_to([&](auto... x) { return (x " + symbol + " ...); })";
-            } else {
-                left.text += token;
-            }
+            Expression right = inside(is_lazy && left.is_varying, [&] { return binary(found->second); });
+            left.root = left.indices = left.place = "";
+            const bool is_ordered = !is_lazy && depend(left, right);
             left.add(right);
+            if (symbol == "^^" && left.is_varying)
+                left.text = " (lanes::Mask(" + first + ") ^ lanes::Mask(" + right.text + "))";
+            else if (symbol == "^^")
+                left.text = "(bool(" + first + ") != bool(" + right.text + "))";
+            else if (is_lazy && left.is_varying && right.is_masked)
+                left.text = " lanes::" + std::string(symbol == "||" ? "or" : "and") + "_lazily(active__, " + first + ", " +
+                            lazy(right) + ")";
+            else if (is_lazy && left.is_varying)
+                left.text = " (lanes::Mask(" + first + ") " + symbol[0] + " lanes::Mask(" + right.text + "))";
+            else if (is_ordered)
+                left.text =
+                    " Ordered{" + first + ", " + right.text + "}.pass_to([&](auto... x) { return (x " + symbol + " ...); })";
+            else
+                left.text = first + token + right.text;
         }
         return left;
     }
     Expression unary() {
         static const Names operators{"+", "-", "!", "~", "++", "--"};
-        if (!operators.contains(peek())) return postfix();
-        const bool assigns = peek().size() == 2;
-        Expression operand{take()}, inner = unary();
-        if (assigns) {
-            inner.text = inner.assignable();
+        const std::string symbol = peek();
+        if (!operators.contains(symbol)) return postfix();
+        const std::string token = take();
+        const Expression inner = unary();
+        if (symbol.size() == 2 && note_change(inner, false) != Change::uniform)
+            return assign(inner, token, symbol.substr(1) + "=", {"1"});
+        Expression operand = {token};
+        operand.add(inner);
+        if (symbol.size() == 2) {
+            operand.text = token + inner.assignable();
             operand.writes.insert(inner.root);
         }
-        operand.add(inner);
         return operand;
     }
     Expression postfix() {
         Expression all = primary();
         for (;;) {
             if (peek() == "[") {
-                all.text += take();
+                const std::string open = take(), array = all.text;
+                const Expression index = expression();
+                const std::string close = expect("]");
+                const bool is_array_varying = all.is_varying;
+                all.add(index);
                 all.indices = "";
-                all.add(expression());
-                all.text += expect("]");
+                all.text = array + open + index.text + close;
+                if (!all.place.empty() || (index.is_varying && !is_array_varying)) {
+                    all.place = " lanes::at(" + (all.place.empty() ? array : all.place) + ", " + index.text + ")";
+                    load(all);
+                } else if (index.is_varying) {
+                    all.text = " lanes::pick(" + array + ", " + index.text + ")";
+                    all.is_picked = true;
+                }
             } else if (peek() == "++" || peek() == "--") {
-                all.text = all.assignable() + take();
-                all.writes.insert(all.root);
+                const std::string symbol = peek();
+                if (note_change(all, false) != Change::uniform) {
+                    const std::string before = all.text;
+                    const Expression changed = assign(all, skip(), symbol.substr(1) + "=", {"1"});
+                    all = changed;
+                    all.text = " lanes::before(" + before + ", [&] { " + changed.text + "; })";
+                } else {
+                    all.text = all.assignable() + take();
+                    all.writes.insert(all.root);
+                }
             } else if (peek() == ".") {
                 const std::string dot = take(), indices = swizzle_indices(peek());
                 if (indices.empty() || fields_.contains(peek())) {
-                    all.text += dot + take();
+                    const std::string name = take();
+                    all.text += dot + name;
                     all.indices = "";
-                    if (peek() == "(") all.text += join({take(), expect(")")});  // length()
+                    if (peek() == "(") {  // length()
+                        if (!all.place.empty()) refuse();
+                        all.text += join({take(), expect(")")});
+                        all.is_varying = false;
+                    } else if (!all.place.empty()) {
+                        all.place = " lanes::field(" + all.place + ", [](auto& x) -> auto& { return x." + name + "; })";
+                        load(all);
+                    }
                 } else {
+                    if (!all.place.empty()) all.is_picked = true;
                     all.target = all.text;
                     all.indices = indices;
                     skip();
@@ -157,30 +214,35 @@ class ExpressionReader : protected TokenReader {
             const std::string type = take();
             auto sizes = dimensions();
             sizes.erase(sizes.begin());
-            return call("make_array<" + array_type(type, sizes) + ">", {});
+            return call("make_array<" + array_type(type, sizes) + ">", word, Call::constructor);
         }
-        if (is_type(word)) return call(scalar_types.contains(word) ? skip() + "scalar<" + word + ">" : take(), {});
+        if (is_type(word))
+            return call(scalar_types.contains(word) ? skip() + "scalar<" + word + ">" : take(), word, Call::constructor);
         if (is_name(word) && peek(1) == "(") {
             const auto found = functions_.find(word);
             std::string name = take();
             if (declared_.contains(word)) name.insert(name.size() - word.size(), "this->");
-            return call(name, found == functions_.end() ? outs_of_builtin(word) : found->second);
+            if (found == functions_.end()) return call(name, word, Call::builtin, outs_of_builtin(word));
+            return call(name, word, Call::function, found->second);
         }
         Expression all{take()};
         if (is_name(word)) {
             all.root = word;
             all.reads.insert(word);
+            all.is_varying = varies(word);
         }
         return all;
     }
-    static std::vector<std::vector<bool>> outs_of_builtin(const std::string& name) {
-        if (name == "umulExtended" || name == "imulExtended") return {{false, false, true, true}};
-        if (name == "uaddCarry" || name == "usubBorrow") return {{false, false, true}};
-        if (name == "modf" || name == "frexp") return {{false, true}};
+    static std::vector<Parameters> outs_of_builtin(const std::string& name) {
+        if (name == "umulExtended" || name == "imulExtended") return {{{false}, {false}, {true}, {true}}};
+        if (name == "uaddCarry" || name == "usubBorrow") return {{{false}, {false}, {true}}};
+        if (name == "modf" || name == "frexp") return {{{false}, {true}}};
+        if (name == "native_closest_hit") return {{{false}, {false}, {false}, {true}, {true}, {true}, {true}}};
         return {};
     }
-    // The arguments of a call. `overloads` tell which ones are `out`.
-    Expression call(const std::string& name, const std::vector<std::vector<bool>>& overloads) {
+    // The arguments of a call.
+    enum class Call { constructor, builtin, function };
+    Expression call(std::string name, const std::string& word, Call kind, const std::vector<Parameters>& overloads = {}) {
         std::vector<Expression> arguments;
         const std::string open = expect("(");
         while (peek() != ")") {
@@ -195,34 +257,62 @@ class ExpressionReader : protected TokenReader {
         bool is_ordered = false;
         for (size_t i = 0; i < arguments.size(); ++i)
             for (size_t j = 0; j < i; ++j) is_ordered |= depend(arguments[i], arguments[j]);
-        Expression all{name + open};
-        if (is_ordered) all.text = " Ordered{";
+        Expression all;
+        std::string passed;
+        const auto is_out_argument = [&](size_t i) {
+            return std::any_of(overloads.begin(), overloads.end(),
+                               [&](const auto& outs) { return outs.size() == arguments.size() && outs[i].is_out; });
+        };
+        for (size_t i = 0; i < arguments.size(); ++i)
+            if (is_out_argument(i)) all.writes.insert(arguments[i].root);
         for (size_t i = 0; i < arguments.size(); ++i) {
             Expression& argument = arguments[i];
-            const bool is_out = std::any_of(overloads.begin(), overloads.end(),
-                                            [&](const auto& outs) { return outs.size() == arguments.size() && outs[i]; });
-            if (is_out) {
+            const bool is_out = is_out_argument(i);
+            if (has_lanes() && i == 0 && (word.starts_with("atomic") || (word == "texelFetch" && !argument.place.empty()))) {
+                if (argument.place.empty()) refuse();
+                argument.text = argument.place;
+            } else if (is_out) {
                 // Another name for the variable is a global's or an argument's.
-                bool is_known_twice = globals_.contains(argument.root) || !argument.indices.empty();
+                bool is_known_twice = globals_.contains(argument.root) || !argument.indices.empty() || !argument.place.empty();
                 for (size_t j = 0; j < arguments.size(); ++j) is_known_twice |= j != i && arguments[j].root == argument.root;
-                argument.text = is_known_twice ? " copied(" + argument.assignable() + ")" : argument.text;
+                if (has_lanes()) {
+                    note_change(argument, true);
+                    is_known_twice |= kind == Call::builtin;
+                }
+                argument.text = is_known_twice
+                                    ? (has_lanes() ? " lanes::copied(active__, " : " copied(") + argument.assignable() + ")"
+                                    : argument.text;
                 if (is_ordered && !is_known_twice) argument.text = " Reference(" + argument.text + ")";
-                all.writes.insert(argument.root);
+            } else if (has_lanes() && kind == Call::function &&
+                       (globals_.contains(argument.root) || all.writes.contains(argument.root))) {
+                argument.text = " lanes::copy(" + argument.text + ")";  // it may change while the function reads it
             }
-            all.text += i == 0 ? "" : ",";
+            for (const auto& parameters : overloads)
+                if (argument.is_varying && parameters.size() == arguments.size()) vary(parameters[i].token);
+            passed += i == 0 ? "" : ",";
             all.add(argument);
+            passed += argument.text;
         }
+        bool is_masked = kind == Call::function;
+        if (has_lanes()) {
+            const std::string signature = word + "/" + std::to_string(arguments.size());
+            if (kind == Call::constructor && all.is_varying)
+                name = name.find('<') == std::string::npos ? " lanes::make<" + name + ">" : " lanes::" + name;
+            if (kind == Call::builtin && asks_for_mask(word)) is_masked = all.is_varying = true;
+            if (kind == Call::function) all.is_varying = is_varying_function(signature);
+        }
+        const std::string mask = has_lanes() && is_masked ? arguments.empty() ? "active__" : "active__, " : "";
+        all.is_masked |= is_masked;
         if (is_ordered)
-            all.text += "}.pass_to([&](auto... x) { return " + name + "(x...); })";
+            all.text = " Ordered{" + passed + "}.pass_to([&](auto... x) { return " + name + "(" + mask + "x...); })";
         else
-            all.text += close;
+            all.text = name + open + mask + passed + close;
         return all;
     }
 
-    Names structs_, fields_, globals_;
+    Names structs_, fields_;
     Names declared_;  // names in the declaration that is being read: their initialisers still call functions of these names
-    std::map<std::string, std::vector<std::vector<bool>>, std::less<>>
-        functions_;  // of each overload: which parameters are `out`
+    std::map<std::string, std::vector<Parameters>, std::less<>> functions_;  // of each overload
 };
 
 }  // namespace lab::native

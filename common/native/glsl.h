@@ -14,11 +14,6 @@ namespace lab::native {
 
 using namespace glm;  // for names of types alone: a shader's functions are those of `Builtins`
 
-struct Stopped {};
-struct Failed {
-    char text[512];
-};
-
 // An index of an array. Where shaders are checked it knows the line that uses it.
 #ifdef LAB_CHECKED
 struct Index {
@@ -382,18 +377,24 @@ struct ShaderBase : Builtins {
 };
 
 // The entry point that the program calls.
-template <typename Shader>
-Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) try {
-    for (uint i = 0; i < Shader::local_size; ++i) {
-        Shader shader{{{}, bindings, uvec3(group, 0, 0), uvec3(i, 0, 0), uvec3(group * Shader::local_size + i, 0, 0), i}};
-        shader.main_();
-    }
+template <typename Run>
+Outcome run_group(char* error, size_t error_size, const Run& run) try {
+    run();
     return Outcome::finished;
 } catch (const Stopped&) {
     return Outcome::stopped;
 } catch (const Failed& failed) {
     std::snprintf(error, error_size, "%s", failed.text);
     return Outcome::failed;
+}
+template <typename Shader>
+Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) {
+    return run_group(error, error_size, [&] {
+        for (uint i = 0; i < Shader::local_size; ++i) {
+            Shader shader{{{}, bindings, uvec3(group, 0, 0), uvec3(i, 0, 0), uvec3(group * Shader::local_size + i, 0, 0), i}};
+            shader.main_();
+        }
+    });
 }
 
 }  // namespace lab::native

@@ -6,6 +6,7 @@ namespace lab::native {
 std::vector<std::string> missing_tools() { return {"Linux or macOS"}; }
 void set_mode(Mode) {}
 RunGroup load(const std::string&) { return nullptr; }
+int invocations_at_once() { return 1; }
 MakeRayTracer load_embree() { return nullptr; }
 std::string ray_tracer_name() { return "the lab's own tree"; }
 void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
@@ -45,6 +46,16 @@ namespace {
 namespace fs = std::filesystem;
 
 Mode mode = Mode::fast;
+int at_once = 1;  // invocations of the shader that was loaded last
+
+// Whether this CPU, Embree's packets and the C library have what lanes need.
+bool has_lanes() {
+#if defined(__x86_64__) && defined(__GLIBC__)
+    return __builtin_cpu_supports("avx2") && std::getenv("LAB_LANES");
+#else
+    return false;
+#endif
+}
 
 // The first of the usual names on the PATH, or $CXX; empty if there is none.
 fs::path find_compiler() {
@@ -136,20 +147,27 @@ void compile(const std::string& text, const std::vector<std::string>& arguments,
                         ": use another backend, such as --backend compute");
 }
 
-// A function of a module whose C++ this is. It comes from the cache if possible.
-void* load_function(const char* function, const std::string& text, const std::vector<std::string>& arguments) {
-    std::string key = text + find_compiler().string() + processor();
+// A library whose C++ is the first text that compiles. It comes from the cache if possible.
+void* load_library(const std::vector<std::string>& texts, const std::vector<std::string>& arguments) {
+    std::string key = find_compiler().string() + processor();
+    for (const auto& text : texts) key += text;
     for (const auto& argument : arguments) key += " " + argument;
-    for (const char* header : {"glsl.h", "bindings.h", "embree.h"})
+    for (const char* header : {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "bindings.h", "embree.h"})
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
     const fs::path file = cache_file(name);
-    if (!read_cache(name)) compile(text, arguments, name);
+    for (size_t i = 0; !read_cache(name); ++i) {
+        try {
+            compile(texts[i], arguments, name);
+        } catch (const UserError&) {
+            if (i + 1 == texts.size()) throw;
+        }
+    }
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library)
         throw UserError(std::string("the backend native cannot load its code: ") + dlerror() +
                         ": set XDG_CACHE_HOME to a folder that allows programs");
-    return dlsym(library, function);
+    return library;
 }
 
 // The library "embree4" or "embree3" if one can compile with it: its name without a version is there if its headers are. Empty if
@@ -184,8 +202,19 @@ std::vector<std::string> missing_tools() {
 void set_mode(Mode wanted) { mode = wanted; }
 
 RunGroup load(const std::string& preprocessed_glsl) {
-    return reinterpret_cast<RunGroup>(load_function("lab_run_group", translate(preprocessed_glsl), compiler_arguments()));
+    std::vector<std::string> texts{translate(preprocessed_glsl)};
+    auto arguments = compiler_arguments();
+    if (mode == Mode::fast && has_lanes()) {
+        // No debugger sees lanes. GCC 12 crashes where it tries to make vectors of vectors.
+        arguments.insert(arguments.end(), {"-g0", "-fno-tree-vectorize", "-lmvec"});
+        if (const std::string text = translate_for_lanes(preprocessed_glsl); !text.empty()) texts.insert(texts.begin(), text);
+    }
+    void* library = load_library(texts, arguments);
+    at_once = *static_cast<const int*>(dlsym(library, "lab_invocations_at_once"));
+    return reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group"));
 }
+
+int invocations_at_once() { return at_once; }
 
 MakeRayTracer load_embree() {
     const std::string embree = find_embree();
@@ -193,7 +222,7 @@ MakeRayTracer load_embree() {
     auto arguments = compiler_arguments();
     arguments.push_back("-l" + embree);
     const std::string text = "#include <" + embree + "/rtcore.h>\n#include \"native/embree.h\"\n";
-    return reinterpret_cast<MakeRayTracer>(load_function("lab_make_ray_tracer", text, arguments));
+    return reinterpret_cast<MakeRayTracer>(dlsym(load_library({text}, arguments), "lab_make_ray_tracer"));
 }
 
 std::string ray_tracer_name() {

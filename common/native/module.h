@@ -23,6 +23,9 @@ void set_mode(Mode mode);
 // A compute shader as code, which stays loaded. It comes from the cache if possible. Throws UserError if the compiler refuses
 // what translate() makes of it.
 RunGroup load(const std::string& preprocessed_glsl);
+// How many invocations the shader that was loaded last runs at once: 8 on CPUs with AVX2, or 1 where lanes lack something that it
+// uses, and in the other modes.
+int invocations_at_once();
 
 // Rays by Embree, compiled and cached in the same way. Null where Embree or its headers are missing.
 MakeRayTracer load_embree();

@@ -77,7 +77,7 @@ inline std::vector<Token> tokenize(const std::string& glsl) {
             space += c;
         } else if (c == '#') {  // #line stays, others have done their work
             end = std::min(glsl.find('\n', at), glsl.size());
-            if (glsl.compare(at, 5, "#line") == 0) space += glsl.substr(at, end - at);
+            if (glsl.compare(at, 5, "#line") == 0) space += "\n" + glsl.substr(at, end - at);
         } else {
             if (is_word || is_number) {
                 while (end < glsl.size() && (std::isalnum(static_cast<unsigned char>(glsl[end])) || glsl[end] == '_' ||

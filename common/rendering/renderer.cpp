@@ -4,6 +4,7 @@
 
 #include "clock.h"
 #include "files/project_folder.h"
+#include "native/module.h"
 #include "platform.h"
 
 namespace lab {
@@ -123,7 +124,9 @@ bool Renderer::advance(uint32_t target_samples) {
     // A pass brings all blocks to pass_samples_, several samples at a time if all blocks fit into one dispatch.
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
-        const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, 1.0));
+        // More at once keep lanes busy: one whose pixel is finished waits for its neighbours.
+        const bool has_lanes = is_on_host_ && native::invocations_at_once() > 1;
+        const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, has_lanes ? samples_per_group : 1.0));
         pass_samples_ = finished_samples_ + std::min(step, target_samples - finished_samples_);
     }
     const uint32_t step = pass_samples_ - finished_samples_;

@@ -1,0 +1,291 @@
+// What lanes execute: assignments, branches and loops under masks, and their way to memory.
+#pragma once
+#include "native/lanes.h"
+
+namespace lab::native::lanes {
+
+// Where a mask holds, `a`, elsewhere `b`.
+template <typename T>
+LAB_INLINE Lanes<T> select(const Mask& mask, const Lanes<T>& a, const Lanes<T>& b) {
+    return Lanes<T>::of(mask.raw ? a.raw : b.raw);
+}
+template <typename T, typename F>
+LAB_INLINE void for_each_part(T& target, const F& f);
+template <typename A, typename B>
+LAB_INLINE auto select(const Mask& mask, const A& a, const B& b);
+
+// Memory at an address for each lane, of which `offset` counts words of four bytes.
+template <typename T>
+struct Ref {
+    T* base;
+    Lanes<int> offset;
+};
+template <typename T, typename U>
+void store(const Mask& mask, const Ref<T>& target, const U& value);
+
+// A swizzle that is assigned to.
+template <int... i, typename T>
+requires Varying<T> LAB_INLINE auto swizzle(const T& v) {
+    Vec<sizeof...(i), std::remove_cvref_t<decltype(component(v, 0))>> result;
+    int next = 0;
+    ((result[next++] = component(v, i)), ...);
+    return result;
+}
+template <typename T, int... i>
+struct Swizzled {
+    using Value = Vec<sizeof...(i), std::remove_cvref_t<decltype(std::declval<T>()[0])>>;
+    T& target;
+    LAB_INLINE operator Value() const { return lanes::swizzle<i...>(target); }
+    LAB_INLINE void operator=(const Value& value) {
+        int next = 0;
+        ((target[i] = value[next++]), ...);
+    }
+};
+template <int... i, int n, typename T>
+LAB_INLINE Swizzled<Vec<n, T>, i...> swizzled(Vec<n, T>& v) {
+    return {v};
+}
+
+// Changes a variable in the lanes of a mask.
+template <typename Target, typename U>
+LAB_INLINE void assign(const Mask& mask, Target&& target, const U& value) {
+    using T = std::remove_cvref_t<Target>;
+    if constexpr (requires { target.offset; })
+        store(mask, target, value);
+    else if constexpr (is_number<T>)
+        target = select(mask, T(value), target);
+    else if constexpr (requires { typename T::VaryingStruct; })
+        T::fields([&](auto& x, const auto& y) { assign(mask, x, y); }, target, T(value));
+    else if constexpr (requires { T::length(); })
+        for (int i = 0; i < T::length(); ++i) assign(mask, target[i], value[i]);
+    else  // a swizzle
+        target = select(mask, typename T::Value(value), typename T::Value(target));
+}
+template <typename A, typename B>
+LAB_INLINE auto select(const Mask& mask, const A& a, const B& b) {
+    if constexpr (is_number<A>) {
+        return each([&]<typename X, typename Y>(
+                        const X& x, const Y& y) { return select(mask, Lanes<Element<X, Y>>(x), Lanes<Element<X, Y>>(y)); },
+                    a, b);
+    } else {
+        auto result = varying(b);
+        assign(mask, result, a);
+        return result;
+    }
+}
+
+// `?:`, && and || whose sides must not be evaluated where they do not count.
+template <typename A, typename B>
+LAB_INLINE auto select_lazily(const Mask& active, const Mask& condition, const A& a, const B& b) {
+    const Mask first = active & condition, second = active & !condition;
+    decltype(varying(a(first))) result;
+    if (any(first)) result = varying(a(first));
+    if (any(second)) assign(second, result, b(second));
+    return result;
+}
+template <typename B>
+LAB_INLINE Mask and_lazily(const Mask& active, const Mask& a, const B& b) {
+    const Mask open = active & a;
+    return any(open) ? open & b(open) : Mask(false);
+}
+template <typename B>
+LAB_INLINE Mask or_lazily(const Mask& active, const Mask& a, const B& b) {
+    const Mask open = active & !a;
+    return any(open) ? a | (open & b(open)) : a;
+}
+template <typename T, typename F>
+LAB_INLINE T before(T x, const F& change) {
+    change();
+    return x;
+}
+
+// Statements change the mask of those that `active` execute.
+struct Branch {
+    Mask& active;
+    Mask rest;
+    LAB_INLINE Branch(Mask& active, const Mask& condition) : active(active), rest(active & !condition) {
+        active = active & condition;
+    }
+    LAB_INLINE bool begins() const { return any(active); }
+    LAB_INLINE bool turns() {  // to `else`
+        std::swap(active, rest);
+        return any(active);
+    }
+    LAB_INLINE void ends() { active = active | rest; }
+};
+struct Loop {
+    Mask& active;
+    Mask ended = false, waiting = false;
+    LAB_INLINE explicit Loop(Mask& active) : active(active) {}
+    LAB_INLINE bool goes_on(const Mask& condition) {
+        ended = ended | (active & !condition);
+        active = active & condition;
+        return any(active);
+    }
+    LAB_INLINE void leave() {
+        ended = ended | active;
+        active = false;
+    }
+    LAB_INLINE void skip() {
+        waiting = waiting | active;
+        active = false;
+    }
+    LAB_INLINE void next() {
+        active = active | waiting;
+        waiting = false;
+    }
+    LAB_INLINE void ends() { active = active | ended; }
+};
+
+// Memory. Code runs only if some lane is active, so that arrays have a first element.
+template <typename T>
+inline constexpr int word_count = static_cast<int>(sizeof(T) / 4);
+template <typename T>
+LAB_INLINE Ref<T> ref_to(T& first, const Lanes<int>& offset) {
+    return {&first, offset};
+}
+template <typename C, typename I>
+requires requires(C& container) { container[0]; }
+LAB_INLINE auto at(C&& container, const I& index) {
+    return ref_to(container[0], Lanes<int>(index) * word_count<std::remove_reference_t<decltype(container[0])>>);
+}
+template <typename T, typename I>
+LAB_INLINE auto at(const Ref<T>& ref, const I& index) {
+    auto inner = at(*ref.base, index);
+    inner.offset = inner.offset + ref.offset;
+    return inner;
+}
+template <typename T, typename F>
+LAB_INLINE auto field(const Ref<T>& ref, const F& f) {
+    return ref_to(f(*ref.base), ref.offset);
+}
+
+// Loads `count` words in a row for each lane. Rows that are transposed are several times as fast as gathering words.
+template <int count>
+LAB_INLINE void load_words(const Mask& mask, const void* base, const Lanes<int>& offset, Lanes<int>* words) {
+    if constexpr (count == 1) {
+        words[0].raw = reinterpret_cast<Lanes<int>::Raw>(
+            _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), static_cast<const int*>(base),
+                                        reinterpret_cast<__m256i>(offset.raw), reinterpret_cast<__m256i>(mask.raw), 4));
+        return;
+    }
+    int32_t offsets[lane_count];
+    const auto first = offset.raw & mask.raw;  // idle lanes read the first element
+    std::memcpy(offsets, &first, sizeof offsets);
+    const auto row = [&](int lane, int word) { return static_cast<const int*>(base) + offsets[lane] + word; };
+    const auto put = [&](int word, __m256i x) { words[word].raw = reinterpret_cast<Lanes<int>::Raw>(x); };
+    for (int word = 0; count >= 4 && word < count; word += 4) {
+        const int begin = std::min(word, count - 4);
+        const auto both = [&](int lane) {
+            return _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(row(lane + 4, begin)),
+                                       reinterpret_cast<const __m128i*>(row(lane, begin)));
+        };
+        const __m256i a = _mm256_unpacklo_epi32(both(0), both(1)), b = _mm256_unpacklo_epi32(both(2), both(3));
+        const __m256i c = _mm256_unpackhi_epi32(both(0), both(1)), d = _mm256_unpackhi_epi32(both(2), both(3));
+        put(begin, _mm256_unpacklo_epi64(a, b));
+        put(begin + 1, _mm256_unpackhi_epi64(a, b));
+        put(begin + 2, _mm256_unpacklo_epi64(c, d));
+        put(begin + 3, _mm256_unpackhi_epi64(c, d));
+    }
+    if constexpr (count < 4) {
+        const auto pair = [&](int lane) {
+            long long x;
+            std::memcpy(&x, row(lane, 0), sizeof x);
+            return x;
+        };
+        const __m256 a = _mm256_castsi256_ps(_mm256_setr_epi64x(pair(0), pair(1), pair(4), pair(5)));
+        const __m256 b = _mm256_castsi256_ps(_mm256_setr_epi64x(pair(2), pair(3), pair(6), pair(7)));
+        put(0, _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0x88)));
+        put(1, _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0xdd)));
+        if constexpr (count == 3)
+            put(2, _mm256_setr_epi32(*row(0, 2), *row(1, 2), *row(2, 2), *row(3, 2), *row(4, 2), *row(5, 2), *row(6, 2),
+                                     *row(7, 2)));
+    }
+}
+// Calls `f` for each number, in the order of memory.
+template <typename T, typename F>
+LAB_INLINE void for_each_part(T& target, const F& f) {
+    if constexpr (is_number<T> && size_of<T> == 1)
+        f(target);
+    else if constexpr (requires { typename T::VaryingStruct; })
+        T::fields([&](auto& x) { for_each_part(x, f); }, target);
+    else
+        for (int i = 0; i < T::length(); ++i) for_each_part(target[i], f);
+}
+template <typename T>
+LAB_INLINE auto load(const Mask& mask, const Ref<T>& ref) {
+    Lanes<int> words[word_count<T>];
+    load_words<word_count<T>>(mask, ref.base, ref.offset, words);
+    V<std::remove_const_t<T>> result;
+    const Lanes<int>* next = words;
+    for_each_part(result, [&](auto& x) { std::memcpy(&x.raw, next++, sizeof x.raw); });
+    return result;
+}
+template <typename T, typename U>
+LAB_INLINE void store(const Mask& mask, const Ref<T>& ref, const U& value) {
+    V<T> all(value);
+    Lanes<int> words[word_count<T>], *next = words;
+    for_each_part(all, [&](const auto& x) { std::memcpy(next++, &x.raw, sizeof x.raw); });
+    for_each_lane(mask, [&](int lane) {
+        int32_t* word = reinterpret_cast<int32_t*>(ref.base) + ref.offset[lane];
+        for (const Lanes<int>& x : words) *word++ = x[lane];
+    });
+}
+// An element of an array or a vector of lanes, in each lane a different one.
+template <typename C>
+LAB_INLINE auto pick(const C& container, const Lanes<int>& index) {
+    auto result = container[0];
+    for (int i = 1; i < C::length(); ++i) assign(equal(index, i), result, container[i]);
+    return result;
+}
+
+// An `out` or `inout` argument that is copied in and, in the lanes of a mask, out.
+template <typename Target, typename Value>
+struct Copied {
+    Mask mask;
+    Target target;
+    Value value;
+    LAB_INLINE operator Value&() { return value; }
+    LAB_INLINE void operator=(const Value& x) { value = x; }
+    LAB_INLINE ~Copied() { assign(mask, target, value); }
+};
+template <typename T>
+LAB_INLINE Copied<T&, T> copied(const Mask& mask, T& target) {
+    return {mask, target, target};
+}
+template <typename T, int... i>
+LAB_INLINE auto copied(const Mask& mask, Swizzled<T, i...> target) {
+    return Copied<Swizzled<T, i...>, typename Swizzled<T, i...>::Value>{mask, target, target};
+}
+template <typename T>
+LAB_INLINE auto copied(const Mask& mask, const Ref<T>& target) {
+    return Copied<Ref<T>, V<T>>{mask, target, load(mask, target)};
+}
+
+// Constructors: of a vector by the components of all arguments, or by one for all.
+template <typename T, typename... A>
+LAB_INLINE auto make(const A&... x) {
+    V<T> result;
+    int next = 0;
+    if constexpr (!is_number<T> && (!is_matrix<T> || (sizeof...(A) == 1 && (is_matrix<A> && ...)))) {
+        result = V<T>(x...);
+    } else if constexpr (is_matrix<T>) {
+        static_assert(sizeof...(A) == T::length() && ((size_of<A> == T::col_type::length()) && ...));
+        ((result[next++] = x), ...);
+    } else {
+        const auto append = [&]<typename U>(const U& y) {
+            for (int i = 0; i < size_of<U> && next < T::length(); ++i) result[next++] = component(y, i);
+        };
+        (append(x), ...);
+        for (; sizeof...(A) == 1 && next < T::length(); ++next) result[next] = result[0];
+    }
+    return result;
+}
+template <typename S, typename T>
+requires Varying<T> LAB_INLINE Lanes<S> scalar(const T& x) { return component(x, 0); }
+template <typename T, typename... Elements>
+LAB_INLINE auto make_array(const Elements&... elements) {
+    return Array<V<T>, sizeof...(Elements)>{{V<T>(elements)...}};
+}
+
+}  // namespace lab::native::lanes

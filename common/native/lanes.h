@@ -1,0 +1,305 @@
+// Eight invocations of a translated shader at once. A number that differs between them is a `Lanes`, a mask says which ones
+// execute a statement, and each reads memory at an index of its own. translator.h says what uses this; it needs AVX2.
+#pragma once
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "native/glsl.h"
+
+// In the code that calls them, vectors of such functions stay in registers.
+#define LAB_INLINE [[gnu::always_inline]] inline
+
+namespace lab::native::lanes {
+
+// A float, int, uint or bool for each invocation; a bool is 0 or -1.
+template <typename T>
+struct Lanes {
+    using Word = std::conditional_t<std::is_same_v<T, bool>, int32_t, T>;
+    typedef Word Raw __attribute__((vector_size(4 * lane_count)));
+    Raw raw;
+
+    Lanes() = default;
+    template <typename U>
+    requires std::is_arithmetic_v<U> LAB_INLINE Lanes(U x)
+        : raw(Raw{} + static_cast<Word>(std::is_same_v<T, bool> ? -static_cast<Word>(x != 0) : static_cast<Word>(x))) {}
+    template <typename U>
+    LAB_INLINE Lanes(const Lanes<U>& x) {
+        if constexpr (std::is_same_v<T, U>)
+            raw = x.raw;
+        else if constexpr (std::is_same_v<T, bool>)
+            raw = x.raw != 0;
+        else if constexpr (std::is_same_v<U, bool>)
+            raw = __builtin_convertvector(x.raw & 1, Raw);
+        else
+            raw = __builtin_convertvector(x.raw, Raw);
+    }
+    LAB_INLINE static Lanes of(Raw raw) {
+        Lanes lanes;
+        lanes.raw = raw;
+        return lanes;
+    }
+    LAB_INLINE T operator[](int lane) const { return static_cast<T>(raw[lane]); }
+    LAB_INLINE void set(int lane, T x) { raw[lane] = std::is_same_v<T, bool> ? -static_cast<Word>(x) : x; }
+};
+using Mask = Lanes<bool>;
+
+LAB_INLINE uint32_t bits_of(const Mask& mask) {
+    return static_cast<uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask.raw)));
+}
+LAB_INLINE bool any(const Mask& mask) { return bits_of(mask) != 0; }
+template <typename F>
+LAB_INLINE void for_each_lane(const Mask& mask, const F& f) {
+    for (uint32_t bits = bits_of(mask); bits != 0; bits &= bits - 1) f(std::countr_zero(bits));
+}
+
+// Vectors and matrices of lanes.
+template <int n, typename T>
+struct Vec;
+template <typename T>
+inline constexpr int size_of = 1;
+template <length_t n, typename T, qualifier q>
+inline constexpr int size_of<vec<n, T, q>> = n;
+template <int n, typename T>
+inline constexpr int size_of<Vec<n, T>> = n;
+template <typename T>
+inline constexpr bool is_lanes = false;
+template <typename T>
+inline constexpr bool is_lanes<Lanes<T>> = true;
+template <int n, typename T>
+inline constexpr bool is_lanes<Vec<n, T>> = true;
+template <typename T>
+inline constexpr bool is_number = std::is_arithmetic_v<T> || size_of<T> != 1 || is_lanes<T>;
+// Numbers of which some differ between lanes.
+template <typename... T>
+concept Varying = (is_number<T> && ...) && (is_lanes<T> || ...);
+
+#define LAB_COMPONENT(a, b, c) \
+    union {                    \
+        T a, b, c;             \
+    };
+#define LAB_VECTOR(n, components)                                       \
+    template <typename T>                                               \
+    struct Vec<n, T> {                                                  \
+        components static constexpr int length() { return n; }          \
+        LAB_INLINE T& operator[](int i) { return (&x)[i]; }             \
+        LAB_INLINE const T& operator[](int i) const { return (&x)[i]; } \
+        Vec() = default;                                                \
+        template <typename U>                                           \
+        requires(size_of<U> == n) LAB_INLINE Vec(const U& u) {          \
+            for (int i = 0; i < n; ++i) (*this)[i] = T(u[i]);           \
+        }                                                               \
+    };
+LAB_VECTOR(2, LAB_COMPONENT(x, r, s) LAB_COMPONENT(y, g, t))
+LAB_VECTOR(3, LAB_COMPONENT(x, r, s) LAB_COMPONENT(y, g, t) LAB_COMPONENT(z, b, p))
+LAB_VECTOR(4, LAB_COMPONENT(x, r, s) LAB_COMPONENT(y, g, t) LAB_COMPONENT(z, b, p) LAB_COMPONENT(w, a, q))
+#undef LAB_VECTOR
+#undef LAB_COMPONENT
+
+template <int columns, int rows>
+struct Mat {
+    using Column = Vec<rows, Lanes<float>>;
+    Column column[columns];
+    Mat() = default;
+    template <typename M>
+    requires requires(const M& m) { m[0][0]; }
+    LAB_INLINE Mat(const M& m) {
+        for (int i = 0; i < columns; ++i)
+            for (int j = 0; j < rows; ++j) column[i][j] = m[i][j];
+    }
+    static constexpr int length() { return columns; }
+    LAB_INLINE Column& operator[](int i) { return column[i]; }
+    LAB_INLINE const Column& operator[](int i) const { return column[i]; }
+};
+template <typename T>
+inline constexpr bool is_matrix = false;
+template <int n, int m>
+inline constexpr bool is_matrix<Mat<n, m>> = true;
+template <length_t n, length_t m, typename T, qualifier q>
+inline constexpr bool is_matrix<mat<n, m, T, q>> = true;
+
+// V<T> is the type of a T that differs between lanes.
+template <typename T>
+struct VaryingOf {};
+template <typename T>
+requires requires { typename T::VaryingStruct; }
+struct VaryingOf<T> {
+    using type = typename T::VaryingStruct;
+};
+template <typename T>
+requires(std::is_arithmetic_v<T> && sizeof(T) <= 4) struct VaryingOf<T> {
+    using type = Lanes<T>;
+};
+template <length_t n, typename T, qualifier q>
+struct VaryingOf<vec<n, T, q>> {
+    using type = Vec<n, Lanes<T>>;
+};
+template <length_t n, length_t m, qualifier q>
+struct VaryingOf<mat<n, m, float, q>> {
+    using type = Mat<n, m>;
+};
+template <typename T, size_t size>
+struct VaryingOf<Array<T, size>> {
+    using type = Array<typename VaryingOf<T>::type, size>;
+};
+template <>
+struct VaryingOf<void> {
+    using type = void;
+};
+template <typename T>
+using V = typename VaryingOf<T>::type;
+template <typename T>
+using Uniform = T;
+template <typename T>
+LAB_INLINE auto varying(const T& x) {
+    if constexpr (requires { typename VaryingOf<T>::type; })
+        return V<T>(x);
+    else
+        return x;
+}
+template <typename T>
+LAB_INLINE T copy(const T& x) {
+    return x;
+}
+
+// The number type that operands have in common.
+template <typename T>
+struct ElementOf {
+    using type = T;
+};
+template <typename T>
+struct ElementOf<Lanes<T>> {
+    using type = T;
+};
+template <typename... T>
+using Element = std::common_type_t<typename ElementOf<std::remove_cvref_t<T>>::type...>;
+
+template <typename T>
+LAB_INLINE decltype(auto) component(const T& x, int i) {
+    if constexpr (size_of<T> == 1)
+        return (x);
+    else
+        return (x[i]);
+}
+// Calls `f` for each component of vectors, or for scalars.
+template <typename F, typename... T>
+LAB_INLINE auto each(const F& f, const T&... x) {
+    constexpr int n = std::max({size_of<T>...});
+    if constexpr (n == 1) {
+        return f(x...);
+    } else {
+        Vec<n, decltype(f(component(x, 0)...))> result;
+        for (int i = 0; i < n; ++i) result[i] = f(component(x, i)...);
+        return result;
+    }
+}
+// Calls it for each lane, too.
+template <typename F, typename... T>
+LAB_INLINE auto each_alone(const F& f, const T&... x) {
+    return each(
+        [&](const auto&... y) {
+            Lanes<decltype(f(Lanes<Element<decltype(y)>>(y)[0]...))> result;
+            for (int lane = 0; lane < lane_count; ++lane) result.set(lane, f(Lanes<Element<decltype(y)>>(y)[lane]...));
+            return result;
+        },
+        x...);
+}
+
+#define LAB_OPERATOR(op, ...)                                                    \
+    template <typename A, typename B>                                            \
+    requires Varying<A, B> LAB_INLINE auto operator op(const A& a, const B& b) { \
+        return each(                                                             \
+            []<typename X, typename Y>(const X& x, const Y& y) {                 \
+                using T = Element<__VA_ARGS__>;                                  \
+                return Lanes<T>::of(Lanes<T>(x).raw op Lanes<T>(y).raw);         \
+            },                                                                   \
+            a, b);                                                               \
+    }
+LAB_OPERATOR(+, X, Y)
+LAB_OPERATOR(-, X, Y)
+LAB_OPERATOR(*, X, Y)
+LAB_OPERATOR(&, X, Y)
+LAB_OPERATOR(|, X, Y)
+LAB_OPERATOR(^, X, Y)
+LAB_OPERATOR(<<, X)
+LAB_OPERATOR(>>, X)
+#undef LAB_OPERATOR
+// Integers by integers one by one: there may be any number in idle lanes, and none may divide by 0.
+#define LAB_OPERATOR(op)                                                                                              \
+    template <typename A, typename B>                                                                                 \
+    requires Varying<A, B> LAB_INLINE auto operator op(const A& a, const B& b) {                                      \
+        return each(                                                                                                  \
+            []<typename X, typename Y>(const X& x, const Y& y) {                                                      \
+                using T = Element<X, Y>;                                                                              \
+                if constexpr (std::is_same_v<T, float>)                                                               \
+                    return Lanes<T>::of(Lanes<T>(x).raw / Lanes<T>(y).raw);                                           \
+                else                                                                                                  \
+                    return each_alone([](T p, T q) { return static_cast<T>(q == 0 ? 0 : int64_t{p} op int64_t{q}); }, \
+                                      Lanes<T>(x), Lanes<T>(y));                                                      \
+            },                                                                                                        \
+            a, b);                                                                                                    \
+    }
+LAB_OPERATOR(/)
+LAB_OPERATOR(%)
+#undef LAB_OPERATOR
+#define LAB_COMPARISON(name, op)                                                             \
+    template <typename A, typename B>                                                        \
+    LAB_INLINE auto name(const A& a, const B& b) {                                           \
+        return each(                                                                         \
+            []<typename X, typename Y>(const X& x, const Y& y) {                             \
+                return Mask::of(Lanes<Element<X, Y>>(x).raw op Lanes<Element<X, Y>>(y).raw); \
+            },                                                                               \
+            a, b);                                                                           \
+    }
+LAB_COMPARISON(less, <)
+LAB_COMPARISON(less_or_equal, <=)
+LAB_COMPARISON(equal, ==)
+#undef LAB_COMPARISON
+template <typename T>
+LAB_INLINE Mask all(const T& x) {
+    Mask result = component(x, 0);
+    for (int i = 1; i < size_of<T>; ++i) result = result & x[i];
+    return result;
+}
+LAB_INLINE Mask operator!(const Mask& a) { return Mask::of(~a.raw); }
+#define LAB_OPERATOR(op, ...)         \
+    template <typename A, typename B> \
+    requires Varying<A, B> LAB_INLINE Mask operator op(const A& a, const B& b) { return __VA_ARGS__; }
+LAB_OPERATOR(<, less(a, b))
+LAB_OPERATOR(>, less(b, a))
+LAB_OPERATOR(<=, less_or_equal(a, b))
+LAB_OPERATOR(>=, less_or_equal(b, a))
+LAB_OPERATOR(==, all(equal(a, b)))
+LAB_OPERATOR(!=, !all(equal(a, b)))
+#undef LAB_OPERATOR
+#define LAB_OPERATOR(op)                                                                      \
+    template <typename A>                                                                     \
+    requires Varying<A> LAB_INLINE auto operator op(const A& a) {                             \
+        return each([]<typename T>(const Lanes<T>& x) { return Lanes<T>::of(op x.raw); }, a); \
+    }
+LAB_OPERATOR(+)
+LAB_OPERATOR(-)
+LAB_OPERATOR(~)
+#undef LAB_OPERATOR
+
+// Products of matrices and vectors.
+template <typename M, typename U>
+requires(is_matrix<M>&& size_of<U> != 1 && (is_lanes<U> || requires(M m) { m.column; })) LAB_INLINE auto operator*(const M& m,
+                                                                                                                   const U& v) {
+    auto sum = m[0] * v[0];
+    for (int i = 1; i < M::length(); ++i) sum = sum + m[i] * v[i];
+    return sum;
+}
+template <typename M, typename U>
+requires(is_matrix<M>&& size_of<U> != 1 && (is_lanes<U> || requires(M m) { m.column; })) LAB_INLINE auto operator*(const U& v,
+                                                                                                                   const M& m) {
+    Vec<M::length(), Lanes<float>> result;
+    for (int i = 0; i < M::length(); ++i) {
+        result[i] = m[i][0] * v[0];
+        for (int j = 1; j < size_of<U>; ++j) result[i] = result[i] + m[i][j] * v[j];
+    }
+    return result;
+}
+
+}  // namespace lab::native::lanes
