@@ -6,6 +6,7 @@ import socketserver
 import struct
 import subprocess
 import threading
+import time
 import unittest
 
 from image_files import Exr
@@ -115,6 +116,7 @@ class Windows(ProgramTest):
         environment = {**NO_DISPLAY, **FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "300"}
         with self.start(*command, program=WITH_DISPLAY, environment=environment) as process:
             self.wait_for(folder, process)
+            time.sleep(0.5)  # the program still checks that it can write there
             while folder.exists():
                 shutil.rmtree(folder, ignore_errors=True)
             _, err = process.communicate(timeout=120)
