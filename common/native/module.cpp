@@ -156,7 +156,7 @@ void* load_library(const std::vector<std::string>& texts, const std::vector<std:
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
     const fs::path file = cache_file(name);
-    for (size_t i = 0; !read_cache(name); ++i) {
+    for (size_t i = 0; i < texts.size() && !read_cache(name); ++i) {
         try {
             compile(texts[i], arguments, name);
         } catch (const UserError&) {
