@@ -34,7 +34,9 @@ tee -a '{notes}' | '{program}' "$@"
 """
 
 
-class CheckTest(ProgramTest):
+class Checking:
+    """The command in this process."""
+
     judged = {}  # results of judge(), shared by all tests
 
     def setUp(self):
@@ -80,6 +82,12 @@ class CheckTest(ProgramTest):
         """A file with a mistake."""
         return self.write("mine.glsl", TECHNIQUE.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
 
+    def planted(self, chapter, find, replace):
+        """Name of a file with one of a chapter's own shaders, changed in one place."""
+        return self.write("mine.glsl", planted(chapter, {"name": "mine", "find": find, "replace": replace}).text)
+
+
+class CheckTest(Checking, ProgramTest):
     def test_the_process_ends_with_the_verdict(self):
         for arguments, expected, words in (((), 0, "no picture is wrong.* correct: "),
                                            ((self.wrong(), "--teacher"), 1, "is too bright.* distance-not-squared: ")):
@@ -236,17 +244,6 @@ class CheckTest(ProgramTest):
         self.assertGreater(box["noise"][2], 2)  # 2 + (mean / deviation)² in each pixel
         self.assertAlmostEqual(box["rays"], 1.5, delta=0.02)
 
-    def planted(self, chapter, find, replace):
-        """Name of a file with one of a chapter's own shaders, changed in one place."""
-        return self.write("mine.glsl", planted(chapter, {"name": "mine", "find": find, "replace": replace}).text)
-
-    def test_mistakes_at_a_turned_light_probe_above_lamps_are_found(self):
-        for find, replace in ((" - 0.5) - parameters.probe_rotation;", " - 0.5) + parameters.probe_rotation;"),
-                              ("happens(LIGHT_PROBE_PROBABILITY, seed)", "happens(0.8, seed)")):
-            with mock.patch.dict(grading.SCENES, {8: (12, ["check_sky_4"])}):
-                code, out, err = self.check(8, "--runs", 5, "--json", self.planted(8, find, replace))
-            self.assertEqual(code, 1, f"{replace}: {out}{err}")
-
     def test_a_strategy_that_is_ignored_is_found_although_the_pictures_are_right(self):
         file = self.planted(7, "STRATEGY == STRATEGY_LIGHT ? 0.0 : get_bsdf_density", "get_bsdf_density")
         with mock.patch.dict(grading.SCENES, {7: (12, ["plates_3"])}):
@@ -254,14 +251,6 @@ class CheckTest(ProgramTest):
         result = json.loads(out)
         self.assertEqual((code, result["verdict"], result["scenes"][0]["verdict"]), (1, "biased", "correct"), err)
         self.assertRegex("\n".join(result["diagnosis"]["facts"]), "--strategy light")
-
-    def test_points_that_lose_what_the_chapter_gains_are_noisy(self):
-        file = self.planted(9, "scramble_reversed(get_second_dimension(index), keys.y)", "scramble_reversed(index, keys.y)")
-        with mock.patch.dict(grading.SCENES, {9: (16, ["cornell_box_1"])}):
-            code, out, err = self.check(9, "--json", file)
-        scene = json.loads(out)["scenes"][0]
-        self.assertEqual((code, scene["verdict"]), (1, "noisy"), scene["noise"])
-        self.assertLess(scene["most_noise"], grading.TOO_MUCH)
 
     def test_a_broken_shader_is_reported_by_file_and_line(self):
         lines = SHADER.read_text(encoding="utf-8").splitlines()
@@ -310,6 +299,23 @@ class CheckTest(ProgramTest):
             code, out, err = self.check(*arguments)
             self.assertEqual((code, out), (2, ""))
             self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")
+
+
+class LaterChapters_all(Checking, ProgramTest):
+    def test_mistakes_at_a_turned_light_probe_above_lamps_are_found(self):
+        for find, replace in ((" - 0.5) - parameters.probe_rotation;", " - 0.5) + parameters.probe_rotation;"),
+                              ("happens(LIGHT_PROBE_PROBABILITY, seed)", "happens(0.8, seed)")):
+            with mock.patch.dict(grading.SCENES, {8: (12, ["check_sky_4"])}):
+                code, out, err = self.check(8, "--runs", 5, "--json", self.planted(8, find, replace))
+            self.assertEqual(code, 1, f"{replace}: {out}{err}")
+
+    def test_points_that_lose_what_the_chapter_gains_are_noisy(self):
+        file = self.planted(9, "scramble_reversed(get_second_dimension(index), keys.y)", "scramble_reversed(index, keys.y)")
+        with mock.patch.dict(grading.SCENES, {9: (16, ["cornell_box_1"])}):
+            code, out, err = self.check(9, "--json", file)
+        scene = json.loads(out)["scenes"][0]
+        self.assertEqual((code, scene["verdict"]), (1, "noisy"), scene["noise"])
+        self.assertLess(scene["most_noise"], grading.TOO_MUCH)
 
 
 if __name__ == "__main__":
