@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 #include <thread>
 
@@ -144,6 +145,13 @@ std::filesystem::path user_folder() { return variable("USERPROFILE"); }
 
 int process_id() { return _getpid(); }
 
+double processor_seconds() {
+    FILETIME created, ended, kernel, user;
+    GetProcessTimes(GetCurrentProcess(), &created, &ended, &kernel, &user);
+    const auto seconds = [](FILETIME time) { return 1e-7 * (4294967296. * time.dwHighDateTime + time.dwLowDateTime); };
+    return seconds(kernel) + seconds(user);
+}
+
 bool write_to_disk(std::FILE* stream) { return _commit(_fileno(stream)) == 0; }
 
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to, std::error_code& error) {
@@ -182,6 +190,8 @@ bool is_terminal(std::FILE* stream) { return isatty(fileno(stream)); }
 std::filesystem::path user_folder() { return variable("HOME"); }
 
 int process_id() { return getpid(); }
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 bool write_to_disk(std::FILE* stream) { return fsync(fileno(stream)) == 0; }
 

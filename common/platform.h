@@ -36,6 +36,9 @@ int process_id();
 // Number of processors that the program may use.
 size_t processor_count();
 
+// Processor time that all threads of the program have taken so far.
+double processor_seconds();
+
 // Waits until flushed data is on the disk. Returns false on failure, with errno set.
 bool write_to_disk(std::FILE* stream);
 

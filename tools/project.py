@@ -2,6 +2,7 @@
 import argparse
 import json
 import os
+import platform
 import re
 import signal
 import subprocess
@@ -16,6 +17,7 @@ RECORDS = ROOT / "docs/records"
 CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9][0-9]_*"))}  # number -> folder
 VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba, the slowest first
 GPU_VARIANT = "cuda_ad_rgb"
+CPU_VARIANTS = [variant for variant in VARIANTS if variant != GPU_VARIANT]
 SAMPLERS = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]  # of Mitsuba
 BAR_WIDTH = 24
 INSTALL = "./lab install" if os.name == "posix" else "python -m pip install numpy scipy matplotlib pillow"
@@ -152,6 +154,13 @@ def commit():
     except OSError:
         return "unknown"
     return git.stdout.strip() or "unknown"
+
+
+def processor():
+    """Model of this machine's CPU, and the number of cores that programs may use."""
+    lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if Path("/proc/cpuinfo").exists() else []
+    models = [line.partition(": ")[2] for line in lines if line.startswith("model name")]
+    return (models or [platform.machine()])[0], len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
 
 
 # ---------------------------------------------------------------------------------------------- progress

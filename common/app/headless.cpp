@@ -78,6 +78,7 @@ class HeadlessRender {
         constexpr double patience = 2;
         if (options_.time_limit && acceleration_structure_.is_on_host()) interrupt_after(*options_.time_limit + patience);
         start_ = last_save_ = Clock::now();
+        unmeasured_cpu_seconds_ = processor_seconds();
         try {
             sample();
         } catch (const std::exception& error) {
@@ -158,15 +159,18 @@ class HeadlessRender {
     void add_row(uint32_t samples) {
         if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
         const auto start = Clock::now();
+        const double cpu_start = processor_seconds();
         take_snapshot();
         rows_.push_back({.samples = samples,
                          .seconds = record_.seconds,
                          .device_seconds = renderer_.device_seconds(),
+                         .cpu_seconds = cpu_start - unmeasured_cpu_seconds_,
                          .rays = record_.rays,
                          .mean = snapshot_.mean_radiance(),
                          .difference = snapshot_.mean_difference(),
                          .error = find_error()});
         measuring_seconds_ += seconds_since(start);
+        unmeasured_cpu_seconds_ += processor_seconds() - cpu_start;
     }
 
     std::optional<ErrorMetrics> find_error() const {
@@ -231,7 +235,8 @@ class HeadlessRender {
     std::vector<ReportRow> rows_;
     Clock::time_point start_ = Clock::now();  // of rendering
     Clock::time_point last_save_;
-    double measuring_seconds_ = 0;  // spent on the report's rows
+    double measuring_seconds_ = 0;       // spent on the report's rows
+    double unmeasured_cpu_seconds_ = 0;  // spent on them and before rendering
 };
 
 }  // namespace

@@ -51,7 +51,11 @@ using json = nlohmann::ordered_json;
 
 // A row with the same fields in JSON and CSV; unknown errors become null.
 json to_json(const ReportRow& row) {
-    json result{{"samples", row.samples}, {"seconds", row.seconds}, {"device_seconds", row.device_seconds}, {"rays", row.rays}};
+    json result{{"samples", row.samples},
+                {"seconds", row.seconds},
+                {"device_seconds", row.device_seconds},
+                {"cpu_seconds", row.cpu_seconds},
+                {"rays", row.rays}};
     const auto set = [&](const char* name, double ErrorMetrics::*metric) {
         result[name] = row.error ? json((*row.error).*metric) : json();
     };

@@ -26,6 +26,7 @@ struct ReportRow {
     uint32_t samples = 0;       // per pixel
     double seconds = 0;         // of rendering, without computing rows
     double device_seconds = 0;  // on the device, in this run
+    double cpu_seconds = 0;     // of all threads of this program in this run, without computing rows
     uint64_t rays = 0;
     std::array<double, 3> mean{};        // radiance of the image
     std::array<double, 3> difference{};  // mean of one half of the samples minus that of the other

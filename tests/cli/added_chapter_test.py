@@ -39,7 +39,7 @@ WRONG = [{"name": "own-brdf-twice", "explanation": "The BRDF is added twice.", "
           "replace": "vec3 brdf = 2.0 * s.diffuse_albedo / PI;"}]
 
 
-class Tree(ProgramTest):
+class Tree:
     """The project with one more chapter, configured from scratch. Only that chapter is built: the framework is unchanged."""
 
     def run_in_tree(self, *command, **environment):
@@ -113,7 +113,7 @@ class Tree(ProgramTest):
         return json.loads(out)["verdict"], err
 
 
-class AddedChapterTest(Tree):
+class AddedChapterTest(Tree, ProgramTest):
     def test_builds_and_renders_its_own_shader(self):
         program = self.build()
         (self.chapter / "path_trace.glsl").write_text(PURPLE, encoding="utf-8")
@@ -176,7 +176,7 @@ class AddedChapterTest(Tree):
         self.assertIn("TODO", (self.folder / "handout/chapters" / COPY / "lambertian.glsl").read_text(encoding="utf-8"))
 
 
-class AddedChapter_all(Tree):
+class AddedChapter_all(Tree, ProgramTest):
     def test_all_tests_of_estimators_pass(self):
         """Those of a default run: others would repeat what they prove of the original."""
         self.rename()

@@ -30,7 +30,7 @@ LAB = f"""#!/bin/sh
 """
 
 
-class Cluster(RenderTest):
+class Cluster:
     def setUp(self):
         super().setUp()
         (self.folder / "build").mkdir()
@@ -60,7 +60,7 @@ class Cluster(RenderTest):
         self.assert_close(merged, Exr(self.folder / "one.exr"))
 
 
-class ClusterTest(Cluster):
+class ClusterTest(Cluster, RenderTest):
     def test_gnu_parallel(self):
         self.run_shell(self.block("Several GPUs"))
         self.assertEqual(len(list((self.folder / "parts").iterdir())), 2)
@@ -75,7 +75,7 @@ class ClusterTest(Cluster):
         self.assert_is_one_render("whole.exr")
 
 
-class ClusterRehearsal_all(Cluster):
+class ClusterRehearsal_all(Cluster, RenderTest):
     def test_several_machines_one_of_which_dies(self):
         ssh = self.write("ssh", SSH)
         ssh.chmod(0o755)

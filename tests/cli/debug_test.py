@@ -18,7 +18,7 @@ PAGE = (PROJECT / "docs/debugging.md").read_text(encoding="utf-8")
 SHADER = "chapters/01_uniform_sampling/path_trace.glsl"
 
 
-class CopiedLab(ProgramTest):
+class CopiedLab:
     """A copy of the lab with its own shaders and the program of chapter 1."""
     SIZE = ("--headless", "--width=32", "--height=32", "--samples=2")
 
@@ -67,7 +67,7 @@ class CopiedLab(ProgramTest):
         return {"PATH": f"{path.parent}:{os.environ['PATH']}"}
 
 
-class AutomaticNativeTest(CopiedLab):
+class AutomaticNativeTest(CopiedLab, ProgramTest):
     """--backend auto may choose native on a CPU."""
 
     def automatic(self, chosen, **environment):
@@ -102,7 +102,7 @@ class AutomaticNativeTest(CopiedLab):
         self.assertRegex(self.automatic(b"native", LAB_WITHOUT_NATIVE="1").stdout, "backend (compute|query|pipeline)\n")
 
 
-class DebugTest(CopiedLab):
+class DebugTest(CopiedLab, ProgramTest):
     def search(self, title):
         """A section of the page with its blocks: the command, gdb's input, and the output to expect."""
         section = re.search(rf"^## {title}.*?(?=^## )", PAGE, re.MULTILINE | re.DOTALL)[0]
@@ -164,7 +164,7 @@ class DebugTest(CopiedLab):
                          ["lldb", "-o", "breakpoint set --name path_trace", "-o", "process launch", "--", "program", "a"])
 
 
-class NativeFailures_all(CopiedLab):
+class NativeFailures_all(CopiedLab, ProgramTest):
     """What can go wrong when shaders are compiled into programs."""
     def assert_error(self, process, code, *words):
         self.assertEqual(process.returncode, code, process.stderr)

@@ -5,17 +5,18 @@ import json
 import math
 import os
 import re
+import resource
 import statistics
 
 from image_files import Exr, relative_mse
 from program import BINARIES, PROJECT, QUAD_JSON, RenderTest
 
-FIELDS = ["samples", "seconds", "device_seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
+FIELDS = ["samples", "seconds", "device_seconds", "cpu_seconds", "rays", "mse", "rel_mse", "rel_rmse", "mean"]
 
 
 class Report(RenderTest):
-    def report(self, *arguments):
-        self.image = self.picture("image", "--report=report.json", *arguments)
+    def report(self, *arguments, **options):
+        self.image = self.picture("image", "--report=report.json", *arguments, **options)
         return json.loads((self.folder / "report.json").read_text())
 
     def test_fields(self):
@@ -36,7 +37,7 @@ class Report(RenderTest):
     def test_rows_at_powers_of_two(self):
         report = self.report("--samples=24")
         self.assertEqual([row["samples"] for row in report["rows"]], [1, 2, 4, 8, 16, 24])
-        for name in ("seconds", "device_seconds", "rays"):
+        for name in ("seconds", "device_seconds", "cpu_seconds", "rays"):
             numbers = [row[name] for row in report["rows"]]
             self.assertEqual(numbers, sorted(numbers))
             self.assertGreater(numbers[0], 0)
@@ -52,6 +53,19 @@ class Report(RenderTest):
         row = json.loads((self.folder / "report.json").read_text())["rows"][-1]
         self.assertEqual(row["seconds"], measured)
         self.assertTrue(1 / 3 < measured / plain < 3, f"{measured} against {plain}")
+
+    def test_cpu_seconds_are_those_of_all_threads(self):
+        """As many as more samples take, by the system's account of the program."""
+        def seconds(samples):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            row = self.report(f"--samples={samples}", size=(256, 256))["rows"][-1]
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            return row["cpu_seconds"], after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+        seconds(1)  # fills the caches of compiled shaders
+        told, used = (many - few for many, few in zip(seconds(33), seconds(1)))
+        if self.image.text("device").startswith("llvmpipe"):  # others hardly need the CPU
+            self.assertTrue(0.7 < told / used < 1.4, f"{told} against {used}")
 
     def test_mean_is_that_of_the_image(self):
         row = self.report("--samples=8")["rows"][-1]

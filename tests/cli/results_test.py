@@ -9,7 +9,7 @@ from unittest import mock
 import tools_path  # noqa: F401  (first: it finds the others)
 from book import code_blocks
 import project
-from docs import ages, best_table, confusion_table, peer_table, result_plots, running, tables
+from docs import ages, best_table, confusion_table, cpu_table, peer_table, result_plots, running, tables
 from project import UserError
 from report import sources, studies
 
@@ -83,14 +83,36 @@ class BestTableTest(unittest.TestCase):
                          [(("box", 128, 128), ["chapter 3", "16 (16 – 16)"]), (("heart", 128, 128), ["chapter 5", "1"])])
 
 
+class CpuTableTest(unittest.TestCase):
+    def test_times_faster_by_both_clocks(self):
+        def case(name, seconds, cpu_seconds, error=0.5):
+            row = {"rel_mse": error, "seconds": seconds, "cpu_seconds": cpu_seconds}
+            return {"case": name, "scene": "box_6", "width": 100, "height": 100, "samples": 10, "reference": None,
+                    "runs": [{"seed": seed, "rows": [row]} for seed in (1, 2)]}
+
+        record = {"environment": {"processor": "a CPU", "cores": 4, "device": "a driver", "peer": "Mitsuba"},
+                  "cases": [case("native", 2.0, 4.0, 0.25), case("Mitsuba LLVM", 1.0, 4.0)]}
+        self.assertEqual(cpu_table.cpu_gains(record, "seconds"), {"box": {"native": [1.0, 1.0, 1.0]}})
+        text = cpu_table.cpu_table(record)
+        self.assertIn("a CPU, 4 cores, a driver, and Mitsuba.", text)
+        _, _, native, mitsuba = rows_of(text)
+        self.assertEqual(native, ["`box`", "native", "0.0500", "40", "2.5", "1.0 (1.0 – 1.0)", "2.0 (2.0 – 2.0)"])
+        self.assertEqual(mitsuba, ["", "Mitsuba LLVM", "0.100", "40", "5.0", "1", "1"])
+
+
 class NoRayTracingCoresTest(unittest.TestCase):
     def test_is_said_wherever_times_on_such_a_device_are_compared(self):
         for page in tables.PAGES:
             text = page.read_text(encoding="utf-8")
-            if "NVIDIA H200" in text and page.name != "numerics.md":  # which lists errors, not times
+            plots = [page.parent / name for name in re.findall(r"\]\(((?!http)[^)]*/results_\w+\.svg)\)", text)]
+            drawn = "".join(plot.read_text(encoding="utf-8") for plot in plots)
+            if "NVIDIA H200" in text + drawn and page.name != "numerics.md":  # which lists errors, not times
                 self.assertTrue(tables.NO_RAY_TRACING_CORES in text, page)
 
     def test_plots_say_it(self):
+        for plot in (tables.DOCS / "pictures").glob("*.svg"):
+            text = plot.read_text(encoding="utf-8")
+            self.assertEqual("H200" in text, "without ray tracing cores" in text, plot)
         self.assertEqual(result_plots.short_device("NVIDIA H200"), "NVIDIA H200 (without ray tracing cores)")
         self.assertEqual(result_plots.short_device("NVIDIA GeForce RTX 4090"), "NVIDIA GeForce RTX 4090")
         self.assertEqual(result_plots.short_device("llvmpipe (LLVM 15.0.6, 256 bits)"), "llvmpipe")

@@ -3,6 +3,7 @@
 Wine hands Vulkan on to the driver of this machine. docs/installing.md lists what only Windows itself can show.
 """
 
+import json
 import os
 import shutil
 import signal
@@ -156,10 +157,12 @@ class WindowsPrograms_all(RenderTest):
         self.assertEqual(windows.stdout, linux.stdout)
 
     def test_a_handout_has_its_chapters_and_a_todo(self):
+        chapter = "chapters/03_next_event_estimation"
+        exercise = json.loads((PROJECT / chapter / "exercise.json").read_text(encoding="utf-8"))
         subprocess.run([sys.executable, "-B", TOOLS, "handout", "3", self.folder / "lab_3", "--windows"], check=True)
         with zipfile.ZipFile(self.folder / "lab_3.zip") as archive:
             programs = {Path(name).stem for name in archive.namelist() if name.endswith(".exe")}
-            shader = archive.read("lab_3/chapters/03_next_event_estimation/path_trace.glsl").decode()
+            shader = archive.read(f"lab_3/{chapter}/{exercise['file']}").decode()
         self.assertEqual(programs, {"01_uniform_sampling", "02_cosine_sampling", "03_next_event_estimation", "merge_images",
                                     "sample_points"})
         self.assertIn("TODO", shader)

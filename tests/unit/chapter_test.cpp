@@ -14,7 +14,7 @@ namespace {
 std::string shader_text(const Chapter& chapter) {
     std::string text;
     for (const auto& file : shader_files(estimator_of(chapter)))
-        if (file.string().find("/chapters/") != std::string::npos) text += file_bytes(file);
+        if (file.generic_string().find("/chapters/") != std::string::npos) text += file_bytes(file);
     return text;
 }
 

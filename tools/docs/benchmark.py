@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 from statistics import median
 
-from project import ROOT, Parser, add_device_options, number, table
+from project import ROOT, Parser, add_device_options, number, processor, table
 from references.images import find_references
 from report.measurement import Measurement, devices_text, driver_of, find_device, new_case
 from report.numbers import seconds_to_target, with_range
@@ -42,9 +42,9 @@ def system_text():
         name = platform.freedesktop_os_release()["PRETTY_NAME"]
     except OSError:
         name = platform.system()
-    cpu = re.search(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
+    cpu, threads = processor()
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30
-    return f"{name}, {cpu[1] if cpu else platform.machine()}, {len(os.sched_getaffinity(0))} threads, {memory:.0f} GiB"
+    return f"{name}, {cpu}, {threads} threads, {memory:.0f} GiB"
 
 
 def backends_of(device):

@@ -9,6 +9,7 @@ import re
 
 from docs.best_table import best_and_peers
 from docs.confusion_table import CONDITIONS, rates
+from docs.cpu_table import cpu_gains
 from docs.facet_tables import WAYS, WAYS_IN_WORDS, lost_by_degrees, sampling_cost
 from matplotlib import pyplot, ticker
 from project import RECORDS, load_records, read_json, scene_of, write_bytes
@@ -50,8 +51,10 @@ def bars(axis, values, places, index, label, is_horizontal=True):
 
 def lines(axis, x, values, index, label):
     """A line with bars; from the sixth on they are dashed."""
-    bars(axis, values, x, index % len(COLOURS), label, is_horizontal=False)
-    axis.plot(x, [value[0] for value in values], color=COLOURS[index % len(COLOURS)], linewidth=1.2, linestyle="-" if index < len(COLOURS) else "--")
+    place = index % len(COLOURS)
+    bars(axis, values, x, place, None, is_horizontal=False)
+    axis.plot(x, [value[0] for value in values], color=COLOURS[place], marker=MARKERS[place], markersize=5, linewidth=1.2,
+              linestyle="-" if index < len(COLOURS) else "--", label=label)
 
 
 def forest(axis, rows, series):
@@ -64,9 +67,9 @@ def forest(axis, rows, series):
     axis.set_ylim(0.4 - len(rows), 0.6)
 
 
-def legend_above(axis, columns):
-    """A legend above the axis, under a title if there is one."""
-    axis.legend(loc="lower center", bbox_to_anchor=(0.4, 1), ncols=columns, handletextpad=0.2, columnspacing=1)
+def legend_above(axis, columns, title=None):
+    """A legend above the axis."""
+    axis.legend(loc="lower center", bbox_to_anchor=(0.4, 1), ncols=columns, handletextpad=0.2, columnspacing=1, title=title)
 
 
 def plain(value, _=None):
@@ -90,6 +93,11 @@ def short_device(name):
 def without_cores(name, text):
     """The text if this device traces rays in software, else ""."""
     return text if re.search(r"\b[AH][12]00\b", name) else ""
+
+
+def note_on_cores(names):
+    """A line below an axis on those devices that trace rays in software, where a legend has no room for it."""
+    return "".join(without_cores(name, f"\n{name}: without ray tracing cores") for name in names)
 
 
 # ---------------------------------------------------------------------------------------------- the plots
@@ -158,17 +166,35 @@ def mitsuba():
         if any(scene["gains"] for scene in record["scenes"]):
             shown[short_device(device)] = {f"{scene_of(scene['scene'])}, {scene['width']}²": gains
                                            for scene, best, gains in best_and_peers(record)}
-    heights = [44 * len(scenes) + 70 for scenes in shown.values()]
+    heights = [44 * len(scenes) + 85 for scenes in shown.values()]
     figure, axes = new_figure(sum(heights), len(shown), sharex=True, squeeze=False, height_ratios=heights)
     for axis, (device, scenes) in zip(axes[:, 0], shown.items()):
         peers = dict.fromkeys(peer for gains in scenes.values() for peer in gains)
         forest(axis, list(scenes), {peer: {name: gains.get(peer) for name, gains in scenes.items()} for peer in peers})
         axis.axvline(1, color=GREY, linewidth=1.5)
         finish_axis(axis, xscale="log")
-        axis.text(1, 0.02, device, transform=axis.transAxes, ha="right", va="bottom", fontweight="bold")
         axis.xaxis.set_major_formatter(plain)
-        legend_above(axis, 2)
+        legend_above(axis, 2, device)
     axes[-1, 0].set_xlabel("times faster than Mitsuba to the same error (right of 1: the chapter is)")
+    return figure, shown
+
+
+def cpu_backends():
+    """How many times faster than Mitsuba LLVM is each backend of a CPU, and each of Mitsuba's variants?"""
+    shown = {f"{record['environment']['processor']}, {record['environment']['cores']} cores, {clock}": cpu_gains(record, key)
+             for record in load_records("cpu") for clock, key in (("wall time", "seconds"), ("CPU time", "cpu_seconds"))}
+    scenes = dict.fromkeys(scene for found in shown.values() for scene in found)
+    figure, axes = new_figure(len(shown) * (60 * len(scenes) + 80) + 40, len(shown), sharex=True, squeeze=False)
+    for axis, (name, found) in zip(axes[:, 0], shown.items()):
+        cases = dict.fromkeys(case for gains in found.values() for case in gains)
+        forest(axis, list(scenes), {case: {scene: gains.get(case) for scene, gains in found.items()} for case in cases})
+        axis.axvline(1, color=GREY, linewidth=1.5)
+        finish_axis(axis, xscale="log")
+        legend_above(axis, 3, name)
+        axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.xaxis.set_major_formatter(plain)
+        axis.xaxis.set_minor_formatter(ticker.NullFormatter())
+    axes[-1, 0].set_xlabel("times faster than Mitsuba LLVM to the same error (right of 1: it is faster)")
     return figure, shown
 
 
@@ -185,7 +211,7 @@ def features():
     figure, axis = new_figure(36 * len(rows) + 110)
     forest(axis, rows, shown)
     axis.axvline(1, color=GREY, linewidth=1.5)
-    finish_axis(axis, xlabel="time per path, relative to the scene without the feature")
+    finish_axis(axis, xlabel="time per path, relative to the scene without the feature" + note_on_cores(devices("cost")))
     legend_above(axis, 3)
     return figure, shown
 
@@ -225,7 +251,7 @@ def facets():
     for index, (label, rows) in enumerate(shown.items()):
         lines(axes[0], [roughness for roughness, _ in rows], [cost for _, cost in rows], index, label)
     axes[0].axhline(1, color=GREY, linewidth=1.5)
-    finish_axis(axes[0], yscale="log", xlabel="roughness Pr", ylabel="error × time, visible normals are 1")
+    finish_axis(axes[0], yscale="log", xlabel="roughness Pr" + note_on_cores(found), ylabel="error × time, visible normals are 1")
     axes[0].yaxis.set_major_formatter(plain)
     for index, (degrees, rows) in enumerate(lost.items()):
         for key, style, label in (("single", "-", f"seen from {degrees}°"), ("corrected", "--", None if index else "corrected")):
@@ -236,7 +262,7 @@ def facets():
     return figure, {"sampling": shown, "lost": lost}
 
 
-PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, features, check, facets)}
+PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, cpu_backends, features, check, facets)}
 
 
 # ---------------------------------------------------------------------------------------------- files

@@ -12,7 +12,7 @@ from datetime import datetime
 from pathlib import Path
 
 from docs.ages import stamped
-from project import RECORDS, ROOT, Parser, UserError, commit, load_records, run_to_end, show_progress, table, write_json
+from project import RECORDS, ROOT, Parser, UserError, commit, load_records, processor, run_to_end, show_progress, table, write_json
 
 # What a reader would type. The first one builds the renderer, others what they need in addition.
 COMMANDS = ["run 1 --headless", "run 1 --headless --seed 2", "run 10 --headless", "check 1", "sample cosine", "report cornell_box 1 3", "book",
@@ -58,8 +58,8 @@ def main():
     parser.add_argument("name", help="of the record")
     parser.add_argument("--tests", action="store_true", help=f"also: {', '.join(LONG)}")
     options = parser.parse_args()
-    model = [line.partition(": ")[2] for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
-    record = {"processor": model[0] if model else "unknown", "cores": len(os.sched_getaffinity(0)), "load": os.getloadavg()[1],
+    model, cores = processor()
+    record = {"processor": model, "cores": cores, "load": os.getloadavg()[1],
               "date": datetime.now().strftime("%Y-%m-%d"), "commit": commit(), "commands": []}
     with tempfile.TemporaryDirectory() as folder:
         clone = Path(folder) / "lab"

@@ -4,8 +4,9 @@
 Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
 docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
 --peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass microfacets 5 7 9 10 11`, whose report.json
-belongs into docs/records/peers, `tests/mistakes/learn.py confusion`, `tests/measure/hard_cases.py`, `build/bin/facet_record --output
-docs/records/facets/DEVICE.json` and `./lab device --output docs/records/devices/DEVICE.json`.
+belongs into docs/records/peers, `./lab report --record docs/records/cpu/DEVICE.json --peer mitsuba --device llvmpipe`,
+`tests/mistakes/learn.py confusion`, `tests/measure/hard_cases.py`, `build/bin/facet_record --output docs/records/facets/DEVICE.json` and
+`./lab device --output docs/records/devices/DEVICE.json`.
 """
 import math
 import os
@@ -18,6 +19,7 @@ from docs.best_table import among_chapters, best_table
 from docs.bug_blocks import bug_block
 from docs.confusion_table import confusion_table, submission_table
 from docs.cost_tables import feature_table, growth_tables, seconds_text
+from docs.cpu_table import cpu_table
 from docs.facet_tables import furnace_table, sampling_table
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
@@ -150,7 +152,7 @@ def backend_table(record):
 
 
 # Tables of docs/results/DEVICE.md: from docs/records/FOLDER/DEVICE.json.
-DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table),
+DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table), "cpu": ("cpu", cpu_table),
                  "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,

@@ -27,17 +27,17 @@ class Render:
         self.scene, self.seed = scene, seed
         self.largest = max(1, (GPU_BATCH_PATHS if mi.variant() == GPU_VARIANT else MAX_BATCH_PATHS) // pixels)
         self.compiled = set()  # numbers of samples
-        self.calls = self.samples = self.seconds = self.sum = self.discarded_seconds = 0
+        self.calls = self.samples = self.seconds = self.cpu_seconds = self.sum = self.discarded_seconds = 0
 
     def call(self, samples):
-        """One render call: its image and seconds."""
+        """One render call: its image, and its seconds of wall time and of all threads."""
         self.calls += 1
-        started = time.perf_counter()
+        started, cpu_started = time.perf_counter(), time.process_time()
         image = mi.render(self.scene, spp=samples, seed=(self.seed * 65536 + self.calls) % (1 << 32))
         if mi.variant() != "scalar_rgb":
             dr.eval(image)
             dr.sync_thread()
-        return np.array(image, float), time.perf_counter() - started
+        return np.array(image, float), time.perf_counter() - started, time.process_time() - cpu_started
 
     def add(self, samples):
         """Renders about this many samples: most samplers round the number up, and need a kernel for each number. A first call,
@@ -49,13 +49,14 @@ class Render:
         if is_first:
             self.call(count)
             self.compiled.add(count)
-        image, seconds = self.call(count)
+        image, seconds, cpu_seconds = self.call(count)
         self.discarded_seconds += is_first * seconds  # of rendering alone: compiling is part of start-up
-        self.sum, self.seconds, self.samples = self.sum + count * image, self.seconds + seconds, self.samples + count
+        self.sum, self.samples = self.sum + count * image, self.samples + count
+        self.seconds, self.cpu_seconds = self.seconds + seconds, self.cpu_seconds + cpu_seconds
 
     def row(self, reference):
         image = self.sum / self.samples
-        return {"samples": self.samples, "seconds": self.seconds, "mean": image.mean(axis=(0, 1)).tolist(),
+        return {"samples": self.samples, "seconds": self.seconds, "cpu_seconds": self.cpu_seconds, "mean": image.mean(axis=(0, 1)).tolist(),
                 "rel_mse": rel_mse(image, reference) if reference else None}
 
 

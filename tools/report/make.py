@@ -6,11 +6,12 @@ two cores. Ctrl-C keeps what was measured; the same command then continues.
 """
 from pathlib import Path
 
-from project import CHAPTERS, GPU_VARIANT, ROOT, SAMPLERS, Parser, UserError, add_device_options, number
+from project import (CHAPTERS, CPU_VARIANTS, GPU_VARIANT, ROOT, SAMPLERS, Parser, UserError, add_device_options, chapter_named, number,
+                     processor)
 from references.images import find_references
 from report.measurement import Measurement, driver_of, find_device, report_cases, working_variants
 from report.page import write_report
-from report.studies import study_cases
+from report.studies import cpu_cases, study_cases
 
 GOES_ON = True
 
@@ -27,7 +28,8 @@ def parse():
                         help="of Mitsuba, besides independent; may be given several times")
     parser.add_argument("--output", type=Path, default=ROOT / "output/report", metavar="FOLDER", help="default: output/report")
     parser.add_argument("--record", type=Path, metavar="FILE.json",
-                        help="write no page, but measure what docs/results.md shows, as docs/records/chapters/DEVICE.json")
+                        help="write no page, but measure what docs/results.md shows, as docs/records/chapters/DEVICE.json; with --peer "
+                             "compare the backends of a CPU with Mitsuba's, as docs/records/cpu/DEVICE.json")
     return parser.parse_args()
 
 
@@ -41,23 +43,37 @@ def chosen_cases(options):
         return report_cases(scenes, chapters)
     variants = working_variants()
     cases = report_cases(scenes, chapters, variants, options.peer_sampler)
-    program = CHAPTERS[chapters[0]]
-    if driver_of(program, find_device(program, vars(options))).startswith("CPU"):
+    if is_on_cpu(options, CHAPTERS[chapters[0]]):
         return cases
     on_gpu = [variant for variant in variants if variant == GPU_VARIANT]
     return cases + report_cases(scenes, chapters, on_gpu, options.peer_sampler if on_gpu else [], is_large=True)
 
 
+def is_on_cpu(options, program):
+    return driver_of(program, find_device(program, vars(options))).startswith("CPU")
+
+
+def recorded_cases(options):
+    if options.words or options.peer_sampler:
+        raise UserError("--record measures a fixed list of cases: no scenes, chapters or samplers go with it")
+    if not options.peer:
+        return study_cases()
+    if not is_on_cpu(options, chapter_named("path_regeneration")):
+        raise UserError("--record with --peer compares backends of a CPU: choose it by --device, such as --device llvmpipe")
+    if not set(CPU_VARIANTS) <= set(working_variants()):
+        raise UserError("Mitsuba lacks LLVM here: install libllvm19, or a newer one, and let DRJIT_LIBLLVM_PATH name its library")
+    return cpu_cases()
+
+
 def make_record(options, settings):
-    if options.words or options.peer or options.peer_sampler:
-        raise UserError("--record measures a fixed list of cases: no scenes, chapters or peers go with it")
-    measurement = Measurement(options.record, study_cases(), settings)
+    measurement = Measurement(options.record, recorded_cases(options), settings)
     measurement.measure()
+    measurement.record["environment"] |= dict(zip(("processor", "cores"), processor()))
     measurement.finish()
     for run in (run for case in measurement.record["cases"] for run in case["runs"]):
         del run["rows"][:-1]  # the others are not displayed
     measurement.save()
-    print(f"{options.record}: complete; python3 tools tables fills docs/results/ from records in docs/records/chapters")
+    print(f"{options.record}: complete; python3 tools tables fills docs/results/ from records in docs/records")
 
 
 def make_report(options, settings):

@@ -35,11 +35,12 @@ def relative(path):
 
 def new_case(scene_file, reference_file, name, program, options=(), is_peer=False, is_large=False):
     """A case to be rendered repeatedly. Resolution and path length are the reference's, if any. A large picture has `scale` times
-    that resolution, and is compared with the reference after averaging blocks of scale x scale pixels."""
+    that resolution, and is compared with the reference after averaging blocks of scale x scale pixels. `variables` are NAME=VALUE of
+    the program's environment."""
     case = {
         "scene": reference_file.stem if reference_file else scene_file.stem, "scene_file": relative(scene_file),
         "reference_file": None, "reference": None, "width": 128, "height": 128, "max_path_length": None, "scale": 1, "case": name,
-        "program": program, "options": " ".join(options), "is_peer": is_peer, "backend": None, "note": "",
+        "program": program, "options": " ".join(options), "is_peer": is_peer, "backend": None, "variables": [], "note": "",
         "samples": None, "paths_per_sample": 1, "refused": None, "runs": [], "pictures": {},
     }
     if reference_file:
@@ -96,6 +97,7 @@ def run_case(case, settings, arguments, run=run_once):
     or alike."""
     with tempfile.TemporaryDirectory() as folder:
         limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
+        limited += ["env", *case["variables"]] if case["variables"] else []
         program = peer_command(case["program"]) if case["is_peer"] else [*limited, program_file(case["program"])]
         command = [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
         if case["reference_file"]:

@@ -9,7 +9,7 @@ import re
 from project import CHAPTERS, ROOT, shaders_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.
-RENDERER = ["shaders", "common/film", "common/gpu", "common/rendering", "common/scene", "common/tracing"]
+RENDERER = ["shaders", "common/film", "common/gpu", "common/native", "common/rendering", "common/scene", "common/tracing"]
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 

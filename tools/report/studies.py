@@ -8,9 +8,14 @@ worked examples, with rows of a label, a statement and what is shown of its resu
 """
 import math
 
-from project import CHAPTERS, ROOT, UserError, original, read_json, table
-from report.measurement import new_case
+from project import CHAPTERS, CPU_VARIANTS, ROOT, UserError, chapter_named, original, read_json, table
+from references.images import find_references
+from report.measurement import new_case, report_cases
 from report.numbers import short
+
+CPU_SCENES = ["cornell_box", "heart_light", "clear_glass"]
+CPU_BACKENDS = {"compute": {"backend": "compute"}, "native, one by one": {"backend": "native"},
+                "native, lanes": {"backend": "native", "variables": ["LAB_LANES=1"]}}
 
 
 def measures():
@@ -49,6 +54,13 @@ def study_cases():
              for folder, measure in found.items() if place in measure.get("compared_on", [])]
     return cases + [case(place, name, folder, *options.split()) for folder, measure in found.items() for study in measure.get("studies", [])
                     for place in study["on"] for name, options in study["cases"].items()]
+
+
+def cpu_cases():
+    """Our backends for CPUs and Mitsuba's variants, on a few scenes. The sampler is Mitsuba's best on most scenes."""
+    folder, pairs = chapter_named("path_regeneration"), find_references(CPU_SCENES)
+    ours = [new_case(scene, reference, name, folder) | how for scene, reference in pairs for name, how in CPU_BACKENDS.items()]
+    return ours + report_cases(pairs, [], CPU_VARIANTS, ["multijitter"])
 
 
 def example_table(rows):
