@@ -7,6 +7,7 @@
 
 #include "native/module.h"
 #include "native/translator.h"
+#include "test_files.h"
 
 namespace lab {
 namespace {
@@ -174,7 +175,7 @@ std::string shader_of(const std::vector<uint32_t>& seeds) {
            calls + "}\n";
 }
 
-std::vector<uint32_t> run(const std::string& glsl, size_t program_count) {
+std::vector<uint32_t> run(const native::Code& code, size_t program_count) {
     std::vector<uint32_t> results(program_count * invocations * group_count), table(16);
     for (uint32_t i = 0; i < 16; ++i) table[i] = i * i * 40503u;
     native::Bindings bindings{};
@@ -184,25 +185,55 @@ std::vector<uint32_t> run(const std::string& glsl, size_t program_count) {
     bind(1, results);
     bind(2, table);
     bind(3, table);  // four pairs
-    native::run_groups(native::load(glsl), bindings, 0, group_count);
+    native::run_groups(code.run, bindings, 0, group_count);
     return results;
 }
 
 void expect_equal_results(uint32_t first_seed, uint32_t count) {
-    setenv("LAB_LANES", "1", 1);
     std::vector<uint32_t> seeds(count);
     std::iota(seeds.begin(), seeds.end(), first_seed);
     const std::string glsl = shader_of(seeds);
-    const std::vector<uint32_t> in_lanes = run(glsl, count);
-    ASSERT_EQ(native::invocations_at_once(), native::lane_count);
+    const native::Code lanes = native::load(glsl);
+    ASSERT_EQ(lanes.why_one_by_one, "");
     native::set_mode(native::Mode::debug);
-    const std::vector<uint32_t> one_by_one = run(glsl, count);
-    ASSERT_EQ(native::invocations_at_once(), 1);
+    const native::Code scalar = native::load(glsl);
+    ASSERT_NE(scalar.why_one_by_one, "");
     native::set_mode(native::Mode::fast);
-    unsetenv("LAB_LANES");
+    const std::vector<uint32_t> in_lanes = run(lanes, count), one_by_one = run(scalar, count);
     for (size_t i = 0; i < in_lanes.size(); ++i)
         ASSERT_EQ(in_lanes[i], one_by_one[i]) << "invocation " << i % (invocations * group_count) << " of\n"
                                               << shader_of({seeds[i / (invocations * group_count)]});
+}
+
+// The number that a shader writes, and why it runs one by one.
+std::pair<uint32_t, std::string> result_and_reason(const std::string& body) {
+    const native::Code code = native::load(
+        "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
+        "layout(local_size_x = 1) in;\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
+        body + "\n}\n");
+    return {run(code, 1).front(), code.why_one_by_one};
+}
+
+TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"uint x = 2u;\nswitch (i) { case 0: x = 5u; }\nresults[i] = x;", "test.glsl:6: lanes lack 'switch'"},
+        {"uint a[2];\na[0] = 3u;\na[i] = 5u;\nresults[i] = a[0];",
+         "test.glsl:7: lanes lack assignments to 'a' as it is indexed here"},
+        {"struct S { uint x; };\nS s = S(5u);\nresults[i] = s.x;", "test.glsl:5: lanes lack structures inside of a function"}};
+    for (const auto& [body, reason] : cases) EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string(reason)));
+    EXPECT_EQ(result_and_reason("results[i] = 5u;"), std::pair(5u, std::string()));
+}
+
+TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
+    const TestFolder folder;
+    const auto compiler = folder.write(
+        "compiler",
+        "#!/bin/sh\nif grep -q lane_ \"$1\"; then echo test.glsl:7:1: error: no vectors; exit 1; fi\nexec c++ \"$@\"\n");
+    std::filesystem::permissions(compiler, std::filesystem::perms::owner_all);
+    setenv("CXX", compiler.c_str(), 1);
+    EXPECT_EQ(result_and_reason("results[i] = 5u;"),
+              std::pair(5u, compiler.string() + " does not compile its code: test.glsl:7: no vectors"));
+    unsetenv("CXX");
 }
 
 TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 50); }
