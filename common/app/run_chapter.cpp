@@ -106,8 +106,11 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
     if (chapter.unlimited_path_length && !job.options.light.max_path_length)
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
-    if (build.backend == Backend::native && native::invocations_at_once() > 1)
-        std::cout << "at once        " << native::invocations_at_once() << " paths on each core" << std::endl;
+    if (build.backend == Backend::native) {
+        const auto [count, why_not_more] = build.renderer->tracer().paths_at_once();
+        std::cout << "at once        " << count << (count == 1 ? " path" : " paths") << " on each core"
+                  << (why_not_more.empty() ? "" : ": " + why_not_more) << std::endl;
+    }
 }
 
 // Builds a job without a window. If `auto` chooses `native` and that cannot run the shader, the device's backends have to.

@@ -50,7 +50,7 @@ class DeclarationReader : protected ExpressionReader {
         }
         text += " " + kind + "() = default; " + kind + "(" + parameters + ")" + initialisers + " {}";
         if (!has_lanes()) return text + " bool operator==(const " + name + "&) const = default;" + take();
-        if (depth_ >= 0 && scopes_.size() > 1) refuse();  // a template must not be inside of a function
+        if (depth_ >= 0 && scopes_.size() > 1) refuse("structures inside of a function");  // where C++ allows no templates
         return text + " using VaryingStruct = " + kind + "<lanes::V>; template <template <typename> class X> " + kind +
                "(const " + kind + "<X>& other__)" + copies +
                " {} template <typename F, typename... T> static void fields(const F& f, T&&... x__) {" + members + " }" + take() +
@@ -79,7 +79,7 @@ class DeclarationReader : protected ExpressionReader {
                 const Expression initialiser = peek() == "{" ? braces() : assignment();
                 value += initialiser.text;
                 if (initialiser.is_varying) vary(token);
-                if (is_global && initialiser.is_masked && has_lanes()) refuse();
+                if (is_global && initialiser.is_masked && has_lanes()) refuse("calls in the initial value of a global variable");
                 for (size_t i = begin; i + 1 < at_; ++i)
                     is_constant &= tokens_[i + 1].text != "(" || !is_name(tokens_[i].text) ||
                                    scalar_types.contains(tokens_[i].text) || is_vector_type(tokens_[i].text);

@@ -13,6 +13,12 @@ class ExpressionReader : protected TokenReader, protected Variance {
     bool is_type(const std::string& token) const {
         return scalar_types.contains(token) || is_vector_type(token) || structs_.contains(token);
     }
+    void refuse(const std::string& what) { Variance::refuse(place(), what); }
+    Change change_of(const Expression& target, bool is_varying) {
+        const Change change = note_change(target, is_varying);
+        if (change == Change::refused) refuse("assignments to '" + target.root + "' as it is indexed here");
+        return change;
+    }
     // [2][3] after a name or a type: the sizes, empty for [], and then those `of_type`.
     std::vector<std::string> dimensions(const std::vector<std::string>& of_type = {}) {
         std::vector<std::string> sizes;
@@ -50,7 +56,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
     // `target` op= `value` becomes `target` = `target` op `value` where lanes differ.
     Expression assign(const Expression& target, const std::string& token, const std::string& symbol, const Expression& value) {
         Expression all = target;
-        const Change change = note_change(target, value.is_varying);
+        const Change change = change_of(target, value.is_varying);
         all.add(value);
         all.writes.insert(target.root);
         all.text = target.assignable() + token + value.text;
@@ -137,7 +143,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         if (!operators.contains(symbol)) return postfix();
         const std::string token = take();
         const Expression inner = unary();
-        if (symbol.size() == 2 && note_change(inner, false) != Change::uniform)
+        if (symbol.size() == 2 && change_of(inner, false) != Change::uniform)
             return assign(inner, token, symbol.substr(1) + "=", {"1"});
         Expression operand = {token};
         operand.add(inner);
@@ -167,7 +173,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 }
             } else if (peek() == "++" || peek() == "--") {
                 const std::string symbol = peek();
-                if (note_change(all, false) != Change::uniform) {
+                if (change_of(all, false) != Change::uniform) {
                     const std::string before = all.text;
                     const Expression changed = assign(all, skip(), symbol.substr(1) + "=", {"1"});
                     all = changed;
@@ -183,7 +189,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                     all.text += dot + name;
                     all.indices = "";
                     if (peek() == "(") {  // length()
-                        if (!all.place.empty()) refuse();
+                        if (!all.place.empty()) refuse("length() of an array in memory");
                         all.text += join({take(), expect(")")});
                         all.is_varying = false;
                     } else if (!all.place.empty()) {
@@ -269,14 +275,14 @@ class ExpressionReader : protected TokenReader, protected Variance {
             Expression& argument = arguments[i];
             const bool is_out = is_out_argument(i);
             if (has_lanes() && i == 0 && (word.starts_with("atomic") || (word == "texelFetch" && !argument.place.empty()))) {
-                if (argument.place.empty()) refuse();
+                if (argument.place.empty()) refuse("atomic functions of one variable for all paths");
                 argument.text = argument.place;
             } else if (is_out) {
                 // Another name for the variable is a global's or an argument's.
                 bool is_known_twice = globals_.contains(argument.root) || !argument.indices.empty() || !argument.place.empty();
                 for (size_t j = 0; j < arguments.size(); ++j) is_known_twice |= j != i && arguments[j].root == argument.root;
                 if (has_lanes()) {
-                    note_change(argument, true);
+                    change_of(argument, true);
                     is_known_twice |= kind == Call::builtin;
                 }
                 argument.text = is_known_twice

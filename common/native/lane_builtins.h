@@ -2,14 +2,15 @@
 #pragma once
 #include "native/lane_statements.h"
 
-// Of the C library: libmvec.
-extern "C" __m256 _ZGVdN8v_sinf(__m256);
-extern "C" __m256 _ZGVdN8v_cosf(__m256);
-extern "C" __m256 _ZGVdN8v_expf(__m256);
-extern "C" __m256 _ZGVdN8v_logf(__m256);
-extern "C" __m256 _ZGVdN8vv_powf(__m256, __m256);
-
 namespace lab::native::lanes {
+
+// Of the C library: libmvec.
+using Floats = Lanes<float>::Raw;
+extern "C" Floats _ZGVdN8v_sinf(Floats);
+extern "C" Floats _ZGVdN8v_cosf(Floats);
+extern "C" Floats _ZGVdN8v_expf(Floats);
+extern "C" Floats _ZGVdN8v_logf(Floats);
+extern "C" Floats _ZGVdN8vv_powf(Floats, Floats);
 
 struct Builtins {
     using Plain = native::Builtins;
@@ -20,7 +21,7 @@ struct Builtins {
     }
     template <typename F, typename... T>
     LAB_INLINE static Lanes<float> by_vector(const F& f, const T&... x) {
-        return Lanes<float>::of(reinterpret_cast<Lanes<float>::Raw>(f(reinterpret_cast<__m256>(Lanes<float>(x).raw)...)));
+        return Lanes<float>::of(f(Lanes<float>(x).raw...));
     }
 
     // Functions of each component. What is not below is called for each lane by itself.
@@ -42,8 +43,8 @@ struct Builtins {
     LAB_ALONE(isinf) LAB_ALONE(sign) LAB_ALONE(bitCount) LAB_ALONE(findLSB) LAB_ALONE(findMSB) LAB_ALONE(bitfieldExtract)
     LAB_ALONE(bitfieldInsert) LAB_ALONE(ldexp) LAB_ALONE(fma) LAB_ALONE(step) LAB_ALONE(mod)
     LAB_VECTOR(sin, _ZGVdN8v_sinf(z...)) LAB_VECTOR(cos, _ZGVdN8v_cosf(z...)) LAB_VECTOR(exp, _ZGVdN8v_expf(z...))
-    LAB_VECTOR(log, _ZGVdN8v_logf(z...)) LAB_VECTOR(pow, _ZGVdN8vv_powf(z...)) LAB_VECTOR(sqrt, _mm256_sqrt_ps(z...))
-    LAB_EACH(floor, each, [](Float a) { return by_vector([](__m256 z) { return _mm256_floor_ps(z); }, a); })
+    LAB_VECTOR(log, _ZGVdN8v_logf(z...)) LAB_VECTOR(pow, _ZGVdN8vv_powf(z...)) LAB_VECTOR(sqrt, __builtin_ia32_sqrtps256(z...))
+    LAB_EACH(floor, each, [](Float a) { return by_vector([](Floats z) { return __builtin_ia32_roundps256(z, 1); }, a); })
     LAB_EACH(inversesqrt, each, [](Float a) { return 1.0f / sqrt(a); })
     LAB_EACH(fract, each, [](Float a) { return a - floor(a); })
     LAB_EACH(min, each, [](const auto& a, const auto& b) { return select(less(b, a), b, a); })

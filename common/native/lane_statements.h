@@ -20,6 +20,10 @@ struct Ref {
     T* base;
     Lanes<int> offset;
 };
+template <typename T>
+inline constexpr bool is_ref = false;
+template <typename T>
+inline constexpr bool is_ref<Ref<T>> = true;
 template <typename T, typename U>
 void store(const Mask& mask, const Ref<T>& target, const U& value);
 
@@ -50,7 +54,7 @@ LAB_INLINE Swizzled<Vec<n, T>, i...> swizzled(Vec<n, T>& v) {
 template <typename Target, typename U>
 LAB_INLINE void assign(const Mask& mask, Target&& target, const U& value) {
     using T = std::remove_cvref_t<Target>;
-    if constexpr (requires { target.offset; })
+    if constexpr (is_ref<T>)
         store(mask, target, value);
     else if constexpr (is_number<T>)
         target = select(mask, T(value), target);
@@ -163,43 +167,50 @@ LAB_INLINE auto field(const Ref<T>& ref, const F& f) {
 // Loads `count` words in a row for each lane. Rows that are transposed are several times as fast as gathering words.
 template <int count>
 LAB_INLINE void load_words(const Mask& mask, const void* base, const Lanes<int>& offset, Lanes<int>* words) {
+    using Raw = Lanes<int>::Raw;
     if constexpr (count == 1) {
-        words[0].raw = reinterpret_cast<Lanes<int>::Raw>(
-            _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), static_cast<const int*>(base),
-                                        reinterpret_cast<__m256i>(offset.raw), reinterpret_cast<__m256i>(mask.raw), 4));
+#ifdef __clang__
+        words[0].raw = __builtin_ia32_gatherd_d256(Raw{}, static_cast<const int*>(base), offset.raw, mask.raw, 4);
+#else
+        words[0].raw = __builtin_ia32_gathersiv8si(Raw{}, static_cast<const int*>(base), offset.raw, mask.raw, 4);
+#endif
         return;
     }
     int32_t offsets[lane_count];
     const auto first = offset.raw & mask.raw;  // idle lanes read the first element
     std::memcpy(offsets, &first, sizeof offsets);
     const auto row = [&](int lane, int word) { return static_cast<const int*>(base) + offsets[lane] + word; };
-    const auto put = [&](int word, __m256i x) { words[word].raw = reinterpret_cast<Lanes<int>::Raw>(x); };
     for (int word = 0; count >= 4 && word < count; word += 4) {
         const int begin = std::min(word, count - 4);
         const auto both = [&](int lane) {
-            return _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(row(lane + 4, begin)),
-                                       reinterpret_cast<const __m128i*>(row(lane, begin)));
+            int low __attribute__((vector_size(16))), high __attribute__((vector_size(16)));
+            std::memcpy(&low, row(lane, begin), sizeof low);
+            std::memcpy(&high, row(lane + 4, begin), sizeof high);
+            return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
         };
-        const __m256i a = _mm256_unpacklo_epi32(both(0), both(1)), b = _mm256_unpacklo_epi32(both(2), both(3));
-        const __m256i c = _mm256_unpackhi_epi32(both(0), both(1)), d = _mm256_unpackhi_epi32(both(2), both(3));
-        put(begin, _mm256_unpacklo_epi64(a, b));
-        put(begin + 1, _mm256_unpackhi_epi64(a, b));
-        put(begin + 2, _mm256_unpacklo_epi64(c, d));
-        put(begin + 3, _mm256_unpackhi_epi64(c, d));
+        const Raw a = both(0), b = both(1), c = both(2), d = both(3);
+        const Raw low_ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+                  low_cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+        const Raw high_ab = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
+                  high_cd = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+        words[begin].raw = __builtin_shufflevector(low_ab, low_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+        words[begin + 1].raw = __builtin_shufflevector(low_ab, low_cd, 2, 3, 10, 11, 6, 7, 14, 15);
+        words[begin + 2].raw = __builtin_shufflevector(high_ab, high_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+        words[begin + 3].raw = __builtin_shufflevector(high_ab, high_cd, 2, 3, 10, 11, 6, 7, 14, 15);
     }
     if constexpr (count < 4) {
+        typedef int64_t Pairs __attribute__((vector_size(32)));
         const auto pair = [&](int lane) {
-            long long x;
+            int64_t x;
             std::memcpy(&x, row(lane, 0), sizeof x);
             return x;
         };
-        const __m256 a = _mm256_castsi256_ps(_mm256_setr_epi64x(pair(0), pair(1), pair(4), pair(5)));
-        const __m256 b = _mm256_castsi256_ps(_mm256_setr_epi64x(pair(2), pair(3), pair(6), pair(7)));
-        put(0, _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0x88)));
-        put(1, _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0xdd)));
+        const Raw a = reinterpret_cast<Raw>(Pairs{pair(0), pair(1), pair(4), pair(5)});
+        const Raw b = reinterpret_cast<Raw>(Pairs{pair(2), pair(3), pair(6), pair(7)});
+        words[0].raw = __builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14);
+        words[1].raw = __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
         if constexpr (count == 3)
-            put(2, _mm256_setr_epi32(*row(0, 2), *row(1, 2), *row(2, 2), *row(3, 2), *row(4, 2), *row(5, 2), *row(6, 2),
-                                     *row(7, 2)));
+            for (int lane = 0; lane < lane_count; ++lane) words[2].raw[lane] = *row(lane, 2);
     }
 }
 // Calls `f` for each number, in the order of memory.

@@ -1,8 +1,7 @@
 // Eight invocations of a translated shader at once. A number that differs between them is a `Lanes`, a mask says which ones
 // execute a statement, and each reads memory at an index of its own. translator.h says what uses this; it needs AVX2.
+// Instructions are GCC's builtins: it reads <immintrin.h> for longer than some chapters.
 #pragma once
-#include <immintrin.h>
-
 #include <algorithm>
 #include <cstring>
 
@@ -46,7 +45,7 @@ struct Lanes {
 using Mask = Lanes<bool>;
 
 LAB_INLINE uint32_t bits_of(const Mask& mask) {
-    return static_cast<uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask.raw)));
+    return static_cast<uint32_t>(__builtin_ia32_movmskps256(reinterpret_cast<Lanes<float>::Raw>(mask.raw)));
 }
 LAB_INLINE bool any(const Mask& mask) { return bits_of(mask) != 0; }
 template <typename F>

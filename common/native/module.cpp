@@ -5,8 +5,7 @@
 namespace lab::native {
 std::vector<std::string> missing_tools() { return {"Linux or macOS"}; }
 void set_mode(Mode) {}
-RunGroup load(const std::string&) { return nullptr; }
-int invocations_at_once() { return 1; }
+Code load(const std::string&) { return {}; }
 MakeRayTracer load_embree() { return nullptr; }
 std::string ray_tracer_name() { return "the lab's own tree"; }
 void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
@@ -46,14 +45,16 @@ namespace {
 namespace fs = std::filesystem;
 
 Mode mode = Mode::fast;
-int at_once = 1;  // invocations of the shader that was loaded last
 
-// Whether this CPU, Embree's packets and the C library have what lanes need.
-bool has_lanes() {
+// Why no shader may run in lanes; empty if some may.
+std::string why_no_lanes() {
+    if (mode == Mode::checked) return "--sanitize";
+    if (mode == Mode::debug) return "a debugger sees no lanes";
+    if (const char* wish = std::getenv("LAB_LANES"); wish && std::string(wish) == "0") return "LAB_LANES=0";
 #if defined(__x86_64__) && defined(__GLIBC__)
-    return __builtin_cpu_supports("avx2") && std::getenv("LAB_LANES");
+    return __builtin_cpu_supports("avx2") ? "" : "the CPU lacks AVX2";
 #else
-    return false;
+    return "lanes need an x86 CPU and the GNU C library";
 #endif
 }
 
@@ -128,8 +129,8 @@ std::string first_error(std::istream& log) {
     return first.empty() ? "it says nothing" : first;
 }
 
-// Compiles C++ to a shared library in the cache.
-void compile(const std::string& text, const std::vector<std::string>& arguments, const std::string& name) {
+// Compiles C++ to a shared library in the cache. Returns what the compiler has against it, or nothing.
+std::string compile(const std::string& text, const std::vector<std::string>& arguments, const std::string& name) {
     const fs::path place = cache_file(name + "-" + std::to_string(process_id()));
     const auto with = [&](const char* ending) { return fs::path(place.string() + ending); };
     std::error_code ignored;
@@ -142,31 +143,29 @@ void compile(const std::string& text, const std::vector<std::string>& arguments,
     const std::string error = first_error(log);
     if (is_compiled) write_cache(name, read_file(with(".so"), UINT64_MAX));
     for (const char* ending : {".cpp", ".so", ".log"}) fs::remove(with(ending), ignored);
-    if (!is_compiled)
-        throw UserError("the backend native: " + command.front() + " does not compile its code: " + error +
-                        ": use another backend, such as --backend compute");
+    return is_compiled ? "" : command.front() + " does not compile its code: " + error;
 }
 
-// A library whose C++ is the first text that compiles. It comes from the cache if possible.
-void* load_library(const std::vector<std::string>& texts, const std::vector<std::string>& arguments) {
-    std::string key = find_compiler().string() + processor();
-    for (const auto& text : texts) key += text;
+// A library, from the cache if possible. If the compiler refuses it, the result is null and `refusal` says why.
+void* load_library(const std::string& text, const std::vector<std::string>& arguments, std::string& refusal) {
+    std::string key = find_compiler().string() + processor() + text;
     for (const auto& argument : arguments) key += " " + argument;
     for (const char* header : {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "bindings.h", "embree.h"})
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
     const fs::path file = cache_file(name);
-    for (size_t i = 0; i < texts.size() && !read_cache(name); ++i) {
-        try {
-            compile(texts[i], arguments, name);
-        } catch (const UserError&) {
-            if (i + 1 == texts.size()) throw;
-        }
-    }
+    if (!read_cache(name)) refusal = compile(text, arguments, name);
+    if (!refusal.empty()) return nullptr;
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library)
         throw UserError(std::string("the backend native cannot load its code: ") + dlerror() +
                         ": set XDG_CACHE_HOME to a folder that allows programs");
+    return library;
+}
+void* load_library(const std::string& text, const std::vector<std::string>& arguments) {
+    std::string refusal;
+    void* library = load_library(text, arguments, refusal);
+    if (!library) throw UserError("the backend native: " + refusal + ": use another backend, such as --backend compute");
     return library;
 }
 
@@ -201,20 +200,20 @@ std::vector<std::string> missing_tools() {
 
 void set_mode(Mode wanted) { mode = wanted; }
 
-RunGroup load(const std::string& preprocessed_glsl) {
-    std::vector<std::string> texts{translate(preprocessed_glsl)};
+Code load(const std::string& preprocessed_glsl) {
+    const auto code_of = [](void* library, const std::string& why_one_by_one) {
+        return Code{reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group")), why_one_by_one};
+    };
     auto arguments = compiler_arguments();
-    if (mode == Mode::fast && has_lanes()) {
-        // No debugger sees lanes. GCC 12 crashes where it tries to make vectors of vectors.
-        arguments.insert(arguments.end(), {"-g0", "-fno-tree-vectorize", "-lmvec"});
-        if (const std::string text = translate_for_lanes(preprocessed_glsl); !text.empty()) texts.insert(texts.begin(), text);
+    std::string refusal = why_no_lanes();
+    if (refusal.empty()) {
+        const std::string text = translate_for_lanes(preprocessed_glsl, refusal);
+        auto for_lanes = arguments;  // GCC 12 crashes where it tries to make vectors of vectors
+        for_lanes.insert(for_lanes.end(), {"-fno-tree-vectorize", "-lmvec"});
+        if (void* library = refusal.empty() ? load_library(text, for_lanes, refusal) : nullptr) return code_of(library, "");
     }
-    void* library = load_library(texts, arguments);
-    at_once = *static_cast<const int*>(dlsym(library, "lab_invocations_at_once"));
-    return reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group"));
+    return code_of(load_library(translate(preprocessed_glsl), arguments), refusal);
 }
-
-int invocations_at_once() { return at_once; }
 
 MakeRayTracer load_embree() {
     const std::string embree = find_embree();
@@ -222,7 +221,7 @@ MakeRayTracer load_embree() {
     auto arguments = compiler_arguments();
     arguments.push_back("-l" + embree);
     const std::string text = "#include <" + embree + "/rtcore.h>\n#include \"native/embree.h\"\n";
-    return reinterpret_cast<MakeRayTracer>(dlsym(load_library({text}, arguments), "lab_make_ray_tracer"));
+    return reinterpret_cast<MakeRayTracer>(dlsym(load_library(text, arguments), "lab_make_ray_tracer"));
 }
 
 std::string ray_tracer_name() {

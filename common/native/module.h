@@ -20,12 +20,15 @@ enum class Mode {
 // How all shaders are compiled that are loaded from now on; `fast` without a call.
 void set_mode(Mode mode);
 
-// A compute shader as code, which stays loaded. It comes from the cache if possible. Throws UserError if the compiler refuses
-// what translate() makes of it.
-RunGroup load(const std::string& preprocessed_glsl);
-// How many invocations the shader that was loaded last runs at once: 8 on CPUs with AVX2, or 1 where lanes lack something that it
-// uses, and in the other modes.
-int invocations_at_once();
+// A compute shader as code, which stays loaded.
+struct Code {
+    RunGroup run;
+    // Empty where lane_count invocations run at once. They do on CPUs with AVX2, unless lanes lack something that the shader
+    // uses.
+    std::string why_one_by_one;
+};
+// It comes from the cache if possible. Throws UserError if the compiler refuses what translate() makes of it.
+Code load(const std::string& preprocessed_glsl);
 
 // Rays by Embree, compiled and cached in the same way. Null where Embree or its headers are missing.
 MakeRayTracer load_embree();

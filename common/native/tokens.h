@@ -117,7 +117,8 @@ class TokenReader {
         ++at_;
         return tokens_[at_ - 1].space;
     }
-    [[noreturn]] void fail() const {
+    // The file and line of the next token.
+    std::string place() const {
         std::string place = "the shader";
         int line = 0;
         for (size_t i = 0; i <= at_ && i < tokens_.size(); ++i) {
@@ -131,7 +132,10 @@ class TokenReader {
             }
             line += static_cast<int>(std::count(space.begin() + static_cast<std::ptrdiff_t>(begin), space.end(), '\n'));
         }
-        throw UserError(place + ":" + std::to_string(line) + ": the backend native does not know what '" + peek() +
+        return place + ":" + std::to_string(line);
+    }
+    [[noreturn]] void fail() const {
+        throw UserError(place() + ": the backend native does not know what '" + peek() +
                         "' means here: use another one, --backend compute");
     }
     static std::string spelled(const std::string& token) {

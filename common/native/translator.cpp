@@ -10,9 +10,9 @@ namespace {
 class Translator : DeclarationReader {
   public:
     Translator(const std::string& glsl, const Variance& variance) : DeclarationReader(glsl, variance) {}
-    using Variance::is_refused;
     using Variance::is_settled;
     using Variance::next;
+    using Variance::refusal;
 
     std::string translate() {
         std::string text;
@@ -27,8 +27,6 @@ class Translator : DeclarationReader {
                "namespace lab::native {\nstruct Shader : " + prefix + "ShaderBase {\n" + usings_ + text + R"(
 };
 }
-extern "C" __attribute__((visibility("default"))) const int lab_invocations_at_once = )" +
-               (has_lanes() ? "lab::native::lane_count" : "1") + R"(;
 extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_group(
     const lab::native::Bindings& bindings, uint32_t group, char* error, size_t size) {
     return lab::native::)" +
@@ -251,7 +249,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
             const bool is_declared = is_declaration();
             const Expression all = is_parenthesised ? parenthesised() : simple();
             if (all.is_varying) vary(token);
-            if (is_declared && is_varying) refuse();
+            if (is_declared && is_varying) refuse("a declaration in a loop's condition");
             return is_varying ? "loop__.goes_on(" + all.text + ")" : all.text;
         };
         if (word == "do") {
@@ -323,7 +321,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         if (word == "struct") return join({structure(), expect(";")});
         if (word == "if") return branch();
         if (word == "switch") {
-            if (has_lanes()) refuse();
+            if (has_lanes()) refuse("'switch'");
             return join({take(), parenthesised().text, statement()});
         }
         if (word == "while" || word == "do" || word == "for") return loop();
@@ -350,11 +348,14 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
 
 std::string translate(const std::string& glsl) { return Translator(glsl, Variance(false)).translate(); }
 
-std::string translate_for_lanes(const std::string& glsl) {
+std::string translate_for_lanes(const std::string& glsl, std::string& refusal) {
     for (Variance variance(true);;) {
         Translator translator(glsl, variance);
         const std::string text = translator.translate();
-        if (translator.is_settled()) return translator.is_refused() ? "" : text;
+        if (translator.is_settled()) {
+            refusal = translator.refusal();
+            return text;
+        }
         variance = translator.next();
     }
 }

@@ -49,8 +49,8 @@ class Variance {
     explicit Variance(bool has_lanes) : has_lanes_(has_lanes) {}
     bool has_lanes() const { return has_lanes_; }
     bool is_settled() const { return is_settled_; }
-    // Whether the shader uses what lanes cannot do.
-    bool is_refused() const { return is_refused_; }
+    // What the shader uses that lanes lack, after its line; empty if there is nothing.
+    const std::string& refusal() const { return refusal_; }
     // For another pass.
     Variance next() const {
         Variance same(has_lanes_);
@@ -61,7 +61,9 @@ class Variance {
     }
 
   protected:
-    void refuse() { is_refused_ = true; }
+    void refuse(const std::string& place, const std::string& what) {
+        if (refusal_.empty()) refusal_ = place + ": lanes lack " + what;
+    }
 
     struct Variable {
         size_t token;  // that declares it
@@ -90,14 +92,14 @@ class Variance {
     void vary_function(const std::string& signature) { is_settled_ &= !varying_functions_.insert(signature).second; }
 
     // Notes that a variable changes. Where it varies, lanes may still change it together.
-    enum class Change { uniform, of_all_lanes, of_some_lanes };
+    enum class Change { uniform, of_all_lanes, of_some_lanes, refused };
     Change note_change(const Expression& target, bool is_varying) {
         if (!has_lanes_) return Change::uniform;
         const Variable* variable = find(target.root);
-        if (target.is_picked || !variable || (variable->is_memory && target.place.empty())) refuse();
-        if (!variable || variable->is_memory) return Change::of_some_lanes;
+        if (target.is_picked || !variable || (variable->is_memory && target.place.empty())) return Change::refused;
+        if (variable->is_memory) return Change::of_some_lanes;
         is_settled_ &= !written_.insert(variable->token).second;
-        if (is_varying || depth_ > variable->depth) vary(variable->token);
+        if (is_varying || !target.place.empty() || depth_ > variable->depth) vary(variable->token);
         if (!varies(variable->token)) return Change::uniform;
         return depth_ > variable->depth ? Change::of_some_lanes : Change::of_all_lanes;
     }
@@ -110,7 +112,8 @@ class Variance {
     Names globals_;
 
   private:
-    bool has_lanes_, is_settled_ = true, is_refused_ = false;
+    bool has_lanes_, is_settled_ = true;
+    std::string refusal_;
     std::set<size_t> varying_, written_;  // tokens
     Names varying_functions_;             // name/number of arguments
 };

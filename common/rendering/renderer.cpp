@@ -4,7 +4,6 @@
 
 #include "clock.h"
 #include "files/project_folder.h"
-#include "native/module.h"
 #include "platform.h"
 
 namespace lab {
@@ -125,7 +124,7 @@ bool Renderer::advance(uint32_t target_samples) {
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
         // More at once keep lanes busy: one whose pixel is finished waits for its neighbours.
-        const bool has_lanes = is_on_host_ && native::invocations_at_once() > 1;
+        const bool has_lanes = tracer_->paths_at_once().count > 1;
         const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, has_lanes ? samples_per_group : 1.0));
         pass_samples_ = finished_samples_ + std::min(step, target_samples - finished_samples_);
     }

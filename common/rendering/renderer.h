@@ -35,6 +35,7 @@ class Renderer {
 
     Film& film() { return film_; }
     const Film& film() const { return film_; }
+    const Tracer& tracer() const { return *tracer_; }
     uint64_t rays() const { return rays_; }                    // traced so far
     double device_seconds() const { return device_seconds_; }  // on the device so far
     // Samples per pixel so far, averaged over the image.

@@ -19,7 +19,7 @@ void bind_host(native::Bindings& bound, std::span<const Binding> bindings) {
 }
 
 // Compiles a shader. Reports errors in it as the other backends do: they compile `checked`.
-native::RunGroup load_shader(const ShaderSource& checked, const ShaderSource& source) {
+native::Code load_shader(const ShaderSource& checked, const ShaderSource& source) {
     compile_shader(checked);
     return native::load(preprocess_shader(source));
 }
@@ -42,7 +42,7 @@ class WorldTriangles {
         bound.ranges[BINDING_RENDER_PARAMETERS] = range_of(std::span(&parameters, 1));
         bound.ranges[BINDING_BVH_TRIANGLES] = range_of(triangles);
         bind(bound);
-        native::run_groups(load_shader(source, source), bound, 0, static_cast<uint32_t>((triangles.size() + 63) / 64));
+        native::run_groups(load_shader(source, source).run, bound, 0, static_cast<uint32_t>((triangles.size() + 63) / 64));
     }
 
     void bind(native::Bindings& bindings) const {
@@ -98,7 +98,7 @@ class NativeTree {
 
 class NativeTracer : public Tracer {
   public:
-    NativeTracer(native::RunGroup run, const native::Bindings& bindings) : run_(run), bindings_(bindings) {}
+    NativeTracer(native::Code code, const native::Bindings& bindings) : code_(std::move(code)), bindings_(bindings) {}
 
     void record(const vk::raii::CommandBuffer&, const DispatchParameters& dispatch, uint32_t block_count,
                 uint32_t film_offset) const override {
@@ -106,11 +106,14 @@ class NativeTracer : public Tracer {
         DispatchParameters constants = dispatch;
         bindings.push_constants = reinterpret_cast<std::byte*>(&constants);
         bindings.ranges[BINDING_FILM].data += film_offset;
-        native::run_groups(run_, bindings, 0, block_count);
+        native::run_groups(code_.run, bindings, 0, block_count);
+    }
+    PathsAtOnce paths_at_once() const override {
+        return {code_.why_one_by_one.empty() ? native::lane_count : 1, code_.why_one_by_one};
     }
 
   private:
-    native::RunGroup run_;
+    native::Code code_;
     native::Bindings bindings_;
 };
 

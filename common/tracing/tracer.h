@@ -42,6 +42,12 @@ class Tracer {
     // shaders/engine/add_samples.comp must add the samples to the film. `film_offset` in bytes is that of the film's binding.
     virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
                         uint32_t film_offset) const = 0;
+    // How many paths a core of the CPU traces at once, and why not more of them.
+    struct PathsAtOnce {
+        int count = 1;
+        std::string why_not_more = {};
+    };
+    virtual PathsAtOnce paths_at_once() const { return {}; }
 };
 
 // A scene's acceleration structure, shared by its tracers.

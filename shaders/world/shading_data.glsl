@@ -60,10 +60,9 @@ float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
 #ifdef WORLD_TRIANGLES
 // The same as below, from a table that world_triangles.comp has filled.
 SurfacePoint get_surface_point(Hit hit) {
-    uint triangle = first_world_triangles[hit.instance] + hit.triangle;
+    WorldTriangle triangle = world_triangles[first_world_triangles[hit.instance] + hit.triangle];
     vec3 w = get_vertex_weights(hit);
-    return SurfacePoint(world_triangles[triangle].corners * w, world_triangles[triangle].normal,
-                        dot(world_triangles[triangle].offsets, w));
+    return SurfacePoint(triangle.corners * w, triangle.normal, dot(triangle.offsets, w));
 }
 #else
 // Interpolates the vertices of the hit triangle. The normal points to the front.

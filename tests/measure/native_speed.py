@@ -1,9 +1,9 @@
-"""How fast the backend `native` is, compared with a Vulkan driver for CPUs: CPU time for the same samples.
+"""How fast the backend `native` is, compared with a Vulkan driver for CPUs and with one path at a time: CPU time for the same samples.
 
     python3 tests/measure/native_speed.py [--runs 5] [--samples 16] [CHAPTER:SCENE ...]
 
-Prints for each case the time of `compute` over that of `native`, and its spread. The runs of the two take turns. CPU time of the
-process without what starting takes: a run with one sample is subtracted.
+Prints for each case the times of `compute` and of `native` with LAB_LANES=0 over that of `native`, and their spread. The runs of the three
+take turns. CPU time of the process without what starting takes: a run with one sample is subtracted.
 """
 import argparse
 import os
@@ -18,14 +18,18 @@ from project import CHAPTERS, program_file  # noqa: E402  the tools are found by
 CASES = [*(f"{chapter}:cornell_box" for chapter in (1, 3, 5, 7, 9, 10)), "7:heart_light", "10:heart_light", "6:clear_glass", "10:clear_glass"]
 
 
-def cpu_seconds(case, backend, samples, device):
+WAYS = {"native": ("native", {}), "compute": ("compute", {}), "one by one": ("native", {"LAB_LANES": "0"})}
+
+
+def cpu_seconds(case, way, samples, device):
+    backend, environment = WAYS[way]
     chapter, scene = case.split(":")
     command = [program_file(CHAPTERS[int(chapter)]), scene, "--headless", "--quiet", "--width=256", "--height=256", f"--samples={samples}",
                f"--backend={backend}", f"--device={device}", f"--output={os.devnull}.exr" if os.name == "nt" else "--output=/tmp/native_speed.exr"]
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL)
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, env=os.environ | environment)
     _, status, usage = os.wait4(process.pid, 0)
     if status:
-        sys.exit(f"error: {case} with {backend}: exit status {status}")
+        sys.exit(f"error: {case} with {way}: exit status {status}")
     return usage.ru_utime + usage.ru_stime
 
 
@@ -37,14 +41,14 @@ def main():
     parser.add_argument("--device", default="llvmpipe")
     options = parser.parse_args()
     for case in options.cases:
-        for backend in ("native", "compute"):  # fills the caches
-            cpu_seconds(case, backend, 1, options.device)
-        ratios = []
+        for way in WAYS:  # fills the caches
+            cpu_seconds(case, way, 1, options.device)
+        ratios = {way: [] for way in WAYS if way != "native"}
         for _ in range(options.runs):
-            native, compute = (cpu_seconds(case, backend, options.samples, options.device) - cpu_seconds(case, backend, 1, options.device)
-                               for backend in ("native", "compute"))
-            ratios.append(compute / native)
-        print(f"{case:18} {statistics.median(ratios):.2f}  ({min(ratios):.2f} to {max(ratios):.2f})", flush=True)
+            seconds = {way: cpu_seconds(case, way, options.samples, options.device) - cpu_seconds(case, way, 1, options.device) for way in WAYS}
+            for way, all_of_it in ratios.items():
+                all_of_it.append(seconds[way] / seconds["native"])
+        print(f"{case:18} " + "   ".join(f"{way} {statistics.median(r):.2f} ({min(r):.2f} to {max(r):.2f})" for way, r in ratios.items()), flush=True)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@
 #include <random>
 
 #include "native/module.h"
-#include "native/translator.h"
+#include "parallel.h"
+#include "test_files.h"
 
 namespace lab {
 namespace {
@@ -174,7 +175,7 @@ std::string shader_of(const std::vector<uint32_t>& seeds) {
            calls + "}\n";
 }
 
-std::vector<uint32_t> run(const std::string& glsl, size_t program_count) {
+std::vector<uint32_t> run(const native::Code& code, size_t program_count) {
     std::vector<uint32_t> results(program_count * invocations * group_count), table(16);
     for (uint32_t i = 0; i < 16; ++i) table[i] = i * i * 40503u;
     native::Bindings bindings{};
@@ -184,31 +185,73 @@ std::vector<uint32_t> run(const std::string& glsl, size_t program_count) {
     bind(1, results);
     bind(2, table);
     bind(3, table);  // four pairs
-    native::run_groups(native::load(glsl), bindings, 0, group_count);
+    native::run_groups(code.run, bindings, 0, group_count);
     return results;
 }
 
-void expect_equal_results(uint32_t first_seed, uint32_t count) {
-    setenv("LAB_LANES", "1", 1);
-    std::vector<uint32_t> seeds(count);
-    std::iota(seeds.begin(), seeds.end(), first_seed);
-    const std::string glsl = shader_of(seeds);
-    const std::vector<uint32_t> in_lanes = run(glsl, count);
-    ASSERT_EQ(native::invocations_at_once(), native::lane_count);
-    native::set_mode(native::Mode::debug);
-    const std::vector<uint32_t> one_by_one = run(glsl, count);
-    ASSERT_EQ(native::invocations_at_once(), 1);
-    native::set_mode(native::Mode::fast);
-    unsetenv("LAB_LANES");
-    for (size_t i = 0; i < in_lanes.size(); ++i)
-        ASSERT_EQ(in_lanes[i], one_by_one[i]) << "invocation " << i % (invocations * group_count) << " of\n"
-                                              << shader_of({seeds[i / (invocations * group_count)]});
+// Runs 50 programs of each batch in lanes and one by one.
+void expect_equal_results(uint32_t first_seed, uint32_t batch_count) {
+    constexpr uint32_t count = 50;
+    const auto seed_of = [&](size_t batch, size_t program) {
+        return first_seed + static_cast<uint32_t>(batch * count + program);
+    };
+    const auto load_all = [&](native::Mode mode) {  // on all cores
+        native::set_mode(mode);
+        std::vector<native::Code> codes(batch_count);
+        in_parallel(batch_count, 1, [&](size_t batch, size_t) {
+            std::vector<uint32_t> seeds(count);
+            std::iota(seeds.begin(), seeds.end(), seed_of(batch, 0));
+            codes[batch] = native::load(shader_of(seeds));
+        });
+        native::set_mode(native::Mode::fast);
+        return codes;
+    };
+    const std::vector<native::Code> lanes = load_all(native::Mode::fast), scalar = load_all(native::Mode::debug);
+    for (size_t batch = 0; batch < batch_count; ++batch) {
+        ASSERT_EQ(lanes[batch].why_one_by_one, "");
+        ASSERT_NE(scalar[batch].why_one_by_one, "");
+        const std::vector<uint32_t> in_lanes = run(lanes[batch], count), one_by_one = run(scalar[batch], count);
+        for (size_t i = 0; i < in_lanes.size(); ++i)
+            ASSERT_EQ(in_lanes[i], one_by_one[i]) << "invocation " << i % (invocations * group_count) << " of\n"
+                                                  << shader_of({seed_of(batch, i / (invocations * group_count))});
+    }
 }
 
-TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 50); }
-TEST(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) {
-    for (uint32_t i = 0; i < 200; ++i) expect_equal_results(1000 + 50 * i, 50);
+// The number that a shader writes, and why it runs one by one.
+std::pair<uint32_t, std::string> result_and_reason(const std::string& body) {
+    const native::Code code = native::load(
+        "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
+        "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
+        body + "\n}\n");
+    return {run(code, 1).front(), code.why_one_by_one};
 }
+
+TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"uint x = 2u;\nswitch (i) { case 0: x = 5u; }\nresults[i] = x;", "test.glsl:7: lanes lack 'switch'"},
+        {"uint a[2];\na[0] = 3u;\na[i] = 5u;\nresults[i] = a[0];",
+         "test.glsl:8: lanes lack assignments to 'a' as it is indexed here"},
+        {"struct S { uint x; };\nS s = S(5u);\nresults[i] = s.x;", "test.glsl:6: lanes lack structures inside of a function"}};
+    for (const auto& [body, reason] : cases) EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string(reason)));
+    // Names are free, even those of what lanes are made of.
+    EXPECT_EQ(result_and_reason("Named a = Named(2u, 3u), b;\nif (i < 5u) b = a;\nresults[i] = b.offset + b.raw;"),
+              std::pair(5u, std::string()));
+}
+
+TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
+    const TestFolder folder;
+    const auto compiler = folder.write(
+        "compiler",
+        "#!/bin/sh\nif grep -q lane_ \"$1\"; then echo test.glsl:7:1: error: no vectors; exit 1; fi\nexec c++ \"$@\"\n");
+    std::filesystem::permissions(compiler, std::filesystem::perms::owner_all);
+    setenv("CXX", compiler.c_str(), 1);
+    EXPECT_EQ(result_and_reason("results[i] = 5u;"),
+              std::pair(5u, compiler.string() + " does not compile its code: test.glsl:7: no vectors"));
+    unsetenv("CXX");
+}
+
+TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 1); }
+TEST(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) { expect_equal_results(1000, 200); }
 
 }  // namespace
 }  // namespace lab

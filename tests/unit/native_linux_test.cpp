@@ -20,7 +20,7 @@ std::vector<float> run_shader(const std::string& code, const std::string& body) 
     std::vector<float> results(16, -1000);
     native::Bindings bindings{};
     bindings.ranges[1] = {reinterpret_cast<std::byte*>(results.data()), results.size() * sizeof(float)};
-    native::run_groups(native::load(glsl), bindings, 0, 1);
+    native::run_groups(native::load(glsl).run, bindings, 0, 1);
     while (!results.empty() && results.back() == -1000) results.pop_back();
     return results;
 }
