@@ -48,13 +48,15 @@ vec3 get_scaled_normal(vec3 edge_1, vec3 edge_2) {
     return cross(edge_1 / size, edge_2 / size);
 }
 
+const float ROUNDING = 5.9604645e-8;  // 2^-24, the largest relative error of one operation
+
 // The distance off a triangle at which a ray must start to miss it: a bound on rounding errors of relative size 2^-24 in the
 // position, whose coordinates have the given magnitudes, and in the intersection with the same triangle. Measured: no
 // self-intersections from a factor of 4 on; we use 8. Intersections with slender triangles are less accurate. Limiting the
 // slenderness keeps rays from skipping what is close to a very slender triangle.
 float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
     float slenderness = 1.0 / max(max_component(scaled_normal), 1.0 / 256.0);  // about length over height
-    return 8.0 * 5.9604645e-8 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
+    return 8.0 * ROUNDING * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
 }
 
 #ifdef WORLD_TRIANGLES
@@ -183,10 +185,13 @@ Ray get_ray_from_surface(ShadingData s, vec3 direction) {
     return Ray(s.position + side * s.offset * s.geometric_normal, direction);
 }
 
-// A ray from a surface point that reaches another point at distance 1.
+// A ray from a surface point to another point, which it reaches at distance 1 but for 64 roundings of its length. The offset in
+// front of a light bounds what its own coordinates round off. The rounding of the ray's direction and of the hit grow with its
+// length: without this, a light 15 units away with coordinates of 1 hid 36 % of itself from Embree and 4 % from `compute`, now it
+// hides 1e-6, in grazing rays. With 16 roundings 1e-5.
 Ray get_ray_to_point(ShadingData s, vec3 point) {
     Ray ray = get_ray_from_surface(s, point - s.position);
-    ray.direction = point - ray.origin;
+    ray.direction = (1.0 - 64.0 * ROUNDING) * (point - ray.origin);
     return ray;
 }
 

@@ -170,6 +170,29 @@ TEST_P(Intersection, NothingLeaksThroughPlanesCloseToEachOther) {
     RecordProperty("narrowest_gap_without_leaks", narrowest);
 }
 
+// A cube that shines, at coordinates of 1, and a square that faces it from ever farther away. Nothing is between them.
+TEST_P(Intersection, NoLightHidesItselfHoweverFarAwayItIs) {
+    const mat3 turn(glm::rotate(glm::mat4(1), 0.7f, glm::normalize(vec3(1, 2, -0.5f))));
+    for (const float distance : {1.0f, 10.0f, 100.0f, 1e3f, 1e4f, 1e5f}) {
+        std::vector<Quad> quads = box_sides(vec3(-0.5f), vec3(0.5f), 0, Facing::outwards);
+        quads.push_back({distance * vec3(-1, -1, -1), distance * vec3(2, 0, 0), distance * vec3(0, 2, 0), 1});
+        Scene scene = make_scene({diffuse_material(vec3(0.5f), vec3(1)), diffuse_material(vec3(0.5f))}, quads);
+        for (vec3& position : scene.positions) position = turn * position;
+        scene.camera = {.position = turn * vec3(0, 0, -0.9f * distance),
+                        .target = turn * vec3(0, 0, -distance),
+                        .up = turn * vec3(0, 1, 0),
+                        .vertical_fov = 160};
+        const glm::dvec3 total = probe_total(scene, settings("visibility", 128, 4));
+        std::printf("  distance %g: shadowed %s\n", distance, out_of(total.r, total.g).c_str());
+        char name[64];
+        std::snprintf(name, sizeof name, "lights_hidden_at_%g", distance);
+        RecordProperty(name, out_of(total.r, total.g));
+        EXPECT_GT(total.g, 1e4);
+        // Those that are left graze a side of the cube, which sends next to no light their way.
+        EXPECT_LE(total.r, 0.01 * total.g) << "distance " << distance;
+    }
+}
+
 struct ClosedMesh {
     const char* name;
     TriangleMesh mesh;
