@@ -8,7 +8,7 @@ import unittest
 
 from program import BINARIES, PROJECT, TOOLS, ProgramTest  # first: it finds the tools
 from docs import tables
-from project import CHAPTERS
+from project import CHAPTERS, UserError
 from report import measurement, plots
 
 REFERENCE = PROJECT / "assets/references/cornell_box_1.exr"
@@ -146,6 +146,12 @@ class ReportCommandTest(Reports, ProgramTest):
         self.assert_report_refused(["--record=record.json", "torus"], "record", "no scenes")
         self.assert_report_refused(["--record=record.json", "--peer=mitsuba", "torus"], "record", "no scenes")
         self.assert_report_refused(["torus", "--peer-sampler=multijitter"], "--peer mitsuba")
+
+    def test_a_case_sets_its_variables(self):
+        (case,) = measurement.report_cases([(PROJECT / "assets/scenes/cornell_box.json", REFERENCE)], [1])
+        case["variables"] = ["VK_DRIVER_FILES=/nowhere", "VK_ICD_FILENAMES=/nowhere"]
+        with self.assertRaisesRegex(UserError, "cornell_box_1, chapter 1: .*Vulkan"):
+            measurement.run_case(case, {"backend": "compute", "device": None}, ["--samples", 1, "--seed", 1])
 
     def test_without_mitsuba_it_says_how_to_get_it(self):
         (self.folder / "bin").mkdir()
