@@ -281,8 +281,12 @@ LAB_INLINE auto make(const A&... x) {
     if constexpr (!is_number<T> && (!is_matrix<T> || (sizeof...(A) == 1 && (is_matrix<A> && ...)))) {
         result = V<T>(x...);
     } else if constexpr (is_matrix<T>) {
-        static_assert(sizeof...(A) == T::length() && ((size_of<A> == T::col_type::length()) && ...));
-        ((result[next++] = x), ...);
+        constexpr int rows = T::col_type::length();
+        static_assert((size_of<A> + ...) == rows * T::length());
+        const auto append = [&]<typename U>(const U& y) {
+            for (int i = 0; i < size_of<U>; ++i, ++next) result[next / rows][next % rows] = component(y, i);
+        };
+        (append(x), ...);
     } else {
         const auto append = [&]<typename U>(const U& y) {
             for (int i = 0; i < size_of<U> && next < T::length(); ++i) result[next++] = component(y, i);

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+from pathlib import Path
 from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
@@ -100,6 +101,17 @@ class AutomaticNativeTest(CopiedLab, ProgramTest):
 
     def test_it_needs_permission(self):
         self.assertRegex(self.automatic(b"native", LAB_WITHOUT_NATIVE="1").stdout, "backend (compute|query|pipeline)\n")
+
+
+class LanesTest(CopiedLab, ProgramTest):
+    """How many paths run at once is said, with the reason if it is one."""
+
+    def test_one_variable_turns_lanes_off(self):
+        if " avx2 " not in Path("/proc/cpuinfo").read_text(encoding="utf-8"):
+            self.skipTest("the CPU lacks AVX2")
+        for how, (arguments, environment) in {"8 paths on each core": ([], {}), "1 path on each core: LAB_LANES=0": ([], {"LAB_LANES": "0"}),
+                                              "1 path on each core: --sanitize": (["--sanitize"], {})}.items():
+            self.assertIn(f"\nat once        {how}\n", self.render(*arguments, **environment).stdout)
 
 
 class DebugTest(CopiedLab, ProgramTest):

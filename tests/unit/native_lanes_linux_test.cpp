@@ -238,6 +238,13 @@ TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
               std::pair(5u, std::string()));
 }
 
+TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
+    EXPECT_EQ(result_and_reason("vec2 n = vec2(0, 1);\nresults[i] = uint(transpose(mat2(1.0, 2.0, 3.0, float(i)))[0].y - "
+                                "faceforward(n, vec2(float(i), 1.0), n).y - refract(vec2(float(i), -1.0), n, 1.0).y + "
+                                "determinant(mat2(1.0)) - 1.0);"),
+              std::pair(5u, std::string()));
+}
+
 TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
     const TestFolder folder;
     const auto compiler = folder.write(

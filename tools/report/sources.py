@@ -9,7 +9,8 @@ import re
 from project import CHAPTERS, ROOT, shaders_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.
-RENDERER = ["shaders", "common/film", "common/gpu", "common/native", "common/rendering", "common/scene", "common/tracing"]
+RENDERER = ["shaders", "common/film", "common/gpu", "common/rendering", "common/scene", "common/tracing"]
+NATIVE = ["common/native"]  # concerns only records that name this backend
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
@@ -26,11 +27,16 @@ def digest(files):
     return found.hexdigest()[:12]
 
 
+def sources(folders):
+    """All files in these folders but their pages."""
+    return [path for folder in folders for path in (ROOT / folder).rglob("*") if path.suffix != ".md" and path.is_file()]
+
+
 def measured(text):
-    """{"renderer": digest, chapter's name: digest} for the chapters that the text of a record names."""
-    renderer = [path for folder in RENDERER for path in (ROOT / folder).rglob("*") if path.suffix != ".md" and path.is_file()]
+    """{"renderer": digest, name: digest} for the chapters that the text of a record names, and for native if it does."""
+    parts = {"renderer": RENDERER} | ({"native": NATIVE} if "native" in text else {})
     named = {folder[3:]: number for number, folder in CHAPTERS.items() if re.search(rf"(?<![a-z]){folder[3:]}(?![a-z])", text)}
-    return {"renderer": digest(renderer)} | {
+    return {part: digest(sources(folders)) for part, folders in parts.items()} | {
         name: digest([*shaders_of(number), ROOT / "chapters" / CHAPTERS[number] / "chapter.json"]) for name, number in named.items()}
 
 
