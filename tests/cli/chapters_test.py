@@ -1,6 +1,7 @@
 """What chapters add to the common command line: their own options, and scenes that they refuse."""
 
 import json
+import re
 
 from image_files import Exr
 from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest, RenderTest
@@ -51,6 +52,39 @@ class EveryChapter(ProgramTest):
                 self.render(*command, program=BINARIES / chapter)
             else:
                 self.assert_refused(command, "--report", "cannot render", r"microfacets\.json", program=BINARIES / chapter)
+
+
+class SanitizedChapters_all(ProgramTest):
+    """Neither indices nor arithmetic of any shader are wrong: --sanitize finds nothing."""
+    REFUSALS = "dielectric.*use chapter 6|--view .* does not work with the backend native"
+
+    def setUp(self):
+        super().setUp()
+        if not re.search(r"native +works", self.render("--list-devices")):
+            self.skipTest("no device has the backend native")
+
+    def find_nothing(self, chapter, *arguments):
+        """Returns whether it rendered: the program may also refuse to."""
+        with self.subTest(chapter=chapter, arguments=arguments):
+            code, _, err = self.run_program(*arguments, "--headless", "--width=16", "--height=16", "--samples=2", "--sanitize", "--quiet",
+                                            program=BINARIES / chapter)
+            if code == 0:
+                self.assertEqual(err, "")
+            else:
+                self.assertRegex(err, rf"\Aerror: [^\n]*({self.REFUSALS})")
+            return code == 0
+
+    def test_on_every_scene(self):
+        scenes = sorted(path.stem for path in (PROJECT / "assets/scenes").glob("*.json"))
+        for chapter in CHAPTERS:
+            rendered = sum(bool(self.find_nothing(chapter, scene)) for scene in scenes)
+            self.assertGreater(rendered, len(scenes) / 2, chapter)
+
+    def test_in_every_view(self):
+        views = re.search(r"--view TEXT:\{(.*?)\}", self.render("--help"))[1].split(",")
+        for scene in ("microfacets", "textured", "glass"):
+            rendered = [view for view in views if self.find_nothing(CHAPTERS[-1], scene, "--view", view)]
+            self.assertGreater(len(rendered), len(views) / 2, scene)
 
 
 class ChapterOptions(ProgramTest):

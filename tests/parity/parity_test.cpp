@@ -103,7 +103,7 @@ Limits limits_of(const Scene& scene, Backend backend) {
     // Sine, cosine and arctangent are the CPU's on `native` and the driver's elsewhere. Near a small sun in a light probe,
     // rounding the direction changes radiance by some percent, and equally so in all paths.
     if (backend == Backend::native && scene.light_probe)
-        limits = {std::max(limits.radiance, 1e-2), std::max(limits.fraction, 3e-4), 1e-4};
+        limits = {std::max(limits.radiance, 1e-2), std::max(limits.fraction, 2e-4), 1e-4};
     return limits;
 }
 
