@@ -178,10 +178,27 @@ std::string find_embree() {
     return {};
 }
 
-// A crash in a shader returns to the thread that runs it.
-thread_local sigjmp_buf* way_back = nullptr;
+// A crash in a shader returns to the thread that runs it. The handler has a stack of its own, since the shader's may be full.
+// Where the shader has overwritten that, the way back crashes, too, and there is none but out.
+thread_local sigjmp_buf way_back;
+thread_local bool is_in_shader = false;
+thread_local char handler_stack[1 << 14];
+volatile std::sig_atomic_t has_crashed = 0;
+const char* advice() {
+    return mode == Mode::checked ? "the sanitizer's last line tells where"
+                                 : "as it does for an index outside of an array: --sanitize tells where";
+}
 void return_from_crash(int signal) {
-    if (way_back) siglongjmp(*way_back, signal);
+    if (is_in_shader) {
+        is_in_shader = false;
+        has_crashed = 1;
+        siglongjmp(way_back, signal);
+    }
+    if (has_crashed) {
+        for (const char* text : {"error: the shader crashed and overwrote memory of the program, ", advice(), "\n"})
+            (void)!write(STDERR_FILENO, text, std::strlen(text));
+        _exit(3);
+    }
     std::signal(signal, SIG_DFL);
     raise(signal);
 }
@@ -231,7 +248,10 @@ std::string ray_tracer_name() {
 
 void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
     static const bool handles_crashes = [] {
-        for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, return_from_crash);
+        struct sigaction action {};
+        action.sa_handler = return_from_crash;
+        action.sa_flags = SA_ONSTACK;
+        for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigaction(signal, &action, nullptr);
         return true;
     }();
     (void)handles_crashes;
@@ -249,19 +269,18 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
         stop = is_interrupted();
     });
     in_parallel(end - first, 1, [&](size_t begin, size_t) {
-        sigjmp_buf here;
+        const stack_t stack{.ss_sp = handler_stack, .ss_flags = 0, .ss_size = sizeof handler_stack};
+        sigaltstack(&stack, nullptr);
         char error[512];
-        way_back = &here;
-        const int signal = sigsetjmp(here, 1);
+        const int signal = sigsetjmp(way_back, 1);
+        is_in_shader = signal == 0;
         const Outcome outcome =
             signal == 0 ? run(bindings, first + static_cast<uint32_t>(begin), error, sizeof error) : Outcome::failed;
-        way_back = nullptr;
+        is_in_shader = false;
         if (outcome != Outcome::failed) return;
         stop = true;
         if (signal == 0) throw DeviceFailure(error);
-        throw DeviceFailure(std::string("the shader crashed (") + strsignal(signal) +
-                            (mode == Mode::checked ? "): the sanitizer's last line tells where"
-                                                   : "), as it does for an index outside of an array: --sanitize tells where"));
+        throw DeviceFailure(std::string("the shader crashed (") + strsignal(signal) + "), " + advice());
     });
 }
 

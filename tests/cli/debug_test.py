@@ -255,6 +255,14 @@ class NativeFailures_all(CopiedLab, ProgramTest):
         self.assert_error(self.render(), 3, "crashed", "--sanitize")
         self.assertEqual((self.tree / "picture.exr").read_bytes(), before)
 
+    def test_a_shader_that_overwrites_or_exhausts_the_stack_still_says_so(self):
+        code = self.shader.read_text(encoding="utf-8")
+        for size, last in ((4, 1023), (4000000, 4095)):
+            with self.subTest(size):
+                self.shader.write_text(code.replace("return radiance;", f"float a[{size}]; a[seed.x & {last}u] = 1.0; "
+                                                    f"return radiance * a[seed.y & {last}u];"), encoding="utf-8")
+                self.assert_error(self.render(), 3, "crashed", "--sanitize")
+
     def test_errors_of_a_shader_are_those_of_all_backends(self):
         self.shader.write_text(self.shader.read_text(encoding="utf-8").replace("vec3 radiance = vec3(0.0);", "vec3 radiance = nothing;"),
                                encoding="utf-8")
