@@ -94,10 +94,11 @@ class ExpressionReader : protected TokenReader, protected Variance {
         const std::string colon = expect(":");
         const Expression second = inside(is_branch, [&] { return assignment(); });
         const std::string condition = all.text;
+        const bool is_lazy = first.is_masked || second.is_masked || depend(all, first) || depend(all, second);
         all.add(first);
         all.add(second);
         all.text = condition + question + first.text + colon + second.text;
-        if (is_branch && (first.is_masked || second.is_masked))
+        if (is_branch && is_lazy)
             all.text = " lanes::select_lazily(active__, " + condition + ", " + lazy(first) + ", " + lazy(second) + ")";
         else if (is_branch)
             all.text = " lanes::select(" + condition + ", " + first.text + ", " + second.text + ")";
@@ -118,20 +119,18 @@ class ExpressionReader : protected TokenReader, protected Variance {
             const bool is_lazy = symbol == "||" || symbol == "&&";
             Expression right = inside(is_lazy && left.is_varying, [&] { return binary(found->second); });
             left.root = left.indices = left.place = "";
-            const bool is_ordered = !is_lazy && depend(left, right);
+            const bool is_ordered = depend(left, right);
             left.add(right);
-            if (symbol == "^^" && left.is_varying)
-                left.text = " (lanes::Mask(" + first + ") ^ lanes::Mask(" + right.text + "))";
-            else if (symbol == "^^")
-                left.text = "(bool(" + first + ") != bool(" + right.text + "))";
-            else if (is_lazy && left.is_varying && right.is_masked)
+            if (is_lazy && left.is_varying && (right.is_masked || is_ordered))
                 left.text = " lanes::" + std::string(symbol == "||" ? "or" : "and") + "_lazily(active__, " + first + ", " +
                             lazy(right) + ")";
             else if (is_lazy && left.is_varying)
                 left.text = " (lanes::Mask(" + first + ") " + symbol[0] + " lanes::Mask(" + right.text + "))";
-            else if (is_ordered)
-                left.text =
-                    " Ordered{" + first + ", " + right.text + "}.pass_to([&](auto... x) { return (x " + symbol + " ...); })";
+            else if (is_ordered && !is_lazy)
+                left.text = " Ordered{" + first + ", " + right.text + "}.pass_to([&](auto... x) { return (x " +
+                            (symbol == "^^" ? "!=" : symbol) + " ...); })";
+            else if (symbol == "^^")
+                left.text = "((" + first + ") != (" + right.text + "))";
             else
                 left.text = first + token + right.text;
         }

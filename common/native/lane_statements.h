@@ -95,7 +95,7 @@ LAB_INLINE Mask and_lazily(const Mask& active, const Mask& a, const B& b) {
 template <typename B>
 LAB_INLINE Mask or_lazily(const Mask& active, const Mask& a, const B& b) {
     const Mask open = active & !a;
-    return any(open) ? a | (open & b(open)) : a;
+    return any(open) ? !open | b(open) : a;  // which `b` may change
 }
 template <typename T, typename F>
 LAB_INLINE T before(T x, const F& change) {

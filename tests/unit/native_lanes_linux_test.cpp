@@ -221,7 +221,8 @@ void expect_equal_results(uint32_t first_seed, uint32_t batch_count) {
 std::pair<uint32_t, std::string> result_and_reason(const std::string& body) {
     const native::Code code = native::load(
         "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
-        "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
+        "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
+        "bool set(inout bool b) { b = true; return b; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
         body + "\n}\n");
     return {run(code, 1).front(), code.why_one_by_one};
 }
@@ -243,6 +244,14 @@ TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
                                 "faceforward(n, vec2(float(i), 1.0), n).y - refract(vec2(float(i), -1.0), n, 1.0).y + "
                                 "determinant(mat2(1.0)) - 1.0);"),
               std::pair(5u, std::string()));
+}
+
+TEST(NativeLanes, EvaluateInOrder) {
+    for (const char* body :
+         {"uint x = i;\nresults[i] = x++ < 5u && x == 1u ? 5u : 7u;", "uint x = i;\nresults[i] = x++ > 5u || x == 1u ? 5u : 7u;",
+          "uint x = i;\nresults[i] = x++ < 5u ^^ x == 1u ? 7u : 5u;", "uint x = i;\nresults[i] = x++ < 5u ? x + 4u : x;",
+          "bool b = i > 5u;\nresults[i] = b || set(b) && i > 5u ? 7u : 5u;"})
+        EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string())) << body;
 }
 
 TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
