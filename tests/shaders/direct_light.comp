@@ -44,5 +44,6 @@ void main() {
     materials[1] = light_material;
     uvec2 seed = random_start_state(i, 0u, key);
     vec3 radiance = path_trace(Ray(out_direction, -out_direction), seed);
-    results[i] = Result(shadow_ray.origin, shadow_ray.direction, radiance.r, shadow_rays);
+    vec3 to_light = shadow_ray.direction / (1.0 - 64.0 * ROUNDING);  // get_ray_to_point() ends that much short of it
+    results[i] = Result(shadow_ray.origin, to_light, radiance.r, shadow_rays);
 }
