@@ -50,7 +50,8 @@ Mode mode = Mode::fast;
 std::string why_no_lanes() {
     if (mode == Mode::checked) return "--sanitize";
     if (mode == Mode::debug) return "a debugger sees no lanes";
-    if (const char* wish = std::getenv("LAB_LANES"); wish && std::string(wish) == "0") return "LAB_LANES=0";
+    // Random programs still find differences, where an expression changes what it reads elsewhere: only for those who ask.
+    if (const char* wish = std::getenv("LAB_LANES"); !wish || std::string(wish) != "1") return "LAB_LANES=1 runs 8";
 #if defined(__x86_64__) && defined(__GLIBC__)
     return __builtin_cpu_supports("avx2") ? "" : "the CPU lacks AVX2";
 #else

@@ -106,11 +106,12 @@ class AutomaticNativeTest(CopiedLab, ProgramTest):
 class LanesTest(CopiedLab, ProgramTest):
     """How many paths run at once is said, with the reason if it is one."""
 
-    def test_one_variable_turns_lanes_off(self):
+    def test_one_variable_turns_lanes_on(self):
         if " avx2 " not in Path("/proc/cpuinfo").read_text(encoding="utf-8"):
             self.skipTest("the CPU lacks AVX2")
-        for how, (arguments, environment) in {"8 paths on each core": ([], {}), "1 path on each core: LAB_LANES=0": ([], {"LAB_LANES": "0"}),
-                                              "1 path on each core: --sanitize": (["--sanitize"], {})}.items():
+        for how, arguments, environment in (("8 paths on each core", [], {"LAB_LANES": "1"}),
+                                            ("1 path on each core: LAB_LANES=1 runs 8", [], {}),
+                                            ("1 path on each core: --sanitize", ["--sanitize"], {"LAB_LANES": "1"})):
             self.assertIn(f"\nat once        {how}\n", self.render(*arguments, **environment).stdout)
 
 

@@ -2,8 +2,8 @@
 
     python3 tests/measure/native_speed.py [--runs 5] [--samples 16] [CHAPTER:SCENE ...]
 
-Prints for each case the times of `compute` and of `native` with LAB_LANES=0 over that of `native`, and their spread. The runs of the three
-take turns. CPU time of the process without what starting takes: a run with one sample is subtracted.
+Prints for each case the times of `compute` and of `native` one by one over that of `native` in lanes, and their spread. The runs of the
+three take turns. CPU time of the process without what starting takes: a run with one sample is subtracted.
 """
 import argparse
 import os
@@ -18,7 +18,7 @@ from project import CHAPTERS, program_file  # noqa: E402  the tools are found by
 CASES = [*(f"{chapter}:cornell_box" for chapter in (1, 3, 5, 7, 9, 10)), "7:heart_light", "10:heart_light", "6:clear_glass", "10:clear_glass"]
 
 
-WAYS = {"native": ("native", {}), "compute": ("compute", {}), "one by one": ("native", {"LAB_LANES": "0"})}
+WAYS = {"native": ("native", {"LAB_LANES": "1"}), "compute": ("compute", {}), "one by one": ("native", {})}
 
 
 def cpu_seconds(case, way, samples, device):

@@ -12,6 +12,8 @@
 namespace lab {
 namespace {
 
+[[maybe_unused]] const int asked_for_lanes = setenv("LAB_LANES", "1", 1);
+
 // Writes functions of unsigned integers, which wrap around in C++ as well.
 class ProgramWriter {
   public:
