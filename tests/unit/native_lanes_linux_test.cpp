@@ -213,9 +213,14 @@ void expect_equal_results(uint32_t first_seed, uint32_t batch_count) {
         ASSERT_EQ(lanes[batch].why_one_by_one, "");
         ASSERT_NE(scalar[batch].why_one_by_one, "");
         const std::vector<uint32_t> in_lanes = run(lanes[batch], count), one_by_one = run(scalar[batch], count);
-        for (size_t i = 0; i < in_lanes.size(); ++i)
-            ASSERT_EQ(in_lanes[i], one_by_one[i]) << "invocation " << i % (invocations * group_count) << " of\n"
-                                                  << shader_of({seed_of(batch, i / (invocations * group_count))});
+        for (size_t i = 0; i < in_lanes.size(); ++i) {
+            if (in_lanes[i] != one_by_one[i]) {
+                const uint32_t seed = seed_of(batch, i / (invocations * group_count));
+                FAIL() << "seed " << seed << ", invocation " << i % (invocations * group_count) << ": " << in_lanes[i]
+                       << " in lanes, " << one_by_one[i] << " one by one, in\n"
+                       << shader_of({seed});
+            }
+        }
     }
 }
 
