@@ -62,28 +62,25 @@ struct Builtins : native::Builtins {
     LAB_EACH(floatBitsToUint, each, [](Float a) { return bits_as<uint>(a); })
     LAB_EACH(intBitsToFloat, each, [](const auto& a) { return bits_as<float>(a); })
     LAB_EACH(uintBitsToFloat, each, [](const auto& a) { return bits_as<float>(a); })
-        // clang-format on
-        LAB_EACH(abs, each,
-                 []<typename U>(const Lanes<U>& a) {
-                     if constexpr (std::is_same_v<U, float>)
-                         return bits_as<float>(bits_as<int>(a) & 0x7fffffff);
-                     else
-                         return select(less(a, 0), -a, a);
-                 }) LAB_EACH(mix, each,
-                             []<typename W>(const auto& a, const auto& b, const W& weight) {
-                                 if constexpr (std::is_same_v<Element<W>, bool>)
-                                     return select(weight, b, a);
-                                 else
-                                     return a * (1.0f - weight) + b * weight;
-                             }) LAB_EACH(bitfieldReverse, each,
-                                         []<typename U>(const Lanes<U>& a) {
-                                             const auto swap = [](const Lanes<uint>& bits, uint mask, uint shift) {
-                                                 return ((bits >> shift) & mask) | ((bits & mask) << shift);
-                                             };
-                                             const Lanes<uint> bits =
-                                                 swap(swap(swap(a, 0x55555555u, 1u), 0x33333333u, 2u), 0x0f0f0f0fu, 4u);
-                                             return Lanes<U>(swap(swap(bits, 0x00ff00ffu, 8u), 0x0000ffffu, 16u));
-                                         })
+    LAB_EACH(abs, each, []<typename U>(const Lanes<U>& a) {
+        if constexpr (std::is_same_v<U, float>)
+            return bits_as<float>(bits_as<int>(a) & 0x7fffffff);
+        else
+            return select(less(a, 0), -a, a);
+    })
+    LAB_EACH(mix, each, []<typename W>(const auto& a, const auto& b, const W& weight) {
+        if constexpr (std::is_same_v<Element<W>, bool>)
+            return select(weight, b, a);
+        else
+            return a * (1.0f - weight) + b * weight;
+    })
+    LAB_EACH(bitfieldReverse, each, []<typename U>(const Lanes<U>& a) {
+        const auto swap = [](const Lanes<uint>& bits, uint mask, uint shift) {
+            return ((bits >> shift) & mask) | ((bits & mask) << shift);
+        };
+        const Lanes<uint> bits = swap(swap(swap(a, 0x55555555u, 1u), 0x33333333u, 2u), 0x0f0f0f0fu, 4u);
+        return Lanes<U>(swap(swap(bits, 0x00ff00ffu, 8u), 0x0000ffffu, 16u));
+    })
 #undef LAB_EACH
 #undef LAB_ALONE
 #undef LAB_VECTOR
@@ -97,39 +94,34 @@ struct Builtins : native::Builtins {
         else                                     \
             return Plain::name(x...);            \
     }
-            LAB_WHOLE(all, [](const auto& a) { return lanes::all(a); })
-                LAB_WHOLE(any, [](const auto& a) { return !lanes::all(each([](const Mask& b) { return !b; }, a)); })
-                    LAB_WHOLE(dot,
-                              [](const auto& a, const auto& b) {
-                                  const auto product = a * b;
-                                  constexpr int n = size_of<std::remove_const_t<decltype(product)>>;
-                                  if constexpr (n == 4)  // as GLM adds them
-                                      return (product[0] + product[1]) + (product[2] + product[3]);
-                                  Lanes<float> sum = component(product, 0);
-                                  for (int i = 1; i < n; ++i) sum = sum + component(product, i);
-                                  return sum;
-                              }) LAB_WHOLE(length, [](const auto& a) { return sqrt(dot(a, a)); })
-                        LAB_WHOLE(distance, [](const auto& a, const auto& b) { return length(b - a); })
-                            LAB_WHOLE(normalize, [](const auto& a) { return a * inversesqrt(dot(a, a)); })
-                                LAB_WHOLE(reflect, [](const auto& i, const auto& n) { return i - n * dot(n, i) * 2.0f; })
-                                    LAB_WHOLE(cross,
-                                              [](const auto& a, const auto& b) {
-                                                  return make<vec3>(a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0],
-                                                                    a[0] * b[1] - b[0] * a[1]);
-                                              }) LAB_WHOLE(faceforward,
-                                                           [](const auto& n, const auto& i, const auto& side) {
-                                                               return select(dot(side, i) < 0.0f, n, -n);
-                                                           })
-                                        LAB_WHOLE(refract,
-                                                  [](const auto& i, const auto& n, const auto& eta) {
-                                                      const Lanes<float> cosine = dot(n, i),
-                                                                         k = 1.0f - eta * eta * (1.0f - cosine * cosine);
-                                                      return select(k < 0.0f, i * 0.0f, i * eta - n * (eta * cosine + sqrt(k)));
-                                                  })
+    LAB_WHOLE(all, [](const auto& a) { return lanes::all(a); })
+    LAB_WHOLE(any, [](const auto& a) { return !lanes::all(each([](const Mask& b) { return !b; }, a)); })
+    LAB_WHOLE(dot, [](const auto& a, const auto& b) {
+        const auto product = a * b;
+        constexpr int n = size_of<std::remove_const_t<decltype(product)>>;
+        if constexpr (n == 4)  // as GLM adds them
+            return (product[0] + product[1]) + (product[2] + product[3]);
+        Lanes<float> sum = component(product, 0);
+        for (int i = 1; i < n; ++i) sum = sum + component(product, i);
+        return sum;
+    })
+    LAB_WHOLE(length, [](const auto& a) { return sqrt(dot(a, a)); })
+    LAB_WHOLE(distance, [](const auto& a, const auto& b) { return length(b - a); })
+    LAB_WHOLE(normalize, [](const auto& a) { return a * inversesqrt(dot(a, a)); })
+    LAB_WHOLE(reflect, [](const auto& i, const auto& n) { return i - n * dot(n, i) * 2.0f; })
+    LAB_WHOLE(cross, [](const auto& a, const auto& b) {
+        return make<vec3>(a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]);
+    })
+    LAB_WHOLE(faceforward, [](const auto& n, const auto& i, const auto& side) { return select(dot(side, i) < 0.0f, n, -n); })
+    LAB_WHOLE(refract, [](const auto& i, const auto& n, const auto& eta) {
+        const Lanes<float> cosine = dot(n, i), k = 1.0f - eta * eta * (1.0f - cosine * cosine);
+        return select(k < 0.0f, i * 0.0f, i * eta - n * (eta * cosine + sqrt(k)));
+    });
 #undef LAB_WHOLE
+    // clang-format on
 
-                                            template <typename M>
-                                            LAB_INLINE static auto transpose(const M& a) {
+    template <typename M>
+    LAB_INLINE static auto transpose(const M& a) {
         if constexpr (requires { a.column; }) {
             Mat<M::Column::length(), M::length()> result;
             for (int i = 0; i < M::length(); ++i)

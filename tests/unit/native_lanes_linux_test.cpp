@@ -12,7 +12,11 @@
 namespace lab {
 namespace {
 
-[[maybe_unused]] const int asked_for_lanes = setenv("LAB_LANES", "1", 1);
+class NativeLanes : public testing::Test {
+  public:
+    NativeLanes() { setenv("LAB_LANES", "1", 1); }
+    ~NativeLanes() override { unsetenv("LAB_LANES"); }
+};
 
 // Writes functions of unsigned integers, which wrap around in C++ as well.
 class ProgramWriter {
@@ -234,7 +238,7 @@ std::pair<uint32_t, std::string> result_and_reason(const std::string& body) {
     return {run(code, 1).front(), code.why_one_by_one};
 }
 
-TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
+TEST_F(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
     const std::pair<const char*, const char*> cases[] = {
         {"uint x = 2u;\nswitch (i) { case 0: x = 5u; }\nresults[i] = x;", "test.glsl:7: lanes lack 'switch'"},
         {"uint a[2];\na[0] = 3u;\na[i] = 5u;\nresults[i] = a[0];",
@@ -246,14 +250,14 @@ TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
               std::pair(5u, std::string()));
 }
 
-TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
+TEST_F(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
     EXPECT_EQ(result_and_reason("vec2 n = vec2(0, 1);\nresults[i] = uint(transpose(mat2(1.0, 2.0, 3.0, float(i)))[0].y - "
                                 "faceforward(n, vec2(float(i), 1.0), n).y - refract(vec2(float(i), -1.0), n, 1.0).y + "
                                 "determinant(mat2(1.0)) - 1.0);"),
               std::pair(5u, std::string()));
 }
 
-TEST(NativeLanes, EvaluateInOrder) {
+TEST_F(NativeLanes, EvaluateInOrder) {
     for (const char* body :
          {"uint x = i;\nresults[i] = x++ < 5u && x == 1u ? 5u : 7u;", "uint x = i;\nresults[i] = x++ > 5u || x == 1u ? 5u : 7u;",
           "uint x = i;\nresults[i] = x++ < 5u ^^ x == 1u ? 7u : 5u;", "uint x = i;\nresults[i] = x++ < 5u ? x + 4u : x;",
@@ -261,7 +265,7 @@ TEST(NativeLanes, EvaluateInOrder) {
         EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string())) << body;
 }
 
-TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
+TEST_F(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
     const TestFolder folder;
     const auto compiler = folder.write(
         "compiler",
@@ -273,8 +277,8 @@ TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
     unsetenv("CXX");
 }
 
-TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 1); }
-TEST(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) { expect_equal_results(1000, 200); }
+TEST_F(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 1); }
+TEST_F(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) { expect_equal_results(1000, 200); }
 
 }  // namespace
 }  // namespace lab

@@ -152,8 +152,8 @@ def backend_table(record):
 
 
 # Tables of docs/results/DEVICE.md: from docs/records/FOLDER/DEVICE.json.
-DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table), "cpu": ("cpu", cpu_table),
-                 "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
+DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table),
+                 "cpu": ("cpu", cpu_table), "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
     "running": running_table, "best chapters": best_table, "submissions": submission_table,
