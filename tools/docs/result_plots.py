@@ -100,6 +100,21 @@ def note_on_cores(names):
     return "".join(without_cores(name, f"\n{name}: without ray tracing cores") for name in names)
 
 
+def panels(shown, row_height, columns, label):
+    """A forest of ratios for each title of {title: {row: {series: (value, low, high)}}}, one below the other."""
+    heights = [row_height * len(rows) + 85 for rows in shown.values()]
+    figure, axes = new_figure(sum(heights), len(shown), sharex=True, squeeze=False, height_ratios=heights)
+    for axis, (title, rows) in zip(axes[:, 0], shown.items()):
+        names = dict.fromkeys(name for ratios in rows.values() for name in ratios)
+        forest(axis, list(rows), {name: {row: ratios.get(name) for row, ratios in rows.items()} for name in names})
+        axis.axvline(1, color=GREY, linewidth=1.5)
+        finish_axis(axis, xscale="log")
+        axis.xaxis.set_major_formatter(plain)
+        legend_above(axis, columns, title)
+    axes[-1, 0].set_xlabel(label)
+    return figure, axes[:, 0]
+
+
 # ---------------------------------------------------------------------------------------------- the plots
 def ideas():
     """Does each idea pay? Error × time of each chapter over that of the chapter before, by scene."""
@@ -166,16 +181,7 @@ def mitsuba():
         if any(scene["gains"] for scene in record["scenes"]):
             shown[short_device(device)] = {f"{scene_of(scene['scene'])}, {scene['width']}²": gains
                                            for scene, best, gains in best_and_peers(record)}
-    heights = [44 * len(scenes) + 85 for scenes in shown.values()]
-    figure, axes = new_figure(sum(heights), len(shown), sharex=True, squeeze=False, height_ratios=heights)
-    for axis, (device, scenes) in zip(axes[:, 0], shown.items()):
-        peers = dict.fromkeys(peer for gains in scenes.values() for peer in gains)
-        forest(axis, list(scenes), {peer: {name: gains.get(peer) for name, gains in scenes.items()} for peer in peers})
-        axis.axvline(1, color=GREY, linewidth=1.5)
-        finish_axis(axis, xscale="log")
-        axis.xaxis.set_major_formatter(plain)
-        legend_above(axis, 2, device)
-    axes[-1, 0].set_xlabel("times faster than Mitsuba to the same error (right of 1: the chapter is)")
+    figure, _ = panels(shown, 44, 2, "times faster than Mitsuba to the same error (right of 1: the chapter is)")
     return figure, shown
 
 
@@ -183,18 +189,10 @@ def cpu_backends():
     """How many times faster than Mitsuba LLVM is each backend of a CPU, and each of Mitsuba's variants?"""
     shown = {f"{record['environment']['processor']}, {record['environment']['cores']} cores, {clock}": cpu_gains(record, key)
              for record in load_records("cpu") for clock, key in (("wall time", "seconds"), ("CPU time", "cpu_seconds"))}
-    scenes = dict.fromkeys(scene for found in shown.values() for scene in found)
-    figure, axes = new_figure(len(shown) * (60 * len(scenes) + 80) + 40, len(shown), sharex=True, squeeze=False)
-    for axis, (name, found) in zip(axes[:, 0], shown.items()):
-        cases = dict.fromkeys(case for gains in found.values() for case in gains)
-        forest(axis, list(scenes), {case: {scene: gains.get(case) for scene, gains in found.items()} for case in cases})
-        axis.axvline(1, color=GREY, linewidth=1.5)
-        finish_axis(axis, xscale="log")
-        legend_above(axis, 3, name)
+    figure, axes = panels(shown, 60, 3, "times faster than Mitsuba LLVM to the same error (right of 1: it is faster)")
+    for axis in axes:
         axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
-        axis.xaxis.set_major_formatter(plain)
         axis.xaxis.set_minor_formatter(ticker.NullFormatter())
-    axes[-1, 0].set_xlabel("times faster than Mitsuba LLVM to the same error (right of 1: it is faster)")
     return figure, shown
 
 
