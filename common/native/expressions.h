@@ -58,7 +58,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         Expression all = target;
         const Change change = change_of(target, value.is_varying);
         all.add(value);
-        all.writes.insert(target.root);
+        write(all, target.root);
         all.text = target.assignable() + token + value.text;
         if (change != Change::uniform) {
             std::string changed = value.text;
@@ -84,6 +84,9 @@ class ExpressionReader : protected TokenReader, protected Variance {
     }
     static std::string lazy(const Expression& part) {
         return "[&](lanes::Mask active__) __attribute__((always_inline)) { return " + part.text + "; }";
+    }
+    static std::string at_once(const std::string& statements) {
+        return " ([&]() __attribute__((always_inline)) {" + statements + " }())";
     }
     Expression conditional() {
         Expression all = binary(0);
@@ -126,13 +129,13 @@ class ExpressionReader : protected TokenReader, protected Variance {
                             lazy(right) + ")";
             else if (is_lazy && left.is_varying)
                 left.text = " (lanes::Mask(" + first + ") " + symbol[0] + " lanes::Mask(" + right.text + "))";
-            else if (is_ordered && !is_lazy)
-                left.text = " Ordered{" + first + ", " + right.text + "}.pass_to([&](auto... x) { return (x " +
-                            (symbol == "^^" ? "!=" : symbol) + " ...); })";
-            else if (symbol == "^^")
-                left.text = "((" + first + ") != (" + right.text + "))";
-            else
-                left.text = first + token + right.text;
+            else {
+                const std::string sign = symbol == "^^" ? " !=" : token;
+                left.text = is_ordered && !is_lazy
+                                ? at_once(" auto a__ = " + first + "; auto b__ = " + right.text + "; return a__" + sign + " b__;")
+                            : symbol == "^^" ? "((" + first + ")" + sign + " (" + right.text + "))"
+                                             : first + sign + right.text;
+            }
         }
         return left;
     }
@@ -148,7 +151,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         operand.add(inner);
         if (symbol.size() == 2) {
             operand.text = token + inner.assignable();
-            operand.writes.insert(inner.root);
+            write(operand, inner.root);
         }
         return operand;
     }
@@ -179,7 +182,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                     all.text = " lanes::before(" + before + ", [&] { " + changed.text + "; })";
                 } else {
                     all.text = all.assignable() + take();
-                    all.writes.insert(all.root);
+                    write(all, all.root);
                 }
             } else if (peek() == ".") {
                 const std::string dot = take(), indices = swizzle_indices(peek());
@@ -234,6 +237,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         if (is_name(word)) {
             all.root = word;
             all.reads.insert(word);
+            if (globals_.contains(word)) effects_of_function_.reads.insert(word);
             all.is_varying = varies(word);
         }
         return all;
@@ -263,31 +267,30 @@ class ExpressionReader : protected TokenReader, protected Variance {
         for (size_t i = 0; i < arguments.size(); ++i)
             for (size_t j = 0; j < i; ++j) is_ordered |= depend(arguments[i], arguments[j]);
         Expression all;
-        std::string passed;
+        std::string first, passed;  // what comes before the call, and what it passes
         const auto is_out_argument = [&](size_t i) {
             return std::any_of(overloads.begin(), overloads.end(),
                                [&](const auto& outs) { return outs.size() == arguments.size() && outs[i].is_out; });
         };
         for (size_t i = 0; i < arguments.size(); ++i)
-            if (is_out_argument(i)) all.writes.insert(arguments[i].root);
+            if (is_out_argument(i)) write(all, arguments[i].root);
         for (size_t i = 0; i < arguments.size(); ++i) {
             Expression& argument = arguments[i];
             const bool is_out = is_out_argument(i);
+            bool is_reference = is_out || (i == 0 && (word.starts_with("atomic") || word == "texelFetch")), is_copied = false;
             if (has_lanes() && i == 0 && (word.starts_with("atomic") || (word == "texelFetch" && !argument.place.empty()))) {
                 if (argument.place.empty()) refuse("atomic functions of one variable for all paths");
                 argument.text = argument.place;
             } else if (is_out) {
                 // Another name for the variable is a global's or an argument's.
-                bool is_known_twice = globals_.contains(argument.root) || !argument.indices.empty() || !argument.place.empty();
-                for (size_t j = 0; j < arguments.size(); ++j) is_known_twice |= j != i && arguments[j].root == argument.root;
+                is_copied = globals_.contains(argument.root) || !argument.indices.empty() || !argument.place.empty();
+                for (size_t j = 0; j < arguments.size(); ++j) is_copied |= j != i && arguments[j].root == argument.root;
                 if (has_lanes()) {
                     change_of(argument, true);
-                    is_known_twice |= kind == Call::builtin;
+                    is_copied |= kind == Call::builtin;
                 }
-                argument.text = is_known_twice
-                                    ? (has_lanes() ? " lanes::copied(active__, " : " copied(") + argument.assignable() + ")"
-                                    : argument.text;
-                if (is_ordered && !is_known_twice) argument.text = " Reference(" + argument.text + ")";
+                if (is_copied)
+                    argument.text = (has_lanes() ? " lanes::copied(active__, " : " copied(") + argument.assignable() + ")";
             } else if (has_lanes() && kind == Call::function &&
                        (globals_.contains(argument.root) || all.writes.contains(argument.root))) {
                 argument.text = " lanes::copy(" + argument.text + ")";  // it may change while the function reads it
@@ -296,7 +299,14 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 if (argument.is_varying && parameters.size() == arguments.size()) vary(parameters[i].token);
             passed += i == 0 ? "" : ",";
             all.add(argument);
-            passed += argument.text;
+            // C++ evaluates arguments in any order, and a temporary would be copied out only after the whole expression.
+            if (is_ordered || is_copied) {
+                const std::string variable = "a" + std::to_string(i) + "__";
+                first += (is_reference ? " auto&& " : " auto ") + variable + " =" + argument.text + ";";
+                passed += " " + variable;
+            } else {
+                passed += argument.text;
+            }
         }
         bool is_masked = kind == Call::function;
         if (has_lanes()) {
@@ -308,16 +318,26 @@ class ExpressionReader : protected TokenReader, protected Variance {
         }
         const std::string mask = has_lanes() && is_masked ? arguments.empty() ? "active__" : "active__, " : "";
         all.is_masked |= is_masked;
-        if (is_ordered)
-            all.text = " Ordered{" + passed + "}.pass_to([&](auto... x) { return " + name + "(" + mask + "x...); })";
-        else
-            all.text = name + open + mask + passed + close;
+        all.text = name + open + mask + passed + close;
+        if (!first.empty()) all.text = at_once(first + " return " + all.text + ";");
+        if (const auto found = effects_.find(word); kind == Call::function && found != effects_.end()) {
+            all.add_effects(found->second);
+            effects_of_function_.add_effects(found->second);
+        }
         return all;
+    }
+
+    void write(Expression& all, const std::string& variable) {
+        all.writes.insert(variable);
+        if (globals_.contains(variable)) effects_of_function_.writes.insert(variable);
     }
 
     Names structs_, fields_;
     Names declared_;  // names in the declaration that is being read: their initialisers still call functions of these names
     std::map<std::string, std::vector<Parameters>, std::less<>> functions_;  // of each overload
+    // What functions read and write of global variables, and what the present one does; a prototype does nothing.
+    std::map<std::string, Expression, std::less<>> effects_;
+    Expression effects_of_function_;
 };
 
 }  // namespace lab::native

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <glm/glm.hpp>
 #include <source_location>
-#include <tuple>
 #include <type_traits>
 
 #include "bindings.h"
@@ -205,25 +204,6 @@ template <typename V, int... i>
 auto copied(Swizzled<V, i...> target) {
     return Copied<Swizzled<V, i...>, typename Swizzled<V, i...>::Value>{target, target};
 }
-
-// An argument of such a parameter among operands that are Ordered, which are copied.
-template <typename T>
-struct Reference {
-    T& target;
-    Reference(T& x) : target(x) {}
-    operator T&() const { return target; }
-};
-
-// Operands that are evaluated from left to right.
-template <typename... T>
-struct Ordered {
-    std::tuple<T...> values;
-    Ordered(T... x) : values(x...) {}
-    template <typename F>
-    auto pass_to(F f) {
-        return std::apply(f, values);
-    }
-};
 
 struct Builtins {
 #define LAB_FLOATS(name)                               \

@@ -50,14 +50,14 @@ LAB_INLINE Swizzled<Vec<n, T>, i...> swizzled(Vec<n, T>& v) {
     return {v};
 }
 
-// Changes a variable in the lanes of a mask.
+// Changes a variable in the lanes of a mask. Its value is that of a number.
 template <typename Target, typename U>
-LAB_INLINE void assign(const Mask& mask, Target&& target, const U& value) {
+LAB_INLINE auto assign(const Mask& mask, Target&& target, const U& value) {
     using T = std::remove_cvref_t<Target>;
     if constexpr (is_ref<T>)
         store(mask, target, value);
     else if constexpr (is_number<T>)
-        target = select(mask, T(value), target);
+        return target = select(mask, T(value), target);
     else if constexpr (requires { typename T::VaryingStruct; })
         T::fields([&](auto& x, const auto& y) { assign(mask, x, y); }, target, T(value));
     else if constexpr (requires { T::length(); })

@@ -164,6 +164,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
             skip();
             return std::string(static_cast<size_t>(std::count(text.begin(), text.end(), '\n')), '\n');
         }
+        effects_of_function_ = {};
         returns_ = 0;
         const bool is_void = type.ends_with("void");
         result_ = is_void ? "" : " result__";
@@ -172,6 +173,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         else
             text += block();
         scopes_.pop_back();
+        effects_[name].add_effects(effects_of_function_);
         return text;
     }
 

@@ -17,10 +17,13 @@ struct Expression {
     std::string place = {};                 // of memory at an index that varies, which `text` loads
     bool is_picked = false;                 // whether lanes cannot assign to it: at such an index of something else
 
-    void add(const Expression& part) {
-        text += part.text;
+    void add_effects(const Expression& part) {
         reads.insert(part.reads.begin(), part.reads.end());
         writes.insert(part.writes.begin(), part.writes.end());
+    }
+    void add(const Expression& part) {
+        text += part.text;
+        add_effects(part);
         is_varying |= part.is_varying;
         is_masked |= part.is_masked;
     }

@@ -228,13 +228,18 @@ void expect_equal_results(uint32_t first_seed, uint32_t batch_count) {
     }
 }
 
-// The number that a shader writes, and why it runs one by one.
-std::pair<uint32_t, std::string> result_and_reason(const std::string& body) {
-    const native::Code code = native::load(
+native::Code load_main(const std::string& body) {
+    return native::load(
         "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
         "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
-        "bool set(inout bool b) { b = true; return b; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
+        "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
+        "uint count = 1u; uint count_up() { return ++count; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
         body + "\n}\n");
+}
+
+// The number that a shader writes, and why it runs one by one.
+std::pair<uint32_t, std::string> result_and_reason(const std::string& body) {
+    const native::Code code = load_main(body);
     return {run(code, 1).front(), code.why_one_by_one};
 }
 
@@ -257,12 +262,33 @@ TEST_F(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
               std::pair(5u, std::string()));
 }
 
+// As GLSL says: from left to right, and a function's results are copied out when it returns.
 TEST_F(NativeLanes, EvaluateInOrder) {
-    for (const char* body :
-         {"uint x = i;\nresults[i] = x++ < 5u && x == 1u ? 5u : 7u;", "uint x = i;\nresults[i] = x++ > 5u || x == 1u ? 5u : 7u;",
-          "uint x = i;\nresults[i] = x++ < 5u ^^ x == 1u ? 7u : 5u;", "uint x = i;\nresults[i] = x++ < 5u ? x + 4u : x;",
-          "bool b = i > 5u;\nresults[i] = b || set(b) && i > 5u ? 7u : 5u;"})
-        EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string())) << body;
+    const std::string bodies[] = {"r = x++ < 5u && x == 1u ? 5u : 7u;",
+                                  "r = x++ > 5u || x == 1u ? 5u : 7u;",
+                                  "r = x++ < 5u ^^ x == 1u ? 7u : 5u;",
+                                  "r = x++ < 5u ? x + 4u : x;",
+                                  "bool b = i > 5u;\nr = b || set(b) && i > 5u ? 7u : 5u;",
+                                  "x = 2u; r = x++ + x;",
+                                  "uvec2 n = uvec2(2u, x);\nn.y = add(n.x, n.y);\nr = n.y;",
+                                  "Named n = Named(2u, x);\nn.raw = x < 5u ? add(n.offset, n.raw) : 7u;\nr = n.raw;",
+                                  "Named n = Named(1u, x);\nr = add(n.offset, n.raw) + n.raw;",
+                                  "Named n = Named(1u, x);\nr = add(n.offset++, n.raw) + n.raw;",
+                                  "r = x + count + count_up() + count;"};
+    constexpr size_t count = std::size(bodies);
+    static_assert(count <= invocations);
+    std::string text;
+    for (size_t k = 0; k < count; ++k)
+        text += "{ uint x = i, r;\n" + bodies[k] + "\nresults[i * " + std::to_string(count) + "u + " + std::to_string(k) +
+                "u] = r; }\n";
+    for (const native::Mode mode : {native::Mode::fast, native::Mode::debug}) {
+        native::set_mode(mode);
+        const native::Code code = load_main(text);
+        EXPECT_EQ(code.why_one_by_one.empty(), mode == native::Mode::fast) << code.why_one_by_one;
+        const std::vector<uint32_t> results = run(code, 1);
+        for (size_t k = 0; k < count; ++k) EXPECT_EQ(results[k], 5u) << bodies[k];
+    }
+    native::set_mode(native::Mode::fast);
 }
 
 TEST_F(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
