@@ -50,8 +50,7 @@ Mode mode = Mode::fast;
 std::string why_no_lanes() {
     if (mode == Mode::checked) return "--sanitize";
     if (mode == Mode::debug) return "a debugger sees no lanes";
-    // Random programs still find differences, where an expression changes what it reads elsewhere: only for those who ask.
-    if (const char* wish = std::getenv("LAB_LANES"); !wish || std::string(wish) != "1") return "LAB_LANES=1 runs 8";
+    if (const char* wish = std::getenv("LAB_LANES"); wish && std::string(wish) == "0") return "LAB_LANES=0";
 #if defined(__x86_64__) && defined(__GLIBC__)
     return __builtin_cpu_supports("avx2") ? "" : "the CPU lacks AVX2";
 #else
@@ -136,7 +135,11 @@ std::string compile(const std::string& text, const std::vector<std::string>& arg
     const auto with = [&](const char* ending) { return fs::path(place.string() + ending); };
     std::error_code ignored;
     fs::create_directories(place.parent_path(), ignored);
-    write_file(with(".cpp"), text);
+    try {
+        write_file(with(".cpp"), text);
+    } catch (const UserError& error) {
+        throw UserError(std::string("the backend native: ") + error.what() + ": set XDG_CACHE_HOME to a folder for its code");
+    }
     std::vector<std::string> command{find_compiler().string(), with(".cpp").string(), "-o", with(".so").string()};
     command.insert(command.end(), arguments.begin(), arguments.end());
     const bool is_compiled = run_program(command, with(".log"));
@@ -158,10 +161,12 @@ void* load_library(const std::string& text, const std::vector<std::string>& argu
     if (!read_cache(name)) refusal = compile(text, arguments, name);
     if (!refusal.empty()) return nullptr;
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (!library)
-        throw UserError(std::string("the backend native cannot load its code: ") + dlerror() +
-                        ": set XDG_CACHE_HOME to a folder that allows programs");
-    return library;
+    if (library) return library;
+    const std::string reason = dlerror();
+    std::error_code ignored;
+    fs::remove(file, ignored);  // a compiler may have written something else
+    throw UserError("the backend native cannot load its code: " + reason +
+                    ": set XDG_CACHE_HOME to a folder that allows programs");
 }
 void* load_library(const std::string& text, const std::vector<std::string>& arguments) {
     std::string refusal;

@@ -23,7 +23,7 @@ void set_mode(Mode mode);
 // A compute shader as code, which stays loaded.
 struct Code {
     RunGroup run;
-    // Empty where lane_count invocations run at once. They do if LAB_LANES=1 is in the environment of a CPU with AVX2, unless
+    // Empty where lane_count invocations run at once. They do on CPUs with AVX2, unless LAB_LANES=0 is in the environment or
     // lanes lack something that the shader uses.
     std::string why_one_by_one;
 };

@@ -12,12 +12,6 @@
 namespace lab {
 namespace {
 
-class NativeLanes : public testing::Test {
-  public:
-    NativeLanes() { setenv("LAB_LANES", "1", 1); }
-    ~NativeLanes() override { unsetenv("LAB_LANES"); }
-};
-
 // Writes functions of unsigned integers, which wrap around in C++ as well.
 class ProgramWriter {
   public:
@@ -243,7 +237,7 @@ std::pair<uint32_t, std::string> result_and_reason(const std::string& body) {
     return {run(code, 1).front(), code.why_one_by_one};
 }
 
-TEST_F(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
+TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
     const std::pair<const char*, const char*> cases[] = {
         {"uint x = 2u;\nswitch (i) { case 0: x = 5u; }\nresults[i] = x;", "test.glsl:7: lanes lack 'switch'"},
         {"uint a[2];\na[0] = 3u;\na[i] = 5u;\nresults[i] = a[0];",
@@ -255,7 +249,7 @@ TEST_F(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
               std::pair(5u, std::string()));
 }
 
-TEST_F(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
+TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
     EXPECT_EQ(result_and_reason("vec2 n = vec2(0, 1);\nresults[i] = uint(transpose(mat2(1.0, 2.0, 3.0, float(i)))[0].y - "
                                 "faceforward(n, vec2(float(i), 1.0), n).y - refract(vec2(float(i), -1.0), n, 1.0).y + "
                                 "determinant(mat2(1.0)) - 1.0);"),
@@ -263,7 +257,7 @@ TEST_F(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
 }
 
 // As GLSL says: from left to right, and a function's results are copied out when it returns.
-TEST_F(NativeLanes, EvaluateInOrder) {
+TEST(NativeLanes, EvaluateInOrder) {
     const std::string bodies[] = {"r = x++ < 5u && x == 1u ? 5u : 7u;",
                                   "r = x++ > 5u || x == 1u ? 5u : 7u;",
                                   "r = x++ < 5u ^^ x == 1u ? 7u : 5u;",
@@ -291,7 +285,7 @@ TEST_F(NativeLanes, EvaluateInOrder) {
     native::set_mode(native::Mode::fast);
 }
 
-TEST_F(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
+TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
     const TestFolder folder;
     const auto compiler = folder.write(
         "compiler",
@@ -303,8 +297,8 @@ TEST_F(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
     unsetenv("CXX");
 }
 
-TEST_F(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 1); }
-TEST_F(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) { expect_equal_results(1000, 200); }
+TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 1); }
+TEST(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) { expect_equal_results(1000, 200); }
 
 }  // namespace
 }  // namespace lab
