@@ -43,7 +43,8 @@ inline std::string swizzle_indices(const std::string& name) {
         for (const char letter : name) {
             const size_t index = letters.find(letter);
             if (index == std::string::npos) break;
-            indices += (indices.empty() ? "" : ",") + std::to_string(index);
+            if (!indices.empty()) indices += ',';
+            indices += std::to_string(index);
         }
         if (name.size() >= 2 && name.size() <= 4 && indices.size() == 2 * name.size() - 1) return indices;
     }
