@@ -82,7 +82,7 @@ LAB_INLINE auto select(const Mask& mask, const A& a, const B& b) {
 template <typename A, typename B>
 LAB_INLINE auto select_lazily(const Mask& active, const Mask& condition, const A& a, const B& b) {
     const Mask first = active & condition, second = active & !condition;
-    decltype(varying(a(first))) result;
+    decltype(select(condition, a(first), b(second))) result;
     if (any(first)) result = varying(a(first));
     if (any(second)) assign(second, result, b(second));
     return result;

@@ -256,20 +256,9 @@ TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
               std::pair(5u, std::string()));
 }
 
-// As GLSL says: from left to right, and a function's results are copied out when it returns.
-TEST(NativeLanes, EvaluateInOrder) {
-    const std::string bodies[] = {"r = x++ < 5u && x == 1u ? 5u : 7u;",
-                                  "r = x++ > 5u || x == 1u ? 5u : 7u;",
-                                  "r = x++ < 5u ^^ x == 1u ? 7u : 5u;",
-                                  "r = x++ < 5u ? x + 4u : x;",
-                                  "bool b = i > 5u;\nr = b || set(b) && i > 5u ? 7u : 5u;",
-                                  "x = 2u; r = x++ + x;",
-                                  "uvec2 n = uvec2(2u, x);\nn.y = add(n.x, n.y);\nr = n.y;",
-                                  "Named n = Named(2u, x);\nn.raw = x < 5u ? add(n.offset, n.raw) : 7u;\nr = n.raw;",
-                                  "Named n = Named(1u, x);\nr = add(n.offset, n.raw) + n.raw;",
-                                  "Named n = Named(1u, x);\nr = add(n.offset++, n.raw) + n.raw;",
-                                  "r = x + count + count_up() + count;"};
-    constexpr size_t count = std::size(bodies);
+// Each body gives 5, in lanes and one by one.
+template <size_t count>
+void expect_fives(const std::string (&bodies)[count]) {
     static_assert(count <= invocations);
     std::string text;
     for (size_t k = 0; k < count; ++k)
@@ -283,6 +272,29 @@ TEST(NativeLanes, EvaluateInOrder) {
         for (size_t k = 0; k < count; ++k) EXPECT_EQ(results[k], 5u) << bodies[k];
     }
     native::set_mode(native::Mode::fast);
+}
+
+// As GLSL says: from left to right, and a function's results are copied out when it returns.
+TEST(NativeLanes, EvaluateInOrder) {
+    const std::string bodies[] = {"r = x++ < 5u && x == 1u ? 5u : 7u;",
+                                  "r = x++ > 5u || x == 1u ? 5u : 7u;",
+                                  "r = x++ < 5u ^^ x == 1u ? 7u : 5u;",
+                                  "r = x++ < 5u ? x + 4u : x;",
+                                  "bool b = i > 5u;\nr = b || set(b) && i > 5u ? 7u : 5u;",
+                                  "x = 2u; r = x++ + x;",
+                                  "uvec2 n = uvec2(2u, x);\nn.y = add(n.x, n.y);\nr = n.y;",
+                                  "Named n = Named(2u, x);\nn.raw = x < 5u ? add(n.offset, n.raw) : 7u;\nr = n.raw;",
+                                  "Named n = Named(1u, x);\nr = add(n.offset, n.raw) + n.raw;",
+                                  "Named n = Named(1u, x);\nr = add(n.offset++, n.raw) + n.raw;",
+                                  "r = x + count + count_up() + count;"};
+    expect_fives(bodies);
+}
+
+TEST(NativeLanes, ComputeWhatGlslSays) {
+    const std::string bodies[] = {
+        "float f = i > 5u ? 0 : float(add(2u, x)) * 0.5;\nr = uint(f * 2.0);",
+    };
+    expect_fives(bodies);
 }
 
 TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
