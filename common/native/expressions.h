@@ -124,7 +124,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
             left.root = left.indices = left.place = "";
             const bool is_ordered = depend(left, right);
             left.add(right);
-            if (is_lazy && left.is_varying && (right.is_masked || is_ordered))
+            if (is_lazy && left.is_varying && (right.is_masked || is_ordered || !right.writes.empty()))
                 left.text = " lanes::" + std::string(symbol == "||" ? "or" : "and") + "_lazily(active__, " + first + ", " +
                             lazy(right) + ")";
             else if (is_lazy && left.is_varying)

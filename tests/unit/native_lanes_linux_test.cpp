@@ -293,6 +293,8 @@ TEST(NativeLanes, EvaluateInOrder) {
 TEST(NativeLanes, ComputeWhatGlslSays) {
     const std::string bodies[] = {
         "float f = i > 5u ? 0 : float(add(2u, x)) * 0.5;\nr = uint(f * 2.0);",
+        "r = 5u;\nbool b = gl_WorkGroupID.x > 3u && r++ < i;",
+        "uint n = 5u;\nbool b = gl_WorkGroupID.x < 3u || n++ < i;\nr = n;",
     };
     expect_fives(bodies);
 }
