@@ -77,7 +77,13 @@ class DeclarationReader : protected ExpressionReader {
                 const size_t begin = at_;
                 value = take();
                 const Expression initialiser = peek() == "{" ? braces() : assignment();
-                value += initialiser.text;
+                if (initialiser.reads.contains(name) && !is_global) {  // in GLSL, an outer variable of this name
+                    text += (previous.empty() ? " const auto " : "; const auto ") + name + "__ =" + initialiser.text + ";";
+                    value += name + "__";
+                    previous.clear();
+                } else {
+                    value += initialiser.text;
+                }
                 if (initialiser.is_varying) vary(token);
                 if (is_global && initialiser.is_masked && has_lanes()) refuse("calls in the initial value of a global variable");
                 for (size_t i = begin; i + 1 < at_; ++i)

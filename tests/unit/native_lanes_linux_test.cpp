@@ -295,6 +295,7 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "float f = i > 5u ? 0 : float(add(2u, x)) * 0.5;\nr = uint(f * 2.0);",
         "r = 5u;\nbool b = gl_WorkGroupID.x > 3u && r++ < i;",
         "uint n = 5u;\nbool b = gl_WorkGroupID.x < 3u || n++ < i;\nr = n;",
+        "{ uint x = x + 5u;\nr = x; }",
     };
     expect_fives(bodies);
 }
