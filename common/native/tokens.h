@@ -143,6 +143,7 @@ class TokenReader {
         if (cpp_words.contains(token)) return token + "_";
         if (std::isdigit(static_cast<unsigned char>(token[0])) || (token[0] == '.' && token.size() > 1)) {
             const bool is_hexadecimal = token.starts_with("0x") || token.starts_with("0X");
+            if (is_hexadecimal && std::tolower(token.back()) != 'u') return "int(" + token + ")";  // C++ has an unsigned one
             if (!is_hexadecimal && token.find_first_of(".eE") != std::string::npos &&
                 !std::isalpha(static_cast<unsigned char>(token.back())))
                 return token + "f";

@@ -296,6 +296,7 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "r = 5u;\nbool b = gl_WorkGroupID.x > 3u && r++ < i;",
         "uint n = 5u;\nbool b = gl_WorkGroupID.x < 3u || n++ < i;\nr = n;",
         "{ uint x = x + 5u;\nr = x; }",
+        "r = 0xffffffff < 1 ? 5u : 7u;",
     };
     expect_fives(bodies);
 }
