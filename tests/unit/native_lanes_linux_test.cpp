@@ -297,6 +297,8 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "uint n = 5u;\nbool b = gl_WorkGroupID.x < 3u || n++ < i;\nr = n;",
         "{ uint x = x + 5u;\nr = x; }",
         "r = 0xffffffff < 1 ? 5u : 7u;",
+        "r = uint(bitfieldExtract(int(i) - 3, 0, 8) + 8);",
+        "r = uint(findMSB(int(i) - 40));",
     };
     expect_fives(bodies);
 }
