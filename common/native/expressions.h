@@ -67,7 +67,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                                                       : " lanes::assign(active__, " + target.assignable() + ", " + changed + ")";
             all.is_varying = all.is_masked = true;
         }
-        all.target = all.indices = all.place = "";
+        all.lvalue = all.place = "";
         return all;
     }
     // A part of an expression that is not evaluated in all lanes that come to the whole.
@@ -108,7 +108,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         else if (all.is_varying)
             all.text = "(" + condition + question + "lanes::varying(" + first.text + ")" + colon + "lanes::varying(" +
                        second.text + "))";
-        all.root = all.indices = all.place = "";
+        all.root = all.lvalue = all.place = "";
         return all;
     }
     Expression binary(int lowest) {
@@ -121,7 +121,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
             const std::string symbol = found->first, token = take(), first = left.text;
             const bool is_lazy = symbol == "||" || symbol == "&&";
             Expression right = inside(is_lazy && left.is_varying, [&] { return binary(found->second); });
-            left.root = left.indices = left.place = "";
+            left.root = left.lvalue = left.place = "";
             const bool is_ordered = depend(left, right);
             left.add(right);
             if (is_lazy && left.is_varying && (right.is_masked || is_ordered || !right.writes.empty()))
@@ -164,7 +164,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 const std::string close = expect("]");
                 const bool is_array_varying = all.is_varying;
                 all.add(index);
-                all.indices = "";
+                if (!all.lvalue.empty()) all.lvalue += open + index.text + close;
                 all.text = array + open + index.text + close;
                 if (!all.place.empty() || (index.is_varying && !is_array_varying)) {
                     all.place = " lanes::at(" + (all.place.empty() ? array : all.place) + ", " + index.text + ")";
@@ -189,7 +189,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 if (indices.empty() || fields_.contains(peek())) {
                     const std::string name = take();
                     all.text += dot + name;
-                    all.indices = "";
+                    if (!all.lvalue.empty()) all.lvalue += "[" + std::to_string(component_index(name[0])) + "]";
                     if (peek() == "(") {  // length()
                         if (!all.place.empty()) refuse("length() of an array in memory");
                         all.text += join({take(), expect(")")});
@@ -200,8 +200,8 @@ class ExpressionReader : protected TokenReader, protected Variance {
                     }
                 } else {
                     if (!all.place.empty()) all.is_picked = true;
-                    all.target = all.text;
-                    all.indices = indices;
+                    all.place = "";
+                    all.lvalue = " swizzled<" + indices + ">(" + all.text + ")";
                     skip();
                     all.text = " swizzle<" + indices + ">(" + all.text + ")";
                 }
@@ -283,7 +283,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 argument.text = argument.place;
             } else if (is_out) {
                 // Another name for the variable is a global's or an argument's.
-                is_copied = globals_.contains(argument.root) || !argument.indices.empty() || !argument.place.empty();
+                is_copied = globals_.contains(argument.root) || !argument.lvalue.empty() || !argument.place.empty();
                 for (size_t j = 0; j < arguments.size(); ++j) is_copied |= j != i && arguments[j].root == argument.root;
                 if (has_lanes()) {
                     change_of(argument, true);

@@ -159,6 +159,10 @@ struct Swizzled {
     using Value = vec<sizeof...(i), Component<V>>;
     V& target;
     operator Value() const { return Value(target[i]...); }
+    Component<V>& operator[](length_t component) const {
+        constexpr length_t indices[]{i...};
+        return target[indices[component]];
+    }
     Value operator=(const Value& value) {
         length_t next = 0;
         ((target[i] = value[next++]), ...);

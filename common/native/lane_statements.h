@@ -40,6 +40,10 @@ struct Swizzled {
     using Value = Vec<sizeof...(i), std::remove_cvref_t<decltype(std::declval<T>()[0])>>;
     T& target;
     LAB_INLINE operator Value() const { return lanes::swizzle<i...>(target); }
+    LAB_INLINE auto& operator[](int component) const {
+        constexpr int indices[]{i...};
+        return target[indices[component]];
+    }
     LAB_INLINE void operator=(const Value& value) {
         int next = 0;
         ((target[i] = value[next++]), ...);

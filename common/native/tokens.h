@@ -36,6 +36,7 @@ inline bool is_vector_type(const std::string& name) {
     return types.contains(name);
 }
 
+inline size_t component_index(char letter) { return std::string("xyzwrgbastpq").find(letter) % 4; }
 // The indices of a swizzle's components as "2,0,1"; empty for other names.
 inline std::string swizzle_indices(const std::string& name) {
     for (const std::string letters : {"xyzw", "rgba", "stpq"}) {

@@ -224,7 +224,8 @@ void expect_equal_results(uint32_t first_seed, uint32_t batch_count) {
 
 native::Code load_main(const std::string& body) {
     return native::load(
-        "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
+        "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };"
+        "layout(scalar, set = 0, binding = 3) readonly buffer Numbers { uvec4 numbers[]; };\n"
         "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
         "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
         "uint count = 1u; uint count_up() { return ++count; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
@@ -299,6 +300,8 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "r = 0xffffffff < 1 ? 5u : 7u;",
         "r = uint(bitfieldExtract(int(i) - 3, 0, 8) + 8);",
         "r = uint(findMSB(int(i) - 40));",
+        "uvec3 v = uvec3(x);\nv.zyx.x = 2u;\nv.zyx[2] = 3u;\nr = v.x + v.z;",
+        "r = numbers[i].zyx.x == numbers[i].z ? 5u : 7u;",
     };
     expect_fives(bodies);
 }
