@@ -320,9 +320,12 @@ class ExpressionReader : protected TokenReader, protected Variance {
         all.is_masked |= is_masked;
         all.text = name + open + mask + passed + close;
         if (!first.empty()) all.text = at_once(first + " return " + all.text + ";");
-        if (const auto found = effects_.find(word); kind == Call::function && found != effects_.end()) {
-            all.add_effects(found->second);
-            effects_of_function_.add_effects(found->second);
+        if (kind == Call::function) {
+            Expression effects;
+            effects.reads = effects.writes = globals_;  // of a function that has only a prototype so far
+            if (const auto found = effects_.find(word); found != effects_.end()) effects = found->second;
+            all.add_effects(effects);
+            effects_of_function_.add_effects(effects);
         }
         return all;
     }
@@ -335,7 +338,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
     Names structs_, fields_;
     Names declared_;  // names in the declaration that is being read: their initialisers still call functions of these names
     std::map<std::string, std::vector<Parameters>, std::less<>> functions_;  // of each overload
-    // What functions read and write of global variables, and what the present one does; a prototype does nothing.
+    // What functions read and write of global variables, and what the present one does.
     std::map<std::string, Expression, std::less<>> effects_;
     Expression effects_of_function_;
 };

@@ -228,7 +228,9 @@ native::Code load_main(const std::string& body) {
         "layout(scalar, set = 0, binding = 3) readonly buffer Numbers { uvec4 numbers[]; };\n"
         "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
         "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
-        "uint count = 1u; uint count_up() { return ++count; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
+        "uint count = 1u; uint count_up() { return ++count; }"
+        "uint first(uint a, uint b) { return a; } uint ahead(); uint call_ahead() { return first(count, ahead()); } "
+        "uint ahead() { return count *= 2u; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
         body + "\n}\n");
 }
 
@@ -302,6 +304,7 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "r = uint(findMSB(int(i) - 40));",
         "uvec3 v = uvec3(x);\nv.zyx.x = 2u;\nv.zyx[2] = 3u;\nr = v.x + v.z;",
         "r = numbers[i].zyx.x == numbers[i].z ? 5u : 7u;",
+        "r = 4u + call_ahead();",
     };
     expect_fives(bodies);
 }
