@@ -305,6 +305,7 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "uvec3 v = uvec3(x);\nv.zyx.x = 2u;\nv.zyx[2] = 3u;\nr = v.x + v.z;",
         "r = numbers[i].zyx.x == numbers[i].z ? 5u : 7u;",
         "r = 4u + call_ahead();",
+        "int n = 2147483647 + int(gl_WorkGroupID.x);\nr = n + 1 > n ? 7u : 5u;",
     };
     expect_fives(bodies);
 }
