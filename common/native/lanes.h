@@ -104,8 +104,11 @@ struct Mat {
     template <typename M>
     requires requires(const M& m) { m[0][0]; }
     LAB_INLINE Mat(const M& m) {
+        constexpr int known_rows = std::remove_cvref_t<decltype(m[0])>::length();
         for (int i = 0; i < columns; ++i)
-            for (int j = 0; j < rows; ++j) column[i][j] = m[i][j];
+            for (int j = 0; j < rows; ++j) column[i][j] = i == j ? 1.0f : 0.0f;
+        for (int i = 0; i < std::min(columns, M::length()); ++i)
+            for (int j = 0; j < std::min(rows, known_rows); ++j) column[i][j] = m[i][j];
     }
     static constexpr int length() { return columns; }
     LAB_INLINE Column& operator[](int i) { return column[i]; }

@@ -306,6 +306,7 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "r = numbers[i].zyx.x == numbers[i].z ? 5u : 7u;",
         "r = 4u + call_ahead();",
         "int n = 2147483647 + int(gl_WorkGroupID.x);\nr = n + 1 > n ? 7u : 5u;",
+        "mat3 m = mat3(2.0);\nm[0][0] = float(x);\nmat4 n = mat4(m);\nr = uint(n[0][0] + n[2][2] + 3.0 * n[3][3] + n[3][0]);",
     };
     expect_fives(bodies);
 }
