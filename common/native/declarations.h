@@ -54,7 +54,7 @@ class DeclarationReader : protected ExpressionReader {
         return text + " using VaryingStruct = " + kind + "<lanes::V>; template <template <typename> class X> " + kind +
                "(const " + kind + "<X>& other__)" + copies +
                " {} template <typename F, typename... T> static void fields(const F& f, T&&... x__) {" + members + " }" + take() +
-               "; using " + name + " = " + kind + "<lanes::Uniform>";
+               "; using " + name + " = " + kind + "<Uniform>";
     }
     // A declaration of variables, without the `;`. Global constants are `static`.
     std::string declaration(bool is_global) {

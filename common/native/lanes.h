@@ -10,6 +10,12 @@
 // In the code that calls them, vectors of such functions stay in registers.
 #define LAB_INLINE [[gnu::always_inline]] inline
 
+namespace lab::native {
+// Outside of lanes, so that functions of structures are not looked up there.
+template <typename T>
+using Uniform = T;
+}  // namespace lab::native
+
 namespace lab::native::lanes {
 
 // A float, int, uint or bool for each invocation; a bool is 0 or -1.
@@ -151,8 +157,6 @@ struct VaryingOf<void> {
 };
 template <typename T>
 using V = typename VaryingOf<T>::type;
-template <typename T>
-using Uniform = T;
 template <typename T>
 LAB_INLINE auto varying(const T& x) {
     if constexpr (requires { typename VaryingOf<T>::type; })

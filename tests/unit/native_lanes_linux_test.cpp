@@ -307,6 +307,7 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "r = 4u + call_ahead();",
         "int n = 2147483647 + int(gl_WorkGroupID.x);\nr = n + 1 > n ? 7u : 5u;",
         "mat3 m = mat3(2.0);\nm[0][0] = float(x);\nmat4 n = mat4(m);\nr = uint(n[0][0] + n[2][2] + 3.0 * n[3][3] + n[3][0]);",
+        "const Named table[2] = Named[2](Named(5u, 2u), Named(7u, 3u));\nr = table[i].offset;",
     };
     expect_fives(bodies);
 }
