@@ -61,6 +61,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         write(all, target.root);
         all.text = target.assignable() + token + value.text;
         if (change != Change::uniform) {
+            if (symbol != "=" && !target.writes.empty()) refuse("'" + symbol + "' where the index changes a variable, too");
             std::string changed = value.text;
             if (symbol != "=") changed = target.text + " " + symbol.substr(0, symbol.size() - 1) + " (" + value.text + ")";
             all.text = change == Change::of_all_lanes ? target.assignable() + " = " + changed

@@ -245,6 +245,8 @@ TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
         {"uint x = 2u;\nswitch (i) { case 0: x = 5u; }\nresults[i] = x;", "test.glsl:7: lanes lack 'switch'"},
         {"uint a[2];\na[0] = 3u;\na[i] = 5u;\nresults[i] = a[0];",
          "test.glsl:8: lanes lack assignments to 'a' as it is indexed here"},
+        {"uint a[2], k = 0u;\na[0] = i;\na[k++] += 5u;\nresults[i] = a[0];",
+         "test.glsl:8: lanes lack '+=' where the index changes a variable, too"},
         {"struct S { uint x; };\nS s = S(5u);\nresults[i] = s.x;", "test.glsl:6: lanes lack structures inside of a function"}};
     for (const auto& [body, reason] : cases) EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string(reason)));
     // Names are free, even those of what lanes are made of.
