@@ -249,6 +249,10 @@ TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
          "test.glsl:8: lanes lack '+=' where the index changes a variable, too"},
         {"struct S { uint x; };\nS s = S(5u);\nresults[i] = s.x;", "test.glsl:6: lanes lack structures inside of a function"}};
     for (const auto& [body, reason] : cases) EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string(reason)));
+    const auto [result, reason] =
+        result_and_reason("const bool table[2] = bool[2](true, false);\nresults[i] = table[i] ? 5u : 7u;");
+    EXPECT_EQ(result, 5u);
+    EXPECT_NE(reason.find("lanes lack bools in memory"), std::string::npos) << reason;
     // Names are free, even those of what lanes are made of.
     EXPECT_EQ(result_and_reason("Named a = Named(2u, 3u), b;\nif (i < 5u) b = a;\nresults[i] = b.offset + b.raw;"),
               std::pair(5u, std::string()));
