@@ -54,7 +54,7 @@ class DeclarationReader : protected ExpressionReader {
         return text + " using VaryingStruct = " + kind + "<lanes::V>; template <template <typename> class X> " + kind +
                "(const " + kind + "<X>& other__)" + copies +
                " {} template <typename F, typename... T> static void fields(const F& f, T&&... x__) {" + members + " }" + take() +
-               "; using " + name + " = " + kind + "<lanes::Uniform>";
+               "; using " + name + " = " + kind + "<Uniform>";
     }
     // A declaration of variables, without the `;`. Global constants are `static`.
     std::string declaration(bool is_global) {
@@ -77,7 +77,13 @@ class DeclarationReader : protected ExpressionReader {
                 const size_t begin = at_;
                 value = take();
                 const Expression initialiser = peek() == "{" ? braces() : assignment();
-                value += initialiser.text;
+                if (initialiser.reads.contains(name) && !is_global) {  // in GLSL, an outer variable of this name
+                    text += (previous.empty() ? " const auto " : "; const auto ") + name + "__ =" + initialiser.text + ";";
+                    value += name + "__";
+                    previous.clear();
+                } else {
+                    value += initialiser.text;
+                }
                 if (initialiser.is_varying) vary(token);
                 if (is_global && initialiser.is_masked && has_lanes()) refuse("calls in the initial value of a global variable");
                 for (size_t i = begin; i + 1 < at_; ++i)

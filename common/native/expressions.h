@@ -61,13 +61,14 @@ class ExpressionReader : protected TokenReader, protected Variance {
         write(all, target.root);
         all.text = target.assignable() + token + value.text;
         if (change != Change::uniform) {
+            if (symbol != "=" && !target.writes.empty()) refuse("'" + symbol + "' where the index changes a variable, too");
             std::string changed = value.text;
             if (symbol != "=") changed = target.text + " " + symbol.substr(0, symbol.size() - 1) + " (" + value.text + ")";
             all.text = change == Change::of_all_lanes ? target.assignable() + " = " + changed
                                                       : " lanes::assign(active__, " + target.assignable() + ", " + changed + ")";
             all.is_varying = all.is_masked = true;
         }
-        all.target = all.indices = all.place = "";
+        all.lvalue = all.place = "";
         return all;
     }
     // A part of an expression that is not evaluated in all lanes that come to the whole.
@@ -108,7 +109,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         else if (all.is_varying)
             all.text = "(" + condition + question + "lanes::varying(" + first.text + ")" + colon + "lanes::varying(" +
                        second.text + "))";
-        all.root = all.indices = all.place = "";
+        all.root = all.lvalue = all.place = "";
         return all;
     }
     Expression binary(int lowest) {
@@ -121,10 +122,10 @@ class ExpressionReader : protected TokenReader, protected Variance {
             const std::string symbol = found->first, token = take(), first = left.text;
             const bool is_lazy = symbol == "||" || symbol == "&&";
             Expression right = inside(is_lazy && left.is_varying, [&] { return binary(found->second); });
-            left.root = left.indices = left.place = "";
+            left.root = left.lvalue = left.place = "";
             const bool is_ordered = depend(left, right);
             left.add(right);
-            if (is_lazy && left.is_varying && (right.is_masked || is_ordered))
+            if (is_lazy && left.is_varying && (right.is_masked || is_ordered || !right.writes.empty()))
                 left.text = " lanes::" + std::string(symbol == "||" ? "or" : "and") + "_lazily(active__, " + first + ", " +
                             lazy(right) + ")";
             else if (is_lazy && left.is_varying)
@@ -164,7 +165,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 const std::string close = expect("]");
                 const bool is_array_varying = all.is_varying;
                 all.add(index);
-                all.indices = "";
+                if (!all.lvalue.empty()) all.lvalue += open + index.text + close;
                 all.text = array + open + index.text + close;
                 if (!all.place.empty() || (index.is_varying && !is_array_varying)) {
                     all.place = " lanes::at(" + (all.place.empty() ? array : all.place) + ", " + index.text + ")";
@@ -189,7 +190,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 if (indices.empty() || fields_.contains(peek())) {
                     const std::string name = take();
                     all.text += dot + name;
-                    all.indices = "";
+                    if (!all.lvalue.empty()) all.lvalue += "[" + std::to_string(component_index(name[0])) + "]";
                     if (peek() == "(") {  // length()
                         if (!all.place.empty()) refuse("length() of an array in memory");
                         all.text += join({take(), expect(")")});
@@ -200,8 +201,8 @@ class ExpressionReader : protected TokenReader, protected Variance {
                     }
                 } else {
                     if (!all.place.empty()) all.is_picked = true;
-                    all.target = all.text;
-                    all.indices = indices;
+                    all.place = "";
+                    all.lvalue = " swizzled<" + indices + ">(" + all.text + ")";
                     skip();
                     all.text = " swizzle<" + indices + ">(" + all.text + ")";
                 }
@@ -283,7 +284,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 argument.text = argument.place;
             } else if (is_out) {
                 // Another name for the variable is a global's or an argument's.
-                is_copied = globals_.contains(argument.root) || !argument.indices.empty() || !argument.place.empty();
+                is_copied = globals_.contains(argument.root) || !argument.lvalue.empty() || !argument.place.empty();
                 for (size_t j = 0; j < arguments.size(); ++j) is_copied |= j != i && arguments[j].root == argument.root;
                 if (has_lanes()) {
                     change_of(argument, true);
@@ -320,9 +321,12 @@ class ExpressionReader : protected TokenReader, protected Variance {
         all.is_masked |= is_masked;
         all.text = name + open + mask + passed + close;
         if (!first.empty()) all.text = at_once(first + " return " + all.text + ";");
-        if (const auto found = effects_.find(word); kind == Call::function && found != effects_.end()) {
-            all.add_effects(found->second);
-            effects_of_function_.add_effects(found->second);
+        if (kind == Call::function) {
+            Expression effects;
+            effects.reads = effects.writes = globals_;  // of a function that has only a prototype so far
+            if (const auto found = effects_.find(word); found != effects_.end()) effects = found->second;
+            all.add_effects(effects);
+            effects_of_function_.add_effects(effects);
         }
         return all;
     }
@@ -335,7 +339,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
     Names structs_, fields_;
     Names declared_;  // names in the declaration that is being read: their initialisers still call functions of these names
     std::map<std::string, std::vector<Parameters>, std::less<>> functions_;  // of each overload
-    // What functions read and write of global variables, and what the present one does; a prototype does nothing.
+    // What functions read and write of global variables, and what the present one does.
     std::map<std::string, Expression, std::less<>> effects_;
     Expression effects_of_function_;
 };

@@ -159,6 +159,10 @@ struct Swizzled {
     using Value = vec<sizeof...(i), Component<V>>;
     V& target;
     operator Value() const { return Value(target[i]...); }
+    Component<V>& operator[](length_t component) const {
+        constexpr length_t indices[]{i...};
+        return target[indices[component]];
+    }
     Value operator=(const Value& value) {
         length_t next = 0;
         ((target[i] = value[next++]), ...);
@@ -231,8 +235,8 @@ struct Builtins {
     LAB_SAME(matrixCompMult) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse)
     LAB_NUMBERS(sign) LAB_NUMBERS(min) LAB_NUMBERS(max) LAB_NUMBERS(clamp) LAB_NUMBERS(lessThan) LAB_NUMBERS(lessThanEqual)
     LAB_NUMBERS(greaterThan) LAB_NUMBERS(greaterThanEqual) LAB_NUMBERS(equal) LAB_NUMBERS(notEqual) LAB_SAME(any) LAB_SAME(all)
-    LAB_SAME(not_) LAB_SAME(bitfieldReverse) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(findMSB) LAB_SAME(bitfieldExtract)
-    LAB_SAME(bitfieldInsert) LAB_SAME(packHalf2x16) LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
+    LAB_SAME(not_) LAB_SAME(bitfieldReverse) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(bitfieldInsert)
+    LAB_SAME(packHalf2x16) LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
     LAB_SAME(packUnorm2x16) LAB_SAME(unpackUnorm2x16) LAB_SAME(packSnorm4x8) LAB_SAME(unpackSnorm4x8) LAB_SAME(ldexp)
 #undef LAB_FLOATS
 #undef LAB_NUMBERS
@@ -246,6 +250,15 @@ struct Builtins {
             return glm::mix(as<CommonFloat<A, B>>(a), as<CommonFloat<A, B>>(b), as<CommonFloat<A, B>>(weight));
     }
     // clang-format on
+    // GLM's know no negative numbers: of those GLSL finds the highest 0, and extends the sign.
+    template <typename T>
+    static auto findMSB(const T& x) {
+        return each([](auto bits) { return 31 - std::countl_zero(static_cast<uint>(bits < 0 ? ~bits : bits)); }, x);
+    }
+    template <typename T>
+    static auto bitfieldExtract(const T& x, int offset, int count) {
+        return each([&](auto bits) { return count == 0 ? decltype(bits){} : bits << (32 - offset - count) >> (32 - count); }, x);
+    }
     template <typename T>
     static auto abs(const T& x) {  // GLM's asks for the sign
         return each([](auto number) { return std::abs(number); }, x);

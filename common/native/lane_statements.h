@@ -40,6 +40,10 @@ struct Swizzled {
     using Value = Vec<sizeof...(i), std::remove_cvref_t<decltype(std::declval<T>()[0])>>;
     T& target;
     LAB_INLINE operator Value() const { return lanes::swizzle<i...>(target); }
+    LAB_INLINE auto& operator[](int component) const {
+        constexpr int indices[]{i...};
+        return target[indices[component]];
+    }
     LAB_INLINE void operator=(const Value& value) {
         int next = 0;
         ((target[i] = value[next++]), ...);
@@ -82,7 +86,7 @@ LAB_INLINE auto select(const Mask& mask, const A& a, const B& b) {
 template <typename A, typename B>
 LAB_INLINE auto select_lazily(const Mask& active, const Mask& condition, const A& a, const B& b) {
     const Mask first = active & condition, second = active & !condition;
-    decltype(varying(a(first))) result;
+    decltype(select(condition, a(first), b(second))) result;
     if (any(first)) result = varying(a(first));
     if (any(second)) assign(second, result, b(second));
     return result;
@@ -216,6 +220,7 @@ LAB_INLINE void load_words(const Mask& mask, const void* base, const Lanes<int>&
 // Calls `f` for each number, in the order of memory.
 template <typename T, typename F>
 LAB_INLINE void for_each_part(T& target, const F& f) {
+    static_assert(!std::is_same_v<T, Mask>, "lanes lack bools in memory");  // where they have one byte
     if constexpr (is_number<T> && size_of<T> == 1)
         f(target);
     else if constexpr (requires { typename T::VaryingStruct; })

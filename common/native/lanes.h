@@ -10,6 +10,12 @@
 // In the code that calls them, vectors of such functions stay in registers.
 #define LAB_INLINE [[gnu::always_inline]] inline
 
+namespace lab::native {
+// Outside of lanes, so that functions of structures are not looked up there.
+template <typename T>
+using Uniform = T;
+}  // namespace lab::native
+
 namespace lab::native::lanes {
 
 // A float, int, uint or bool for each invocation; a bool is 0 or -1.
@@ -104,8 +110,11 @@ struct Mat {
     template <typename M>
     requires requires(const M& m) { m[0][0]; }
     LAB_INLINE Mat(const M& m) {
+        constexpr int known_rows = std::remove_cvref_t<decltype(m[0])>::length();
         for (int i = 0; i < columns; ++i)
-            for (int j = 0; j < rows; ++j) column[i][j] = m[i][j];
+            for (int j = 0; j < rows; ++j) column[i][j] = i == j ? 1.0f : 0.0f;
+        for (int i = 0; i < std::min(columns, M::length()); ++i)
+            for (int j = 0; j < std::min(rows, known_rows); ++j) column[i][j] = m[i][j];
     }
     static constexpr int length() { return columns; }
     LAB_INLINE Column& operator[](int i) { return column[i]; }
@@ -148,8 +157,6 @@ struct VaryingOf<void> {
 };
 template <typename T>
 using V = typename VaryingOf<T>::type;
-template <typename T>
-using Uniform = T;
 template <typename T>
 LAB_INLINE auto varying(const T& x) {
     if constexpr (requires { typename VaryingOf<T>::type; })

@@ -74,8 +74,9 @@ fs::path find_compiler() {
 fs::path header_folder() { return project_folder() / "common"; }
 
 std::vector<std::string> compiler_arguments() {
-    std::vector<std::string> arguments{"-std=c++20",        "-shared",           "-fPIC", "-fvisibility=hidden",
-                                       "-fno-finite-loops", "-ffp-contract=off", "-w",    "-I" + header_folder().string()};
+    std::vector<std::string> arguments{"-std=c++20",          "-shared", "-fPIC",
+                                       "-fvisibility=hidden", "-fwrapv", "-fno-finite-loops",
+                                       "-ffp-contract=off",   "-w",      "-I" + header_folder().string()};
     if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
     if (mode == Mode::fast)  // in one large function, structs need not be copied from one to the next
         arguments.insert(arguments.end(),

@@ -36,6 +36,7 @@ inline bool is_vector_type(const std::string& name) {
     return types.contains(name);
 }
 
+inline size_t component_index(char letter) { return std::string("xyzwrgbastpq").find(letter) % 4; }
 // The indices of a swizzle's components as "2,0,1"; empty for other names.
 inline std::string swizzle_indices(const std::string& name) {
     for (const std::string letters : {"xyzw", "rgba", "stpq"}) {
@@ -143,6 +144,7 @@ class TokenReader {
         if (cpp_words.contains(token)) return token + "_";
         if (std::isdigit(static_cast<unsigned char>(token[0])) || (token[0] == '.' && token.size() > 1)) {
             const bool is_hexadecimal = token.starts_with("0x") || token.starts_with("0X");
+            if (is_hexadecimal && std::tolower(token.back()) != 'u') return "int(" + token + ")";  // C++ has an unsigned one
             if (!is_hexadecimal && token.find_first_of(".eE") != std::string::npos &&
                 !std::isalpha(static_cast<unsigned char>(token.back())))
                 return token + "f";

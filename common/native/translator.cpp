@@ -91,6 +91,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         fields += skip();
         if (peek() == ";") return text + fields + skip();
         declare(peek(), at_, -1, true);
+        globals_.insert(peek());
         const std::string instance = take();  // a name for the block
         return text + "struct " + name + "_block { const Bindings& bindings; " + fields + "};" + " " + name + "_block" +
                instance + "{bindings}" + take();

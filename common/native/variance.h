@@ -9,13 +9,13 @@ namespace lab::native {
 
 struct Expression {
     std::string text = {};
-    std::string root = {};                  // the variable that it is a part of
-    std::string target = {}, indices = {};  // of a swizzle, which `text` reads
-    Names reads = {}, writes = {};          // variables; it writes those that it passes as `out` arguments
-    bool is_varying = false;                // whether it differs between lanes
-    bool is_masked = false;                 // whether it has to know which lanes are active
-    std::string place = {};                 // of memory at an index that varies, which `text` loads
-    bool is_picked = false;                 // whether lanes cannot assign to it: at such an index of something else
+    std::string root = {};          // the variable that it is a part of
+    std::string lvalue = {};        // of a swizzle or its component, which `text` reads
+    Names reads = {}, writes = {};  // variables; it writes those that it passes as `out` arguments
+    bool is_varying = false;        // whether it differs between lanes
+    bool is_masked = false;         // whether it has to know which lanes are active
+    std::string place = {};         // of memory at an index that varies, which `text` loads
+    bool is_picked = false;         // whether lanes cannot assign to it: at such an index of something else
 
     void add_effects(const Expression& part) {
         reads.insert(part.reads.begin(), part.reads.end());
@@ -29,7 +29,7 @@ struct Expression {
     }
     std::string assignable() const {
         if (!place.empty()) return place;
-        return indices.empty() ? text : " swizzled<" + indices + ">(" + target + ")";
+        return lvalue.empty() ? text : lvalue;
     }
 };
 

@@ -224,10 +224,13 @@ void expect_equal_results(uint32_t first_seed, uint32_t batch_count) {
 
 native::Code load_main(const std::string& body) {
     return native::load(
-        "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
+        "#line 1 \"test.glsl\"\nlayout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };"
+        "layout(scalar, set = 0, binding = 3) readonly buffer Numbers { uvec4 numbers[]; };\n"
         "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
         "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
-        "uint count = 1u; uint count_up() { return ++count; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
+        "uint count = 1u; uint count_up() { return ++count; }"
+        "uint first(uint a, uint b) { return a; } uint ahead(); uint call_ahead() { return first(count, ahead()); } "
+        "uint ahead() { return count *= 2u; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
         body + "\n}\n");
 }
 
@@ -242,8 +245,14 @@ TEST(NativeLanes, WhatTheyLackRunsOneByOneAndSaysWhere) {
         {"uint x = 2u;\nswitch (i) { case 0: x = 5u; }\nresults[i] = x;", "test.glsl:7: lanes lack 'switch'"},
         {"uint a[2];\na[0] = 3u;\na[i] = 5u;\nresults[i] = a[0];",
          "test.glsl:8: lanes lack assignments to 'a' as it is indexed here"},
+        {"uint a[2], k = 0u;\na[0] = i;\na[k++] += 5u;\nresults[i] = a[0];",
+         "test.glsl:8: lanes lack '+=' where the index changes a variable, too"},
         {"struct S { uint x; };\nS s = S(5u);\nresults[i] = s.x;", "test.glsl:6: lanes lack structures inside of a function"}};
     for (const auto& [body, reason] : cases) EXPECT_EQ(result_and_reason(body), std::pair(5u, std::string(reason)));
+    const auto [result, reason] =
+        result_and_reason("const bool table[2] = bool[2](true, false);\nresults[i] = table[i] ? 5u : 7u;");
+    EXPECT_EQ(result, 5u);
+    EXPECT_NE(reason.find("lanes lack bools in memory"), std::string::npos) << reason;
     // Names are free, even those of what lanes are made of.
     EXPECT_EQ(result_and_reason("Named a = Named(2u, 3u), b;\nif (i < 5u) b = a;\nresults[i] = b.offset + b.raw;"),
               std::pair(5u, std::string()));
@@ -254,6 +263,24 @@ TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
                                 "faceforward(n, vec2(float(i), 1.0), n).y - refract(vec2(float(i), -1.0), n, 1.0).y + "
                                 "determinant(mat2(1.0)) - 1.0);"),
               std::pair(5u, std::string()));
+}
+
+// Each body gives 5, in lanes and one by one.
+template <size_t count>
+void expect_fives(const std::string (&bodies)[count]) {
+    static_assert(count <= invocations);
+    std::string text;
+    for (size_t k = 0; k < count; ++k)
+        text += "{ uint x = i, r;\n" + bodies[k] + "\nresults[i * " + std::to_string(count) + "u + " + std::to_string(k) +
+                "u] = r; }\n";
+    for (const native::Mode mode : {native::Mode::fast, native::Mode::debug}) {
+        native::set_mode(mode);
+        const native::Code code = load_main(text);
+        EXPECT_EQ(code.why_one_by_one.empty(), mode == native::Mode::fast) << code.why_one_by_one;
+        const std::vector<uint32_t> results = run(code, 1);
+        for (size_t k = 0; k < count; ++k) EXPECT_EQ(results[k], 5u) << bodies[k];
+    }
+    native::set_mode(native::Mode::fast);
 }
 
 // As GLSL says: from left to right, and a function's results are copied out when it returns.
@@ -269,20 +296,26 @@ TEST(NativeLanes, EvaluateInOrder) {
                                   "Named n = Named(1u, x);\nr = add(n.offset, n.raw) + n.raw;",
                                   "Named n = Named(1u, x);\nr = add(n.offset++, n.raw) + n.raw;",
                                   "r = x + count + count_up() + count;"};
-    constexpr size_t count = std::size(bodies);
-    static_assert(count <= invocations);
-    std::string text;
-    for (size_t k = 0; k < count; ++k)
-        text += "{ uint x = i, r;\n" + bodies[k] + "\nresults[i * " + std::to_string(count) + "u + " + std::to_string(k) +
-                "u] = r; }\n";
-    for (const native::Mode mode : {native::Mode::fast, native::Mode::debug}) {
-        native::set_mode(mode);
-        const native::Code code = load_main(text);
-        EXPECT_EQ(code.why_one_by_one.empty(), mode == native::Mode::fast) << code.why_one_by_one;
-        const std::vector<uint32_t> results = run(code, 1);
-        for (size_t k = 0; k < count; ++k) EXPECT_EQ(results[k], 5u) << bodies[k];
-    }
-    native::set_mode(native::Mode::fast);
+    expect_fives(bodies);
+}
+
+TEST(NativeLanes, ComputeWhatGlslSays) {
+    const std::string bodies[] = {
+        "float f = i > 5u ? 0 : float(add(2u, x)) * 0.5;\nr = uint(f * 2.0);",
+        "r = 5u;\nbool b = gl_WorkGroupID.x > 3u && r++ < i;",
+        "uint n = 5u;\nbool b = gl_WorkGroupID.x < 3u || n++ < i;\nr = n;",
+        "{ uint x = x + 5u;\nr = x; }",
+        "r = 0xffffffff < 1 ? 5u : 7u;",
+        "r = uint(bitfieldExtract(int(i) - 3, 0, 8) + 8);",
+        "r = uint(findMSB(int(i) - 40));",
+        "uvec3 v = uvec3(x);\nv.zyx.x = 2u;\nv.zyx[2] = 3u;\nr = v.x + v.z;",
+        "r = numbers[i].zyx.x == numbers[i].z ? 5u : 7u;",
+        "r = 4u + call_ahead();",
+        "int n = 2147483647 + int(gl_WorkGroupID.x);\nr = n + 1 > n ? 7u : 5u;",
+        "mat3 m = mat3(2.0);\nm[0][0] = float(x);\nmat4 n = mat4(m);\nr = uint(n[0][0] + n[2][2] + 3.0 * n[3][3] + n[3][0]);",
+        "const Named table[2] = Named[2](Named(5u, 2u), Named(7u, 3u));\nr = table[i].offset;",
+    };
+    expect_fives(bodies);
 }
 
 TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {

@@ -125,6 +125,10 @@ TEST(Native, BlocksMayHaveNamesAndHeaders) {
         run_shader("layout(scalar, set = 0, binding = 2) readonly buffer Block { uint count; vec2 size; float rest[]; } block;\n",
                    "give(7.0);"),
         Numbers{7});
+    EXPECT_EQ(run_shader("layout(scalar, set = 0, binding = 1) buffer Block { float first; } block;\n"
+                         "float raise() { return block.first += 4.0; }\nfloat less(float a, float b) { return b - a; }",
+                         "block.first = 2.0; give(less(block.first, raise()));"),
+              Numbers{4});
 }
 
 TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
