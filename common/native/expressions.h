@@ -165,6 +165,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
                 const std::string close = expect("]");
                 const bool is_array_varying = all.is_varying;
                 all.add(index);
+                if (const Variable* variable = find(all.root)) all.is_masked |= variable->is_memory;  // what is there to read?
                 if (!all.lvalue.empty()) all.lvalue += open + index.text + close;
                 all.text = array + open + index.text + close;
                 if (!all.place.empty() || (index.is_varying && !is_array_varying)) {

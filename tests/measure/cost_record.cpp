@@ -163,10 +163,12 @@ int run(const Options& options) {
     record["seconds_per_run"] = options.seconds;
     record["scenes"] = describe_shipped_scenes(device);
     for (const Backend backend : all_backends)
-        if (description.supports(backend)) record["features"].push_back(measure_features(device, backend, options));
+        if (description.supports(backend) && backend != Backend::native)  // which has no SPIR-V to count
+            record["features"].push_back(measure_features(device, backend, options));
     for (const Growth& growth : all_growths(options.size))
         for (const Backend backend : all_backends)
-            if (description.supports(backend)) record["growth"].push_back(measure_growth(device, backend, growth, options));
+            if (description.supports(backend) && backend != Backend::native)
+                record["growth"].push_back(measure_growth(device, backend, growth, options));
     write_file(options.output, record.dump(1) + "\n");
     return 0;
 }

@@ -306,13 +306,13 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "uint n = 5u;\nbool b = gl_WorkGroupID.x < 3u || n++ < i;\nr = n;",
         "{ uint x = x + 5u;\nr = x; }",
         "r = 0xffffffff < 1 ? 5u : 7u;",
-        "r = uint(bitfieldExtract(int(i) - 3, 0, 8) + 8);",
-        "r = uint(findMSB(int(i) - 40));",
+        "r = uint(bitfieldExtract(int(i) - 3, 0, 8) + findMSB(int(i) - 40) + 3);",
         "uvec3 v = uvec3(x);\nv.zyx.x = 2u;\nv.zyx[2] = 3u;\nr = v.x + v.z;",
         "r = numbers[i].zyx.x == numbers[i].z ? 5u : 7u;",
         "r = 4u + call_ahead();",
         "int n = 2147483647 + int(gl_WorkGroupID.x);\nr = n + 1 > n ? 7u : 5u;",
         "mat3 m = mat3(2.0);\nm[0][0] = float(x);\nmat4 n = mat4(m);\nr = uint(n[0][0] + n[2][2] + 3.0 * n[3][3] + n[3][0]);",
+        "uint n = gl_WorkGroupID.x;\nr = i > 5u && n > 0u && numbers[(n - 1u) * 40000000u].x > 0u ? 7u : 5u;",
         "const Named table[2] = Named[2](Named(5u, 2u), Named(7u, 3u));\nr = table[i].offset;",
     };
     expect_fives(bodies);
