@@ -1,6 +1,8 @@
 // Measures what each scene feature costs and how cost grows with the number of triangles, lights and so on, and writes a JSON
 // record for docs/results.md.
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <thread>
 
 #include "error.h"
@@ -162,13 +164,12 @@ int run(const Options& options) {
     record["size"] = options.size;
     record["seconds_per_run"] = options.seconds;
     record["scenes"] = describe_shipped_scenes(device);
-    for (const Backend backend : all_backends)
-        if (description.supports(backend) && backend != Backend::native)  // which has no SPIR-V to count
-            record["features"].push_back(measure_features(device, backend, options));
+    std::vector<Backend> backends;  // without native, which has no SPIR-V to count
+    std::copy_if(std::begin(all_backends), std::end(all_backends), std::back_inserter(backends),
+                 [&](Backend backend) { return backend != Backend::native && description.supports(backend); });
+    for (const Backend backend : backends) record["features"].push_back(measure_features(device, backend, options));
     for (const Growth& growth : all_growths(options.size))
-        for (const Backend backend : all_backends)
-            if (description.supports(backend) && backend != Backend::native)
-                record["growth"].push_back(measure_growth(device, backend, growth, options));
+        for (const Backend backend : backends) record["growth"].push_back(measure_growth(device, backend, growth, options));
     write_file(options.output, record.dump(1) + "\n");
     return 0;
 }
