@@ -39,6 +39,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
     Expression expression() {
         Expression all = assignment();
         while (peek() == ",") {
+            all.root = all.lvalue = all.place = "";
             all.text += take();
             all.add(assignment());
         }
@@ -125,6 +126,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
             left.root = left.lvalue = left.place = "";
             const bool is_ordered = depend(left, right);
             left.add(right);
+            left.is_masked |= (symbol == "/" || symbol == "%") && !right.reads.empty();  // by 0 where it does not count
             if (is_lazy && left.is_varying && (right.is_masked || is_ordered || !right.writes.empty()))
                 left.text = " lanes::" + std::string(symbol == "||" ? "or" : "and") + "_lazily(active__, " + first + ", " +
                             lazy(right) + ")";
@@ -214,9 +216,9 @@ class ExpressionReader : protected TokenReader, protected Variance {
     }
     Expression primary() {
         if (peek() == "(") {
-            Expression all{take()};
-            all.add(expression());
-            all.text += expect(")");
+            const std::string open = take();
+            Expression all = expression();
+            all.text = open + all.text + expect(")");
             return all;
         }
         const std::string word = peek();
@@ -279,8 +281,9 @@ class ExpressionReader : protected TokenReader, protected Variance {
         for (size_t i = 0; i < arguments.size(); ++i) {
             Expression& argument = arguments[i];
             const bool is_out = is_out_argument(i);
-            bool is_reference = is_out || (i == 0 && (word.starts_with("atomic") || word == "texelFetch")), is_copied = false;
-            if (has_lanes() && i == 0 && (word.starts_with("atomic") || (word == "texelFetch" && !argument.place.empty()))) {
+            const bool is_memory = i == 0 && (word.starts_with("atomic") || word == "texelFetch");
+            bool is_copied = false;
+            if (has_lanes() && is_memory && (word != "texelFetch" || !argument.place.empty())) {
                 if (argument.place.empty()) refuse("atomic functions of one variable for all paths");
                 argument.text = argument.place;
             } else if (is_out) {
@@ -304,7 +307,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
             // C++ evaluates arguments in any order, and a temporary would be copied out only after the whole expression.
             if (is_ordered || is_copied) {
                 const std::string variable = "a" + std::to_string(i) + "__";
-                first += (is_reference ? " auto&& " : " auto ") + variable + " =" + argument.text + ";";
+                first += (is_out || is_memory ? " auto&& " : " auto ") + variable + " =" + argument.text + ";";
                 passed += " " + variable;
             } else {
                 passed += argument.text;
@@ -323,9 +326,8 @@ class ExpressionReader : protected TokenReader, protected Variance {
         all.text = name + open + mask + passed + close;
         if (!first.empty()) all.text = at_once(first + " return " + all.text + ";");
         if (kind == Call::function) {
-            Expression effects;
-            effects.reads = effects.writes = globals_;  // of a function that has only a prototype so far
-            if (const auto found = effects_.find(word); found != effects_.end()) effects = found->second;
+            const auto found = effects_.find(word);  // a function may have only a prototype so far
+            const Expression effects = found != effects_.end() ? found->second : Expression{.reads = globals_, .writes = globals_};
             all.add_effects(effects);
             effects_of_function_.add_effects(effects);
         }

@@ -44,6 +44,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         for (int depth = 1; depth > 0;) {
             const std::string word = peek();
             depth += word == "(" ? 1 : word == ")" ? -1 : 0;
+            if (word == "std140" || word == "std430" || word == "local_size_y" || word == "local_size_z") fail();
             skip();
             if (word == "push_constant") binding = word;
             if (word == "binding" || word == "local_size_x") {

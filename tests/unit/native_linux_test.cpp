@@ -140,7 +140,9 @@ TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
             << error.what();
         EXPECT_NE(std::string(error.what()).find("--backend compute"), std::string::npos) << error.what();
     }
-    EXPECT_THROW(native::translate("#line 1 \"test.glsl\"\nvoid main() { goto x; }"), UserError);
+    for (const char* glsl : {"void main() { goto x; }", "layout(std430, binding = 1) buffer Block { vec3 list[]; };",
+                             "layout(local_size_x = 8, local_size_y = 8) in;"})
+        EXPECT_THROW(native::translate(std::string("#line 1 \"test.glsl\"\n") + glsl), UserError) << glsl;
 }
 
 // What the error of a shader says that is checked.
