@@ -125,12 +125,6 @@ class AddedChapterTest(Tree, ProgramTest):
         self.rename(light=True)
         self.assert_refused(["--output=refused.exr"], r"chapter\.json", '"light"', "strategies", program=program)
 
-    def test_is_graded_as_the_chapter_that_it_is_a_copy_of(self):
-        technique = self.chapter / "direct_light.glsl"
-        self.assertEqual(self.check(), ("correct", ""))
-        technique.write_text(technique.read_text(encoding="utf-8").replace("* cos_light", "", 1), encoding="utf-8")
-        self.assertEqual(self.check()[0], "biased")
-
     def test_is_known_to_the_commands_and_pages(self):
         self.assertRegex(self.run_in_tree("./lab", "run"), r"\n +20  \w+")
         difference = self.run_in_tree("./lab", "diff", 20)
@@ -177,6 +171,12 @@ class AddedChapterTest(Tree, ProgramTest):
 
 
 class AddedChapter_all(Tree, ProgramTest):
+    def test_is_graded_as_the_chapter_that_it_is_a_copy_of(self):
+        technique = self.chapter / "direct_light.glsl"
+        self.assertEqual(self.check(), ("correct", ""))
+        technique.write_text(technique.read_text(encoding="utf-8").replace("* cos_light", "", 1), encoding="utf-8")
+        self.assertEqual(self.check()[0], "biased")
+
     def test_all_tests_of_estimators_pass(self):
         """Those of a default run: others would repeat what they prove of the original."""
         self.rename()

@@ -237,7 +237,7 @@ class CheckTest(Checking, ProgramTest):
             "vec3 path_trace(Ray ray, inout uvec2 seed) {\n"
             "    trace_path(ray, seed);\n"
             "    return get_random_numbers(seed).x < 0.5 ? 2.0 * trace_path(ray, seed) : vec3(0.0);\n}\n")
-        with self.in_one_scene():
+        with self.in_one_scene(), mock.patch.object(command, "diagnose", return_value={"mistakes": []}):
             code, result = self.check_few(self.write("mine.glsl", text))
         box = result["scenes"][0]
         self.assertEqual((code, box["verdict"]), (1, "noisy"), box["noise"])

@@ -104,6 +104,7 @@ TEST_P(ReferenceImage, IsWhatTheChapterConvergesTo) {
     settings.roulette_start = 2;
     settings.splitting_factor = 2;
     settings.estimator = chapter_estimator(c.chapter);
+    settings.backend = fastest_backend();
     const Batches batches = render_batches(scene, settings, reference_batches);
 
     const Comparison comparison{batches, reference};

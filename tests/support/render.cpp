@@ -26,6 +26,11 @@ Estimator view_estimator(const std::string& view, const std::string& chapter) {
     return make_estimator(load_chapter(chapter), options);
 }
 
+Backend fastest_backend() {
+    const DeviceDescription& device = test_device().description();
+    return device.kind == "CPU" && device.supports(Backend::native) ? Backend::native : Backend::compute;
+}
+
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings) {
     RenderParameters parameters = default_parameters(scene, {settings.width, settings.height});
     parameters.seed_key = seed_key(test_seed(settings.seed));

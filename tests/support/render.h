@@ -41,6 +41,9 @@ struct RenderSettings {
     size_t max_film_window = SIZE_MAX;  // bytes
 };
 
+// For long renders: on a CPU `native`, which follows the paths of `compute` (see Parity) in half the time.
+Backend fastest_backend();
+
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings);
 // Whether an estimator belongs to a chapter that samples light probes.
 bool samples_probe(const Estimator& estimator);
