@@ -327,7 +327,8 @@ class ExpressionReader : protected TokenReader, protected Variance {
         if (!first.empty()) all.text = at_once(first + " return " + all.text + ";");
         if (kind == Call::function) {
             const auto found = effects_.find(word);  // a function may have only a prototype so far
-            const Expression effects = found != effects_.end() ? found->second : Expression{.reads = globals_, .writes = globals_};
+            const Expression effects =
+                found != effects_.end() ? found->second : Expression{.reads = globals_, .writes = globals_};
             all.add_effects(effects);
             effects_of_function_.add_effects(effects);
         }

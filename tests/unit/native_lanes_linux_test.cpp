@@ -229,7 +229,8 @@ native::Code load_main(const std::string& body) {
         "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
         "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
         "uint count = 1u; uint count_up() { return ++count; }"
-        "uint late(uint a) { count = 7u; return a; } uint first(uint a, uint b) { return a; } uint ahead(); uint call_ahead() { return first(count, ahead()); } "
+        "uint late(uint a) { count = 7u; return a; } uint first(uint a, uint b) { return a; } uint ahead(); uint call_ahead() { "
+        "return first(count, ahead()); } "
         "uint ahead() { return count *= 2u; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
         body + "\n}\n");
 }
