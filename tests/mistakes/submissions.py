@@ -23,6 +23,7 @@ from check import grading  # noqa: E402
 from check.diagnosis import diagnose, verdict_with  # noqa: E402
 from check.experiments import experiments_of, known_sights, measure  # noqa: E402
 from check.facts import readings  # noqa: E402
+from docs.ages import stamped  # noqa: E402
 from learn import digest, own_text  # noqa: E402
 from report.batch import Batch, run_all  # noqa: E402
 from report.sources import code  # noqa: E402
@@ -103,6 +104,8 @@ def main():
 
     done = {} if options.anew else {name: row.get("measured") for name, row in record["submissions"].items()}
     run_all("submissions", grade_one, [folder for folder in folders if done.get(folder.name) != measured(folder, options.seed)], options.jobs)
+    if options.anew and options.only == [""]:
+        write_json(path, stamped({name: record[name] for name in ("submissions", "commit")}), 3)
 
 
 if __name__ == "__main__":
