@@ -17,11 +17,12 @@ from pathlib import Path
 
 from image_files import Exr
 from PIL import Image, ImageGrab
-from program import CHAPTER, PROJECT, TOOLS, RenderTest
+from program import CHAPTER, PROJECT, TOOLS, RenderTest  # first: it finds the tools
+from package import windows_programs
 
 PROGRAMS = PROJECT / "build/windows/programs/bin"
 PACKAGE = PROJECT / "output/path_tracing_lab-windows.zip"
-NEEDED = ["x86_64-w64-mingw32-g++-posix", "wine", "Xvfb"]
+NEEDED = [windows_programs.COMPILER, "wine", "Xvfb"]
 # Programs refuse bad input in the same words on both systems.
 SAME_TESTS = ["command_line_test.Information", "command_line_test.WrongArguments", "command_line_test.MergeArguments",
               "bad_input_test", "rendering_test.Views", "rendering_test.PictureFiles"]

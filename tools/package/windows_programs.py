@@ -10,6 +10,7 @@ HERE = Path(__file__).parent / "windows"
 BUILD = ROOT / "build/windows"  # may be deleted at any time
 SOURCES, LIBRARIES = BUILD / "sources", BUILD / "libraries"
 PROGRAMS = BUILD / "programs/bin"
+COMPILER = "x86_64-w64-mingw32-g++-posix"
 OTHERS = ["merge_images", "sample_points"]  # of a package, in addition to the chapters
 # Built from source in the same version as for the Linux programs, so that both behave alike.
 PACKAGES = ["glslang-dev", "libglfw3-dev", "libimgui-dev", "libtinyexr-dev", "libtinyobjloader-dev"]
@@ -53,7 +54,7 @@ def cmake(source, build, what, targets, **variables):
 
 def build(targets):
     """The programs with these names, in PROGRAMS."""
-    if not shutil.which("x86_64-w64-mingw32-g++-posix"):
+    if not shutil.which(COMPILER):
         raise UserError("there is no compiler for Windows: ./lab package windows installs it")
     fetch_sources()
     cmake(HERE, BUILD / "libraries_build", "the libraries for Windows (minutes, once)", ["install"],
