@@ -126,7 +126,8 @@ class ExpressionReader : protected TokenReader, protected Variance {
             left.root = left.lvalue = left.place = "";
             const bool is_ordered = depend(left, right);
             left.add(right);
-            left.is_masked |= (symbol == "/" || symbol == "%") && !right.reads.empty();  // by 0 where it does not count
+            // Where only some lanes get here, the others may divide by 0.
+            left.is_masked |= depth_ > 0 && (symbol == "/" || symbol == "%") && !right.reads.empty();
             if (is_lazy && left.is_varying && (right.is_masked || is_ordered || !right.writes.empty()))
                 left.text = " lanes::" + std::string(symbol == "||" ? "or" : "and") + "_lazily(active__, " + first + ", " +
                             lazy(right) + ")";

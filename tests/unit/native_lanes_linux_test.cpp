@@ -228,7 +228,7 @@ native::Code load_main(const std::string& body) {
         "layout(scalar, set = 0, binding = 3) readonly buffer Numbers { uvec4 numbers[]; };\n"
         "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
         "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
-        "uint count = 1u; uint count_up() { return ++count; }"
+        "uint count = 1u; uint count_up() { return ++count; } const uint two = 2u, five = 10u / two;"
         "uint late(uint a) { count = 7u; return a; } uint first(uint a, uint b) { return a; } uint ahead(); uint call_ahead() { "
         "return first(count, ahead()); } "
         "uint ahead() { return count *= 2u; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
@@ -297,7 +297,7 @@ TEST(NativeLanes, EvaluateInOrder) {
                                   "Named n = Named(1u, x);\nr = add(n.offset, n.raw) + n.raw;",
                                   "Named n = Named(1u, x);\nr = add(n.offset++, n.raw) + n.raw;",
                                   "r = x + count + count_up() + count;",
-                                  "count = 5u + i;\nr = late((count));",
+                                  "count = five + i;\nr = late((count));",
                                   "r = i > 5u ? 10u / numbers[0].x : 5u;"};
     expect_fives(bodies);
 }
