@@ -64,10 +64,10 @@ SHARED_CONSTANT BLOCK_SIZE = BLOCK_WIDTH * BLOCK_HEIGHT;  // pixels
 // Ray counts are spread over this many counters, so that atomic additions rarely contend.
 SHARED_CONSTANT RAY_COUNTER_COUNT = 64u;
 
-// How an estimator finds light: by light samples and bounces with weights, by light samples alone, or by bounces alone.
-SHARED_CONSTANT STRATEGY_BOTH = 0u;
-SHARED_CONSTANT STRATEGY_LIGHT = 1u;
-SHARED_CONSTANT STRATEGY_BOUNCES = 2u;
+// How an estimator finds light.
+SHARED_CONSTANT STRATEGY_BOTH = 0u;     // a STRATEGY: light samples and bounces, weighted
+SHARED_CONSTANT STRATEGY_LIGHT = 1u;    // a STRATEGY: light samples alone
+SHARED_CONSTANT STRATEGY_BOUNCES = 2u;  // a STRATEGY: bounces alone
 
 // What a triangle is made of, from MTL. Reflectances are linear, in [0,1]; diffuse + specular is at most 1.
 struct Material {
@@ -109,11 +109,11 @@ struct WorldTriangle {
 
 // An emissive triangle in the alias table of all of them, see common/scene/light_table.h.
 struct LightTriangle {
-    uint instance;
+    uint instance;          // index into the scene's placements of meshes
     uint triangle;          // index into the scene's triangles
     uint threshold;         // this entry stands for itself if a random 32-bit word is below, else its `alias` does
     uint alias;             // index into the table
-    float inverse_density;  // A/P: area in the world over the probability of being chosen
+    float inverse_density;  // A/P: area in square scene units over the probability of being chosen
 };
 
 // A cell of the light probe in the alias table of all of them, see common/scene/light_table.h.

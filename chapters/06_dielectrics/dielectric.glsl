@@ -1,4 +1,4 @@
-// The Fresnel reflectance F for unpolarised light. cos θ > 0 is that of the incident direction, η the refractive index beyond the
+// The Fresnel reflectance F for unpolarised light. Here cos θ > 0 is that of the incident direction, η the refractive index beyond the
 // surface over that before it, and η cos θ_t that of the refracted direction, by Snell's law (η cos θ_t)² = η² - 1 + cos² θ. Both
 // numerators have η² - 1 as a factor, so nothing cancels where η is close to 1.
 float get_fresnel_reflectance(float cos_theta, float eta, float eta_cos_theta_t) {

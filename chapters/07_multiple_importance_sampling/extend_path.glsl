@@ -13,6 +13,7 @@ struct Path {
     float bounce_density;   // p_b of the ray's direction, if so
 };
 
+// A path that begins with this camera ray.
 Path start_path(Ray ray) { return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0); }
 
 // Extends the path by one bounce and adds the radiance that it finds. Returns false where the path ends.

@@ -9,6 +9,7 @@ float get_bsdf_density(ShadingData s, vec3 in_direction) {
     return density;
 }
 
+// Samples ω_k: at a dielectric one of two directions, elsewhere with the density get_bsdf_density().
 BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
     if (s.is_dielectric) return sample_dielectric(s, seed);
     bool is_from_lobe = false;

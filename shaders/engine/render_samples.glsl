@@ -40,6 +40,7 @@ Ray start_sample(uvec2 position, uint index, out uvec2 seed) {
 // order.
 uint film_index;
 uint sample_place, sample_stride;
+// Adds the radiance of a finished sample to this thread's pixel.
 void finish_sample(vec3 radiance) {
 #ifdef SHARED_PIXELS
     samples[sample_place] = radiance;

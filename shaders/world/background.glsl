@@ -1,3 +1,4 @@
+// Whether rays that miss all triangles may find light.
 #if defined(FEATURE_LIGHT_PROBE) || defined(FEATURE_SKY)
 const bool HAS_BACKGROUND = true;
 #else

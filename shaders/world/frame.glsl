@@ -1,4 +1,4 @@
-// Rotation matrix Q whose third column is the normal: turns directions about the z-axis into directions about the
+// Rotation matrix Q whose third column is the unit normal: turns directions about the z-axis into directions about the
 // normal. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1) 2017: exact sign handling near -z.
 mat3 get_shading_space(vec3 normal) {
     float s = normal.z >= 0.0 ? 1.0 : -1.0;

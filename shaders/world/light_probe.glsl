@@ -26,6 +26,7 @@ vec3 get_light_probe_radiance(vec3 direction) {
 vec2 get_probe_position(vec3 direction) { return vec2(0.0); }
 #endif
 
+// Whether light samples can choose a direction of the light probe.
 #ifdef FEATURE_LIGHT_PROBE_CELLS
 const bool HAS_LIGHT_PROBE_CELLS = true;
 
@@ -34,7 +35,7 @@ uvec2 get_probe_cell_count() {
     return min(uvec2(textureSize(light_probe, 0)), uvec2(MAX_PROBE_CELL_COLUMNS, MAX_PROBE_CELL_ROWS));
 }
 
-// Chooses a cell in constant time from an alias table, and returns two numbers for a direction in it.
+// Chooses a cell in constant time from an alias table, and returns two numbers in [0,1) for a direction in it.
 uint choose_probe_cell(inout uvec2 seed, out vec2 u) {
     uvec2 words = get_random_words(seed);
     u = to_numbers(words);

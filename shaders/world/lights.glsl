@@ -1,6 +1,6 @@
 // The scene's emissive triangles, for next event estimation.
 
-// How estimators find light: --strategy. Where no light has a table to sample from, bounces find all of it.
+// How estimators find light, one of the constants STRATEGY_… that --strategy chooses. Where no light has a table to sample from, bounces find all of it.
 #if !defined(FEATURE_LIGHT_TRIANGLES) && !defined(FEATURE_LIGHT_PROBE_CELLS)
 #undef STRATEGY
 #define STRATEGY STRATEGY_BOUNCES
@@ -8,14 +8,16 @@
 #define STRATEGY STRATEGY_BOTH
 #endif
 
+// A point y on the front of a light.
 struct LightPoint {
-    vec3 position;           // y
+    vec3 position;           // y, in scene units
     vec3 position_in_front;  // y, moved to the front of the light by a bound on the rounding errors
     vec3 normal;             // of the triangle, unit length, on the front
-    vec3 emission;           // L_e towards the front
-    float light_density;     // of y with respect to area, as ShadingData has it
+    vec3 emission;           // L_e, the emitted radiance towards the front
+    float light_density;     // p_A, the density of light samples at y with respect to area
 };
 
+// Whether light samples can choose an emissive triangle.
 #ifdef FEATURE_LIGHT_TRIANGLES
 const bool HAS_LIGHT_TRIANGLES = true;
 
@@ -28,7 +30,7 @@ LightTriangle choose_light_triangle(inout uvec2 seed) {
     return light_triangles[index];
 }
 
-// The same, but one pair of words serves both the choice and `u`, two numbers for a point on the triangle.
+// The same, but one pair of words serves both the choice and `u`, two numbers in [0,1) for a point on it.
 LightTriangle choose_light_triangle(inout uvec2 seed, out vec2 u) {
     uvec2 words = get_random_words(seed);
     u = to_numbers(words);

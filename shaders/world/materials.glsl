@@ -4,7 +4,7 @@
 // The result of sampling a material: the direction ω_k of a bounce and what its path needs to know about it.
 struct BsdfSample {
     vec3 direction;         // ω_k, unit length
-    vec3 weight;            // ρ |n·ω_k| over its density; 0 where no light leaves into ω_k
+    vec3 weight;            // ρ |n·ω_k| over the density, per colour channel; 0 where no light leaves into ω_k
     float density;          // of ω_k with respect to solid angle; 0 for a single direction
     bool is_single;         // whether the material scatters into single directions, which no light sample can meet
     float radiance_scale;   // the change of radiance at a refraction: 1/η², else 1

@@ -53,8 +53,8 @@ bool gives_way(uint digits, uint threshold, out float rest) {
     return is_above;
 }
 
-// Returns true with the given probability, exact from 2^-40 upwards, by comparing it with 64 random bits: 24 bits would
-// make an event of probability 1e-9 sixty times too frequent. A NaN counts as 1, so that it reaches the film, which
+// Returns true with the given probability, which is in [0,1]. It is exact from 2^-40 upwards, by comparing it with 64 random
+// bits: 24 bits would make an event of probability 1e-9 sixty times too frequent. A NaN counts as 1, so that it reaches the film, which
 // counts invalid samples.
 bool happens(float probability, inout uvec2 seed) {
     uvec2 words = get_random_words(seed);

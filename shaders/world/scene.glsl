@@ -12,6 +12,7 @@ layout(scalar, set = 0, binding = BINDING_TRIANGLE_MATERIALS) readonly buffer Tr
     uint triangle_materials[];
 };
 layout(scalar, set = 0, binding = BINDING_MATERIALS) readonly buffer Materials { Material materials[]; };
+// The roughness, reflectances and coat of each material, by its index.
 #ifdef FEATURE_MICROFACETS
 layout(scalar, set = 0, binding = BINDING_MICROFACETS) readonly buffer MicrofacetsOfMaterials { Microfacets microfacets[]; };
 #endif

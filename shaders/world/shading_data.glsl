@@ -1,25 +1,24 @@
-// Shading data: what an estimator needs to know about the point that a ray hits.
-
+// What an estimator needs to know about the point x_k that a ray hits.
 struct ShadingData {
-    vec3 position;          // x_k
+    vec3 position;          // x_k, in scene units
     vec3 out_direction;     // ω_o = -ω_{k-1}, unit length: from x_k back along the ray
     vec3 normal;            // n(x_k), interpolated, unit length, on the same side as the geometric normal
     vec3 geometric_normal;  // of the triangle, unit length, on the side of out_direction
-    float offset;           // distance off the surface at which rays must start to miss it, in world units
-    vec3 emission;          // L_e(x_k, ω_o)
-    float light_density;    // of light samples at x_k, with respect to area; 0 where it does not emit
-    vec3 diffuse_albedo;    // in [0,1]
+    float offset;           // distance off the surface at which rays must start to miss it, in scene units
+    vec3 emission;          // L_e(x_k, ω_o), the emitted radiance
+    float light_density;    // p_A, the density of light samples at x_k with respect to area; 0 where it does not emit
+    vec3 diffuse_albedo;    // in [0,1]: the fraction of light that is reflected diffusely, per colour channel
 #ifdef FEATURE_SPECULAR
-    vec3 specular_albedo;  // in [0,1]
-    float specular_exponent;
+    vec3 specular_albedo;     // fraction of light that the Phong lobe reflects, per colour channel, in [0,1]
+    float specular_exponent;  // n of the Phong lobe
 #endif
-    vec2 texture_coordinates;  // (0,0) on scenes without textures
-    bool is_dielectric;
+    vec2 texture_coordinates;  // u and v, (0,0) in scenes without textures
+    bool is_dielectric;    // whether it is smooth glass, which scatters into single directions
     float relative_index;  // η of a dielectric: refractive index beyond the surface over that on the ray's side
-    vec3 transmittance;    // of the medium between the ray's origin and x_k, per colour channel
+    vec3 transmittance;    // fraction of light that passes from the ray's origin to x_k, per colour channel
 #ifdef FEATURE_MICROFACETS
     uint material;             // index into the scene's materials
-    float roughness;           // α of its microfacets, 0 if it has none
+    float roughness;           // α of its microfacets, in [0,1]; 0 if it has none
     float metalness;           // fraction that is metal, in [0,1]
     bool is_rough_dielectric;  // its microfacets transmit light; is_dielectric is false then
 #endif
@@ -34,6 +33,7 @@ struct SurfacePoint {
 
 vec3 interpolate(vec3 a, vec3 b, vec3 c, vec3 weights) { return weights.x * a + weights.y * b + weights.z * c; }
 
+// The largest absolute value among the three components.
 float max_component(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
 // The unit vector along v. Scales v first, since the squared length of a tiny or huge vector under- or overflows.
@@ -178,7 +178,7 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     return s;
 }
 
-// A ray from a surface point into the given direction. Its origin is moved off the surface, to the side that the direction
+// A ray from a surface point into the given direction, of any length. Its origin is moved off the surface, to the side that the direction
 // points to, by a bound on the rounding errors, so that the ray cannot hit the surface where it starts.
 Ray get_ray_from_surface(ShadingData s, vec3 direction) {
     float side = dot(s.geometric_normal, direction) < 0.0 ? -1.0 : 1.0;

@@ -86,6 +86,8 @@ class HandoutTest(ProgramTest):
             # From step 5 on, the page shows the solution of exercise 1 of chapter 1.
             self.assertEqual(re.findall(r"^## (\d)", steps, re.MULTILINE), list("1234" if number == 1 else "12345678"))
             self.assertIn("\n## Reading the check\n", steps)
+            self.assertIn("`vec3 get_brdf(", (tree / "docs/shader.md").read_text(encoding="utf-8"))
+            self.assertIn("](docs/shader.md)", (tree / "README.md").read_text(encoding="utf-8"))
 
     def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
         project = self.folder / "project"

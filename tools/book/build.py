@@ -22,7 +22,7 @@ SECTIONS = {  # of the navigation; missing pages are left out
     "Results": ["docs/results.md", *(f"docs/results/{path.name}" for path in sorted((ROOT / "docs/results").glob("*.md"))), "docs/measuring.md"],
     "For teachers": ["docs/teaching.md", "docs/grading/README.md", "docs/installing.md"],
 }
-START = ["README.md", "docs/first_steps.md"]
+START = ["README.md", "docs/first_steps.md", "docs/shader.md"]
 SOLUTIONS = "chapters/*/solutions/README.md"  # for teachers only
 
 

@@ -98,7 +98,7 @@ bool traverse(Ray ray, float t_max, bool any_hit, out Hit hit) {
     return true;
 }
 
-// Closest hit nearer than t_max.
+// Finds the closest hit nearer than t_max, and returns whether there is one.
 bool trace_ray(Ray ray, float t_max, out Hit hit) {
     ++ray_count;
     return traverse(ray, t_max, false, hit);

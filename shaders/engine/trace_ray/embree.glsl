@@ -1,7 +1,7 @@
 // trace_ray() by Embree, for the `native` backend only: no GLSL compiler knows the functions native_…(), which are defined in
 // common/native/glsl.h.
 
-// Closest hit nearer than t_max.
+// Finds the closest hit nearer than t_max, and returns whether there is one.
 bool trace_ray(Ray ray, float t_max, out Hit hit) {
     ++ray_count;
     if (!native_closest_hit(ray.origin, ray.direction, t_max, hit.instance, hit.triangle, hit.barycentrics, hit.distance))

@@ -8,7 +8,7 @@ layout(location = HIT_PAYLOAD) rayPayloadEXT Hit hit_payload;
 // The driver finds the hit record at instance offset + ray type offset + geometry index · stride.
 const uint RECORD_STRIDE = 1u;
 
-// Closest hit nearer than t_max.
+// Finds the closest hit nearer than t_max, and returns whether there is one.
 bool trace_ray(Ray ray, float t_max, out Hit hit) {
     ++ray_count;
     traceRayEXT(acceleration_structure, gl_RayFlagsOpaqueEXT, 0xffu, 0u, RECORD_STRIDE, MISS_RECORD, ray.origin, 0.0,

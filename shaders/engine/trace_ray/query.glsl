@@ -6,7 +6,7 @@ layout(scalar, set = 0, binding = BINDING_GEOMETRY_FIRST_TRIANGLES) readonly buf
     uint geometry_first_triangles[];  // two for each instance
 };
 
-// Closest hit nearer than t_max.
+// Finds the closest hit nearer than t_max, and returns whether there is one.
 bool trace_ray(Ray ray, float t_max, out Hit hit) {
     ++ray_count;
     rayQueryEXT query;

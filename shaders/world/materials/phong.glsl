@@ -18,7 +18,7 @@ vec3 get_phong_brdf(ShadingData s, vec3 in_direction) {
     return s.specular_albedo * ((s.specular_exponent + 2.0) / (2.0 * PI) * get_lobe(s, in_direction));
 }
 
-// The probability with which sampling chooses the lobe: its share of the albedo.
+// The probability with which sampling chooses the lobe: its share of the albedo, in [0,1].
 float get_phong_probability(ShadingData s) {
     float specular = max_component(s.specular_albedo);
     return specular > 0.0 ? specular / (max_component(s.diffuse_albedo) + specular) : 0.0;
@@ -30,7 +30,7 @@ float get_one_minus_exp(float x) {
     return -x * (1.0 + x / 2.0 * (1.0 + x / 3.0 * (1.0 + x / 4.0 * (1.0 + x / 5.0))));
 }
 
-// Samples the lobe with get_phong_density(). The direction may point below the surface, where it carries no light.
+// Samples a unit direction of the lobe with get_phong_density(), for u uniform in [0,1)². It may point below the surface, where it carries no light.
 vec3 sample_phong(ShadingData s, vec2 u) {
     // 1 - u_x = cos^(n+1) α. 1 - cos α is exact even where α is small.
     float one_minus_cos = get_one_minus_exp(log(1.0 - u.x) / (s.specular_exponent + 1.0));
