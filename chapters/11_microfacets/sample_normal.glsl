@@ -15,9 +15,11 @@ vec3 sample_any_normal(float alpha, vec2 u) {
     return vec3(cos(phi) * sin_theta, sin(phi) * sin_theta, cos_theta);
 }
 
-// A normal of the facets that are visible from ω_o. Squeezed by 1/α along the surface, GGX's facets are those of a sphere.
-// Its visible ones reflect light from ω_o evenly into the cap of directions z > -z_o, so that we sample a direction there,
-// and m lies halfway between (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023).
+// A normal of the facets that are visible from ω_o. Stretched by 1/α along n, GGX's facets are those of a round sphere, and a
+// direction (x, y, z) points along (αx, αy, z). The visible ones reflect light from ω_o evenly into the cap of directions
+// z > -z_o, so that we sample a direction there and go halfway. When the sphere becomes flat again, its slopes become α times as
+// steep: x and y of the normal are multiplied by α, too (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
+// HPG 2023).
 vec3 sample_visible_normal(vec3 out_direction, float alpha, vec2 u) {
     vec3 stretched = normalize(vec3(alpha * out_direction.xy, out_direction.z));
     float one_minus_z = u.x * (1.0 + stretched.z);

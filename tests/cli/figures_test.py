@@ -7,6 +7,7 @@ import sys
 from program import PROJECT, TOOLS, ProgramTest  # first: it finds the tools
 from docs.bug_blocks import GALLERY
 from docs.result_plots import PLOTS
+from project import read_json
 
 # The command with its renders in the test's own folder, and with a single small figure of two renders.
 COMMAND = """import sys
@@ -67,6 +68,17 @@ class Figures_all(ProgramTest):
         pages = "".join(page.read_text(encoding="utf-8") for page in [*PROJECT.glob("*.md"), *PROJECT.glob("*/*.md"), *PROJECT.glob("*/*/*.md")])
         shown = set(re.findall(r"\]\([^)]*pictures/([^)]*)\)", pages))
         self.assertEqual(sorted(picture.name for picture in pictures), sorted(shown), "made but not shown, or the other way")
+
+    def test_pictures_show_what_the_command_on_their_page_shows(self):
+        shapes = []
+        for folder in (PROJECT / "chapters").iterdir():
+            for name, figure in read_json(folder / "measure.json").get("figures", {}).items():
+                if "scene" in figure and "size" in figure:
+                    scene = read_json(PROJECT / f"assets/scenes/{figure['scene']}.json")
+                    of_scene, of_picture = (scene.get("width", 512), scene.get("height", 512)), figure["size"]
+                    self.assertEqual(of_scene[0] * of_picture[1], of_scene[1] * of_picture[0], f"{name}: a scene of {of_scene} in a picture of {of_picture}")
+                    shapes.append(of_scene)
+        self.assertGreater(len(set(shapes)), 2)
 
     def test_other_names_are_refused(self):
         self.assert_tool_refused(["figures", "nothing"], "'nothing'", "convergence")
