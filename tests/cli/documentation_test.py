@@ -16,8 +16,10 @@ from pathlib import Path
 from program import BINARIES, TOOLS, UNOPTIMISED  # first: it finds the tools
 from program import PROJECT as ROOT
 from measure import hard_cases
+from course.handout import take_out
 from docs import numerics
 from lesson import sample
+from project import read_json
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/**/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
@@ -135,6 +137,15 @@ class DocumentationTest(unittest.TestCase):
             self.assertEqual((kinds[0], kinds[-1]), ("Fill in", "Challenge"), chapter)
             named = [name for line in re.findall(r"Done\s+when all tests named ([^.]*)", text) for name in re.findall(r"`(\w+)`", line)]
             self.assertTrue(named and set(named) <= suites, f"{chapter}: tests {named}")
+
+    def test_solutions_of_the_first_exercise_are_folded(self):
+        for chapter in COURSE:
+            folder = ROOT / "chapters" / chapter
+            exercise = read_json(folder / "exercise.json")
+            _, solution = take_out(text_of(folder / exercise["file"]), exercise)
+            open_text = re.sub(r"<details>.*?</details>", "", text_of(folder / "README.md"), flags=re.DOTALL)
+            shown = {line.strip() for block in re.findall(r"```glsl\n(.*?)```", open_text, re.DOTALL) for line in block.splitlines()}
+            self.assertEqual({line.strip() for line in solution.splitlines() if re.search(r"\w", line)} & shown, set(), chapter)
 
     def test_every_exercise_has_a_solution(self):
         for chapter in COURSE:  # for exercise 1 it is the chapter's shader

@@ -71,6 +71,9 @@ class HandoutTest(ProgramTest):
             knowledge = json.loads((tree / "chapters" / name / "knowledge.json").read_text(encoding="utf-8"))
             self.assertEqual(next(iter(knowledge["mistakes"])), "1")
 
+            page = (tree / "chapters" / name / "README.md").read_text(encoding="utf-8")
+            self.assertNotIn("the solution of exercise 1", page)
+            self.assertEqual(page.count("<details>"), page.count("</details>"))
             pages = "".join(page.read_text(encoding="utf-8") for page in tree.rglob("*.md"))
             for later in CHAPTERS[number:]:
                 self.assertNotIn(EXERCISES[later]["last"], pages, f"{later} in the handout of {name}")

@@ -11,6 +11,7 @@ PIECE = re.compile(r"`([^` \n]+( [^` \n]+){2,})`")  # of code, at least three wo
 NAME = re.compile(r"`\w+(\(\))?`")  # on its own it gives nothing away
 SHADERS = {".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".h"}
 TODO_LINE = "// TODO"
+FOLDED = re.compile(r"<details><summary>[^\n]*\n\n(.*?)\n</details>\n", re.DOTALL)
 
 
 def hide_lines(block, secret):
@@ -70,6 +71,7 @@ def clean_pages(folder, solution):
         text = BLOCK.sub(lambda block: f"{block['fence']}{block['lines']}```" if (folder / block["file"]).exists() else
                          f"({source_of(block['file'])})", text)
         text = FENCED.sub(lambda block: hide_lines(block[0], secret), text)
+        text = FOLDED.sub(lambda block: block[1] if TODO_LINE in block[0] else block[0], text)  # it is no solution any more
         text = LINK.sub(shown, text)
         text = PIECE.sub(lambda piece: "TODO" if piece[1] in solution and piece[1] not in shaders else piece[0], text)
         # An exercise is done when the check says so.
