@@ -152,6 +152,8 @@ class DocumentationTest(unittest.TestCase):
             exercises = re.findall(r"^(\d+)\. \*([\w ]+)\.\*", text_of(ROOT / "chapters" / chapter / "README.md"), re.MULTILINE)
             solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"), re.MULTILINE)
             self.assertEqual(solutions, exercises[1:], chapter)
+            named = re.search(r"[Ee]xercise 1 is [^()]*\(\.\./(\w+\.glsl)\)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"))
+            self.assertEqual(named[1], read_json(ROOT / "chapters" / chapter / "exercise.json")["file"], chapter)
 
     def test_results_are_what_the_records_say(self):
         subprocess.run([sys.executable, "-B", TOOLS, "tables", "--check"], check=True)
