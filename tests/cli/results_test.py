@@ -136,6 +136,29 @@ class ResultPlotsTest(unittest.TestCase):
                 dark, light = sorted(map(luminance, (colour, background)))
                 self.assertGreaterEqual((light + 0.05) / (dark + 0.05), 3, f"{colour} on {background}")
 
+    def test_no_plot_has_a_colour_twice(self):
+        for name, draw in result_plots.PLOTS.items():
+            figure, _ = draw()
+            shown = [handles for axis in figure.axes if (handles := axis.get_legend_handles_labels()[0])]
+            self.assertGreater(len(shown), 0, name)
+            for handles in shown:
+                colours = [getattr(handle, "lines", [handle])[0].get_color() for handle in handles]
+                self.assertEqual(len(set(colours)), len(colours), name)
+                self.assertNotIn(result_plots.GREY, colours, name)
+            result_plots.pyplot.close(figure)
+
+    def test_plots_name_chapters_and_sizes_and_leave_outliers_out(self):
+        text = {name: (tables.DOCS / f"pictures/results_{name}.svg").read_text(encoding="utf-8") for name in ("ideas", "mitsuba")}
+        self.assertIn("3 Next event estimation", text["ideas"])
+        self.assertIn("microfacets, 144 × 112", text["mitsuba"])
+        self.assertNotIn("²", text["mitsuba"])
+        for name, lowest, highest in (("ideas", 1e-2, 1e1), ("mitsuba", 1e-1, 1e3)):
+            figure, _ = result_plots.PLOTS[f"results_{name}"]()
+            for axis in figure.axes:
+                self.assertTrue(lowest <= axis.get_xlim()[0] and axis.get_xlim()[1] <= highest, f"{name}: {axis.get_xlim()}")
+            self.assertRegex(text[name], "◂ 0.00025" if name == "ideas" else "▸")
+            result_plots.pyplot.close(figure)
+
     def test_other_numbers_make_a_plot_stale(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "plot.svg"

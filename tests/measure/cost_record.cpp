@@ -164,10 +164,14 @@ int run(const Options& options) {
     record["size"] = options.size;
     record["seconds_per_run"] = options.seconds;
     record["scenes"] = describe_shipped_scenes(device);
-    std::vector<Backend> backends;  // without native, which has no SPIR-V to count
+    std::vector<Backend> backends;
     std::copy_if(std::begin(all_backends), std::end(all_backends), std::back_inserter(backends),
-                 [&](Backend backend) { return backend != Backend::native && description.supports(backend); });
-    for (const Backend backend : backends) record["features"].push_back(measure_features(device, backend, options));
+                 [&](Backend backend) {
+                     return description.supports(backend) && (backend != Backend::native || description.kind == "CPU");
+                 });
+    for (const Backend backend : backends)
+        if (backend != Backend::native)  // which has no SPIR-V to count
+            record["features"].push_back(measure_features(device, backend, options));
     for (const Growth& growth : all_growths(options.size))
         for (const Backend backend : backends) record["growth"].push_back(measure_growth(device, backend, growth, options));
     write_file(options.output, record.dump(1) + "\n");

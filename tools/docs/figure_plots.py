@@ -1,4 +1,5 @@
 """Draws the pages' figures from images, reports and sampler points."""
+import functools
 import math
 import shutil
 
@@ -6,7 +7,7 @@ import matplotlib
 
 matplotlib.use("agg")
 import numpy as np
-from docs.result_plots import finish_axis, lines, new_figure, plain
+from docs.result_plots import STYLE, finish_axis, lines, new_figure, plain, with_name
 from lesson import sample
 from lesson.sample_plots import save_point_sets, scatter
 from matplotlib import font_manager, image, pyplot
@@ -117,7 +118,7 @@ def convergence(folder, renders):
     for index, (number, rows) in enumerate(runs.items()):
         errors = [Series(dict(enumerate(math.sqrt(row["rel_mse"]) for row in step))).interval() for step in zip(*rows)]
         for axis, key in zip(axes, ("samples", "seconds")):
-            lines(axis, [np.mean([row[key] for row in step]) for step in zip(*rows)], errors, index, f"chapter {number}")
+            lines(axis, [np.mean([row[key] for row in step]) for step in zip(*rows)], errors, index, with_name(number))
     for axis, label in zip(axes, ("samples per pixel", "seconds")):
         finish_axis(axis, xscale="log", yscale="log", xlabel=label)
         axis.xaxis.set_major_formatter(plain)
@@ -128,6 +129,17 @@ def convergence(folder, renders):
 
 
 # ---------------------------------------------------------------------------------------------- of points
+def on_any_ground(draw):
+    """Draws a figure without a ground, so that it can be read on white and on black."""
+    @functools.wraps(draw)
+    def drawn(folder, renders):
+        with pyplot.rc_context(STYLE | {"font.size": 10}):
+            draw(folder, renders)
+
+    return drawn
+
+
+@on_any_ground
 def sampler_points(folder, renders):
     shown = [playground for playground in sample.OF_CHAPTERS.values() if not playground.is_pixel]
     figure, axes = pyplot.subplots(1, len(shown), figsize=(11, 3.9), layout="constrained")
@@ -142,10 +154,12 @@ def mean_errors(terms, exact, sizes):
     return [np.sqrt(((terms[: len(terms) // n * n].reshape(-1, n).mean(axis=1) - exact) ** 2).mean()) for n in sizes]
 
 
+@on_any_ground
 def point_sets(folder, renders):
     save_point_sets(folder / "point_sets.png", sample.draw_sets(0), sample.COMPARED)
 
 
+@on_any_ground
 def one_over_root_n(folder, renders):
     playground = sample.PLAYGROUNDS["1d"]
     integral, sizes = playground.integrals[0], 2 ** np.arange(15)
@@ -159,6 +173,7 @@ def one_over_root_n(folder, renders):
     plot(folder / "one_over_root_n.png", (6, 4), draw, xlabel="N", ylabel="root mean squared error")
 
 
+@on_any_ground
 def grid_and_random(folder, renders):
     playground = sample.PLAYGROUNDS["kd"]
     integral = playground.integrals[0]
@@ -176,6 +191,7 @@ def grid_and_random(folder, renders):
     save_figure(figure, folder / "grid_and_random.png")
 
 
+@on_any_ground
 def random_numbers(folder, renders):
     """A small corner of the unit square, where single values can be seen."""
     figure, axes = pyplot.subplots(1, 2, figsize=(8, 4.2), layout="constrained")

@@ -12,14 +12,15 @@ from docs.confusion_table import CONDITIONS, rates
 from docs.cpu_table import cpu_gains
 from docs.facet_tables import WAYS, WAYS_IN_WORDS, lost_by_degrees, sampling_cost
 from matplotlib import pyplot, ticker
-from project import RECORDS, load_records, read_json, scene_of, write_bytes
-from report.numbers import Series, errors, paired_ratio
+from project import CHAPTERS, RECORDS, description, load_records, read_json, scene_of, write_bytes
+from report.numbers import Series, errors, paired_ratio, short
 from report.plots import svg_text
 from scipy.stats import binomtest
 
 GREY = "#787d83"
-# Blue, orange, purple, green and grey: visible on white and on black, and distinguishable by lightness or marker.
-COLOURS, MARKERS = ["#2f7de1", "#c96a00", "#9b62d6", "#2c8f4e", GREY], "osD^X"
+# Blue, orange, purple, green, pink, teal, olive and red: visible on white and on black, and distinguishable by their markers. Grey is for
+# axes.
+COLOURS, MARKERS = ["#2f7de1", "#c96a00", "#9b62d6", "#2c8f4e", "#d6408f", "#0b93a3", "#8c7a00", "#d64545"], "osD^XvP*"
 WIDTH, ROW, FONT = 640, 19, 12  # pixels: width of a plot, height of a row with bars, font size
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "lab", "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans", "Verdana"],
          "font.size": FONT, "figure.constrained_layout.w_pad": 0.16, "savefig.transparent": True, "legend.frameon": False, "legend.fontsize": FONT - 1} | {
@@ -50,11 +51,9 @@ def bars(axis, values, places, index, label, is_horizontal=True):
 
 
 def lines(axis, x, values, index, label):
-    """A line with bars; from the sixth on they are dashed."""
-    place = index % len(COLOURS)
-    bars(axis, values, x, place, None, is_horizontal=False)
-    axis.plot(x, [value[0] for value in values], color=COLOURS[place], marker=MARKERS[place], markersize=5, linewidth=1.2,
-              linestyle="-" if index < len(COLOURS) else "--", label=label)
+    """A line with bars."""
+    bars(axis, values, x, index, None, is_horizontal=False)
+    axis.plot(x, [value[0] for value in values], color=COLOURS[index], marker=MARKERS[index], markersize=5, linewidth=1.2, label=label)
 
 
 def forest(axis, rows, series):
@@ -70,6 +69,11 @@ def forest(axis, rows, series):
 def legend_above(axis, columns, title=None):
     """A legend above the axis."""
     axis.legend(loc="lower center", bbox_to_anchor=(0.4, 1), ncols=columns, handletextpad=0.2, columnspacing=1, title=title)
+
+
+def with_name(number):
+    """A chapter as its number and name."""
+    return f"{number} {description(CHAPTERS[number])['title'].partition(':')[0]}"
 
 
 def plain(value, _=None):
@@ -100,8 +104,20 @@ def note_on_cores(names):
     return "".join(without_cores(name, f"\n{name}: without ray tracing cores") for name in names)
 
 
-def panels(shown, row_height, columns, label):
-    """A forest of ratios for each title of {title: {row: {series: (value, low, high)}}}, one below the other."""
+def cut_off(axis, low=None, high=None):
+    """Ends a horizontal axis at a number, or before it. Points beyond get an arrow with their value at the end."""
+    beyond = [(x, y, series[0].get_color()) for series in axis.containers for x, y in zip(*series[0].get_data())]
+    axis.set_xlim(low, high)
+    for x, y, colour in beyond:
+        if low and x < low:
+            axis.text(low, y, f" ◂ {short(x, 2)}", color=colour, va="center", fontsize=FONT - 3)
+        elif high and x > high:
+            axis.text(high, y, f"{short(x, 2)} ▸ ", color=colour, va="bottom", ha="right", fontsize=FONT - 3)
+
+
+def panels(shown, row_height, columns, label, slow=None):
+    """A forest of ratios for each title of {title: {row: {series: (value, low, high)}}}, one below the other. The axis ends with all
+    other series than `slow`."""
     heights = [row_height * len(rows) + 85 for rows in shown.values()]
     figure, axes = new_figure(sum(heights), len(shown), sharex=True, squeeze=False, height_ratios=heights)
     for axis, (title, rows) in zip(axes[:, 0], shown.items()):
@@ -111,6 +127,10 @@ def panels(shown, row_height, columns, label):
         finish_axis(axis, xscale="log")
         axis.xaxis.set_major_formatter(plain)
         legend_above(axis, columns, title)
+    if slow:
+        largest = max(high or value for rows in shown.values() for ratios in rows.values() for name, (value, _, high) in ratios.items() if name != slow)
+        for axis in axes[:, 0]:
+            cut_off(axis, high=2 * largest)
     axes[-1, 0].set_xlabel(label)
     return figure, axes[:, 0]
 
@@ -138,10 +158,13 @@ def ideas():
     forest(axis, rows[:-1], shown)
     for step in steps:
         inside = [-place for place, row in enumerate(rows) if row and row[0] == step]
-        axis.text(1.01, (inside[0] + inside[-1]) / 2, f"chapter {step}", transform=axis.get_yaxis_transform(), va="center", fontsize=FONT - 1)
+        now, before = map(int, step.split(" over "))
+        axis.text(1.02, (inside[0] + inside[-1]) / 2, f"{with_name(now)}\nover {with_name(before)}", transform=axis.get_yaxis_transform(),
+                  va="center", fontsize=FONT - 1)
     axis.axvline(1, color=GREY, linewidth=1.5)
     finish_axis(axis, xscale="log", xlabel="error × time, relative to the chapter before (left of 1: it pays)")
     axis.xaxis.set_major_formatter(plain)
+    cut_off(axis, low=0.01)
     legend_above(axis, 2)
     return figure, {device: [[*row, *value] for row, value in values.items()] for device, values in shown.items()}
 
@@ -179,9 +202,9 @@ def mitsuba():
     shown = {}
     for device, record in devices("peers").items():
         if any(scene["gains"] for scene in record["scenes"]):
-            shown[short_device(device)] = {f"{scene_of(scene['scene'])}, {scene['width']}²": gains
+            shown[short_device(device)] = {f"{scene_of(scene['scene'])}, {scene['width']} × {scene['height']}": gains
                                            for scene, best, gains in best_and_peers(record)}
-    figure, _ = panels(shown, 44, 2, "times faster than Mitsuba to the same error (right of 1: the chapter is)")
+    figure, _ = panels(shown, 44, 2, "times faster than Mitsuba to the same error (right of 1: the chapter is)", "Mitsuba scalar")
     return figure, shown
 
 
@@ -252,8 +275,10 @@ def facets():
     finish_axis(axes[0], yscale="log", xlabel="roughness Pr" + note_on_cores(found), ylabel="error × time, visible normals are 1")
     axes[0].yaxis.set_major_formatter(plain)
     for index, (degrees, rows) in enumerate(lost.items()):
-        for key, style, label in (("single", "-", f"seen from {degrees}°"), ("corrected", "--", None if index else "corrected")):
-            axes[1].plot([row["roughness"] for row in rows], [row[key][0] for row in rows], style, color=COLOURS[index], label=label)
+        axes[1].plot([row["roughness"] for row in rows], [row["single"][0] for row in rows], color=COLOURS[index], label=f"seen from {degrees}°")
+    for index, rows in enumerate(lost.values()):  # they lie on one another
+        axes[1].plot([row["roughness"] for row in rows], [row["corrected"][0] for row in rows], "--", color=COLOURS[len(lost)],
+                     label=None if index else "corrected")
     finish_axis(axes[1], xlabel="roughness Pr", ylabel="% of the light lost")
     legend_above(axes[0], 2)
     axes[1].legend()

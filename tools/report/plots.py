@@ -30,7 +30,7 @@ def style(case, index, peer_index):
 
 def style_axis(axis, **labels):
     axis.set(**labels)
-    axis.grid(color="#dddddd", linewidth=0.8)
+    axis.grid(color="#888888", alpha=0.3, linewidth=0.8)
     axis.set_axisbelow(True)
     axis.spines[["top", "right"]].set_visible(False)
 
