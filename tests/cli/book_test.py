@@ -1,16 +1,18 @@
 """./lab book: a site that a browser opens from disk without complaints."""
 
+import json
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from urllib.parse import unquote
 
 from tools_path import PROJECT, TOOLS  # first: it finds the others
-from book import readability
+from book import readability, search
 from browser import CHROMIUM, Browser
 from project import CHAPTERS
 
@@ -33,13 +35,17 @@ INSPECT = r"""(() => {
         wide: [...document.querySelectorAll("article *")].filter(isTooWide).map(element => element.outerHTML.slice(0, 80))
     };
 })()"""
+WIDE = 1280  # pixels
+CUT_CODE = """[...document.querySelectorAll("pre > code")].filter(code => code.scrollWidth > code.clientWidth + 1)
+    .map(code => code.textContent.slice(0, 80))"""
 SEARCH = r"""new Promise((found, failed) => {
     document.querySelector("#__search").click();
     const input = document.querySelector(".md-search__input"), results = document.querySelector(".md-search-result__list");
-    new MutationObserver(() => results.textContent && found(results.textContent)).observe(results, { childList: true });
+    const titles = () => [...results.querySelectorAll("article h1, article h2")].map(title => title.textContent.trim());
+    new MutationObserver(() => results.textContent && found([results.textContent, titles()])).observe(results, { childList: true });
     setTimeout(() => failed(new Error("nothing found")), 20000);
     input.focus();
-    input.value = "roulette";
+    input.value = QUERY;
     for (const type of ["keyup", "input"]) input.dispatchEvent(new Event(type));
 })"""
 
@@ -125,12 +131,39 @@ class BookInBrowser_all(Site, unittest.TestCase):
         self.assertGreater(len(links), 100)
         self.assertEqual(self.dead(links), [])
 
-    def test_search(self):
+    def search(self, query):
+        """The text of the results, and their titles."""
         self.browser.visit((self.site / "docs/results.html").as_uri())
-        results = self.browser.evaluate(SEARCH)
+        found = self.browser.evaluate(SEARCH.replace("QUERY", json.dumps(query)))
+        self.assertEqual(self.browser.complaints(), [])
+        return found
+
+    def test_search(self):
+        results, _ = self.search("roulette")
         self.assertIn("Russian roulette", results)
         self.assertNotIn("// Chapter 5", results)  # of its shader
-        self.assertEqual(self.browser.complaints(), [])
+        for query, *first in (("alias table", "Chapter 3: next event estimation"), ("solid angle", "Chapter 3: next event estimation"),
+                              ("get_brdf", "What your shader can use", "get_brdf"), ("happens(", "What your shader can use", "happens")):
+            results, titles = self.search(query)
+            self.assertEqual(titles[:len(first)], first, query)
+            self.assertNotRegex(results, r"\\[A-Za-z(\[]", query)
+
+    def test_code_fits(self):
+        self.browser.resize(WIDE)
+        self.addCleanup(self.browser.resize, NARROW)
+        pages = [*self.site.glob("chapters/*/index.html"), self.site / "docs/first_steps.html", self.site / "shaders/world/shading_data.glsl.html"]
+        for page in pages:
+            self.browser.visit(page.as_uri())
+            self.assertEqual(self.browser.evaluate(CUT_CODE), [], page)
+
+    def test_the_line_of_one_is_in_view(self):
+        self.browser.visit((self.site / "docs/results.html").as_uri())
+        for name in ("ideas", "mitsuba", "features", "cpu_backends"):
+            figure = ElementTree.parse(PROJECT / f"docs/pictures/results_{name}.svg").getroot()
+            lines = [path.get("d") for path in figure.iter("{http://www.w3.org/2000/svg}path") if "stroke-width: 1.5" in path.get("style", "")]
+            place = float(re.match(r"M ([\d.]+)", lines[0])[1]) / float(figure.get("viewBox").split()[2])
+            right = self.browser.evaluate(f"(image => image.x + {place} * image.width)(document.querySelector('img[src$=\"results_{name}.svg\"]'))")
+            self.assertLess(right, NARROW - 20, name)
 
     def test_slider(self):
         self.browser.visit((self.site / "chapters/02_cosine_sampling/index.html").as_uri())
@@ -152,6 +185,26 @@ class BookInBrowser_all(Site, unittest.TestCase):
             found, links = self.problems(page)
             self.assertIn(words, " ".join(found + self.dead(links)), broken)
 
+
+
+class SearchTest(unittest.TestCase):
+    def test_formulas_are_plain_text(self):
+        for tex, text in ((r"\frac{\pi}{2} u_y", "(π)/(2) u_y"), (r"\frac{1}{\frac{a}{b}}", "(1)/((a)/(b))"), (r"\mathrm{d}\omega \ge \cos\theta", "dω ≥ cosθ"),
+                          (r"\left( x \cdot y \right)", "( x · y )"), (r"\int L \thinspace \mathrm{d}A", "∫ L dA"), (r"\{a\}", "a"), ("", "")):
+            self.assertEqual(search.plain_formula(tex), text)
+
+
+class CopiesTest(unittest.TestCase):
+    def test_copies_of_chapters_are_left_out(self):
+        with tempfile.TemporaryDirectory() as folder:
+            project = Path(folder)
+            for name in ("chapters", "docs", "tools"):
+                shutil.copytree(PROJECT / name, project / name, ignore=shutil.ignore_patterns("records", "__pycache__"))
+            shutil.copytree(project / "chapters/01_uniform_sampling", project / "chapters/20_mine")
+            listed = [sys.executable, "-B", "-c", "import sys; sys.path.insert(0, 'tools'); from book.build import navigation; print(navigation(True))"]
+            pages = subprocess.run(listed, cwd=project, capture_output=True, text=True, check=True).stdout
+        self.assertIn("chapters/01_uniform_sampling/README.md", pages)
+        self.assertNotIn("20_mine", pages)
 
 
 class ReadabilityTest(unittest.TestCase):

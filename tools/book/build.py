@@ -1,21 +1,23 @@
 """Builds the book, a site of all pages that opens from the disk: output/book/index.html. It needs no server and loads nothing
-from elsewhere. It also lists the pages whose sentences are too long (tools/book/readability.py).
+from elsewhere. Copies of chapters are not in it.
 """
 import json
 import re
 import shutil
 import tempfile
+import time
 from pathlib import Path
 
-from book import readability
+from book import search
 from book.pages import Page, source_page
-from project import CHAPTERS, ROOT, Parser, UserError, read_json, run_program
+from project import CHAPTERS, ROOT, Parser, UserError, course, read_json, run_program, show_progress
 
 HERE = Path(__file__).parent
 KATEX = Path("/usr/share/javascript/katex")  # from Debian's libjs-katex
+STEPS = 3  # whose progress is shown
 SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.js"
 SECTIONS = {  # of the navigation; missing pages are left out
-    "Chapters": [f"chapters/{name}/README.md" for name in CHAPTERS.values()],
+    "Chapters": [f"chapters/{CHAPTERS[number]}/README.md" for number in course()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
     "Explore": ["docs/window.md", "docs/debugging.md", "docs/scenes.md"],
     "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/extending.md", "docs/numerics.md", "docs/cluster.md", "CHANGELOG.md"],
@@ -23,7 +25,7 @@ SECTIONS = {  # of the navigation; missing pages are left out
     "For teachers": ["docs/teaching.md", "docs/grading/README.md", "docs/installing.md"],
 }
 START = ["README.md", "docs/first_steps.md", "docs/shader.md"]
-SOLUTIONS = "chapters/*/solutions/README.md"  # for teachers only
+SOLUTIONS = [f"chapters/{CHAPTERS[number]}/solutions/README.md" for number in course()]  # for teachers only
 
 
 def title_of(path):
@@ -39,7 +41,7 @@ def navigation(is_teacher):
     others = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").glob("*.md"))]
     sections["How it works"] += [path for path in others if path not in known]
     if is_teacher:
-        sections["For teachers"] += [str(path.relative_to(ROOT)) for path in sorted(ROOT.glob(SOLUTIONS))]
+        sections["For teachers"] += SOLUTIONS
     return [(title, [path for path in paths if (ROOT / path).is_file()]) for title, paths in sections.items()]
 
 
@@ -49,12 +51,12 @@ def write(folder, path, text):
 
 
 def collect(folder, sections, is_teacher):
-    """Writes the pages, the files they link to, and their pictures, at the paths they have in the project. Returns the pages, and
-    the names of the sources on the site."""
+    """Writes the pages, the files they link to, and their pictures, at the paths they have in the project. Returns the pages,
+    the names of the sources on the site, and what is to be found by name: {address: (name, explanation)}."""
     def is_included(path):
         return (ROOT / path).is_file() and (is_teacher or "solutions" not in Path(path).parts)
 
-    waiting, done = [Path(path) for _, paths in sections for path in paths], set()
+    waiting, done, named = [Path(path) for _, paths in sections for path in paths], set(), {}
     while waiting:
         path = waiting.pop()
         if path in done:
@@ -66,12 +68,13 @@ def collect(folder, sections, is_teacher):
         page = Page(path, is_included)
         write(folder, path, page.text)
         waiting += page.linked
+        named |= {f"{path.with_suffix('.html')}#{name}": (name, text) for name, text in page.functions.items()}
         for picture in page.pictures:
             if not (ROOT / picture).is_file():
                 raise UserError(f"{path}: there is no picture {picture}")
             (folder / picture).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / picture, folder / picture)
-    return sorted(path for path in done if path.suffix == ".md"), {f"{path}.html" for path in done if path.suffix != ".md"}
+    return sorted(path for path in done if path.suffix == ".md"), {f"{path}.html" for path in done if path.suffix != ".md"}, named
 
 
 def write_settings(file, folder, sections):
@@ -85,12 +88,12 @@ def write_settings(file, folder, sections):
     file.write_text(text + "".join(f"{key}: {json.dumps(value)}\n" for key, value in settings.items()), encoding="utf-8")
 
 
-def finish(site, sources):
+def finish(site, sources, named):
     """Turns the search index into a script, which pages on disk may load, and removes files that only servers need. Version 8 of
     the theme (Debian 12) looks for the index in __search, later ones in __index."""
     index = read_json(site / SEARCH_INDEX)
-    index["docs"] = [entry for entry in index["docs"] if entry["location"].split("#")[0] not in sources]
-    write(site, SEARCH_SCRIPT, f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index)}};\n")
+    index["docs"] = list(search.entries(index["docs"], sources, named))
+    write(site, SEARCH_SCRIPT, f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index), transform: requireAllOfFew}};\n")
     for unused in (SEARCH_INDEX, "404.html", "sitemap.xml", "sitemap.xml.gz"):
         (site / unused).unlink(missing_ok=True)
 
@@ -99,10 +102,11 @@ def build(output, is_teacher):
     """Writes the site and returns its pages."""
     if output.exists() and not (output / SEARCH_SCRIPT).exists():
         raise UserError(f"{output} exists and is no book: choose another folder")
-    sections = navigation(is_teacher)
+    sections, started = navigation(is_teacher), time.monotonic()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        pages, sources = collect(folder / "docs", sections, is_teacher)
+        pages, sources, named = collect(folder / "docs", sections, is_teacher)
+        show_progress(f"{len(pages)} pages and {len(sources)} sources read", 1, STEPS, started)
         (folder / "docs/katex/fonts").mkdir(parents=True)
         for file in [KATEX / "katex.min.js", KATEX / "katex.min.css", *KATEX.glob("fonts/*.woff2")]:
             shutil.copy(file, folder / "docs/katex" / file.relative_to(KATEX))
@@ -111,9 +115,11 @@ def build(output, is_teacher):
         if process.returncode != 0:
             lines = re.sub(r"\x1b\[\d*m", "", process.stderr).splitlines()
             raise UserError("mkdocs:\n" + "\n".join(line for line in lines if re.search("WARNING|[Ee]rror", line)))
-        finish(folder / "site", sources)
+        show_progress("site written", 2, STEPS, started)
+        finish(folder / "site", sources, named)
         shutil.rmtree(output, ignore_errors=True)
         shutil.copytree(folder / "site", output)
+    show_progress("search added", STEPS, STEPS, started)
     return pages
 
 
@@ -125,8 +131,4 @@ def main():
     if not (KATEX / "katex.min.js").is_file() or not shutil.which("mkdocs"):
         raise UserError("mkdocs and KaTeX are needed: install mkdocs-material, python3-pymdownx and libjs-katex")
     pages = build(options.output, options.teacher)
-    for path in pages:
-        middle, long = readability.measure((ROOT / path).read_text(encoding="utf-8"))
-        if middle > readability.MEDIAN_GOAL or long:
-            print(f"{path}: median {middle:g} words per sentence, {len(long)} sentences above {readability.LONGEST_GOAL}")
     print(f"{options.output / 'index.html'}: {len(pages)} pages")

@@ -12,6 +12,7 @@ LARGEST_SOURCE = 100_000  # bytes; larger files are data
 CODE = r"```.*?```|`[^`\n]+`|(?<=\n\n) {4}[^\n]*"
 LINK = re.compile(rf"({CODE})|(?<!!)\[((?:`[^`\n]*`|[^\[\]]|!\[[^\[\]]*\]\([^()]*\))*)\]\(([^()\s]+)\)", re.DOTALL)
 PICTURE = re.compile(r"!\[[^\[\]]*\]\(([^()\s]+)\)|<img [^<>]*src=\"([^\"]+)\"")
+FUNCTION_ROW = re.compile(r"^\| (`\w+ (\w+)\([^`]*`) \| (.*?) \|", re.MULTILINE)  # of a table: declaration, name, explanation
 ITEM = re.compile(r"(\d+\.|[-*]) +(?=\S)")
 
 
@@ -25,7 +26,8 @@ class Page:
         text = re.sub(r"<!-- .*? -->\n?|^\[!\[.*\]\(\.\./\.\./actions/.*\n", "", (ROOT / path).read_text(encoding="utf-8"), flags=re.MULTILINE)  # no badges
         text = text.replace("<details>", '<details markdown="1">')  # or MkDocs would leave its text unformatted
         self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
-        self.text = self.with_comparison(with_lists(LINK.sub(self.link, text)))
+        self.functions = {}  # of its tables: name and explanation
+        self.text = self.with_comparison(with_lists(FUNCTION_ROW.sub(self.function, LINK.sub(self.link, text))))
 
     def resolve(self, target):
         return Path(os.path.normpath(self.path.parent / target))
@@ -46,6 +48,14 @@ class Page:
             return text
         self.linked.append(path)
         return f"[{text}]({name}{'' if path.suffix == '.md' else '.md'}{hash_sign}{anchor})"
+
+    def function(self, match):
+        """A row of a table that explains a function, as the target of a link. Only the first of functions with the same name is one."""
+        code, name, explanation = match.groups()
+        if name in self.functions:
+            return match[0]
+        self.functions[name] = explanation
+        return f'| <span id="{name}">{code}</span> | {explanation} |'
 
     def with_comparison(self, text):
         """If the previous chapter renders the same scene, replaces the chapter's picture by a slider that compares both."""

@@ -1,3 +1,9 @@
+// Of up to three words a page must have all: otherwise the headings with "table" come before what is about the alias table.
+function requireAllOfFew(query) {
+  const words = query.split(/[\s()]+/).filter(word => word);
+  return words.map(word => words.length <= 3 && /^\w/.test(word) ? `+${word}` : word).join(" ");
+}
+
 // A page that was opened from the disk may not start a Worker: there the search runs in a hidden frame of the page.
 if (location.protocol === "file:") {
   window.Worker = class extends EventTarget {
