@@ -1,6 +1,7 @@
 #include "platform.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -37,7 +38,8 @@ static std::string variable(const char* name) {
     return value ? value : "";
 }
 
-static volatile std::sig_atomic_t interrupted = 0;  // by this signal
+static std::atomic<int> interrupted = 0;  // by this signal; read by all threads
+static_assert(std::atomic<int>::is_always_lock_free);
 
 void install_interrupt_handler() {
     const auto handler = [](int signal) {
@@ -47,6 +49,7 @@ void install_interrupt_handler() {
     std::signal(SIGINT, handler);
     std::signal(SIGTERM, handler);
 #ifndef _WIN32
+    if (std::signal(SIGHUP, handler) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup means it to go on
     std::signal(SIGALRM, handler);
 #endif
 }
@@ -62,6 +65,7 @@ void remove_interrupt_handler() {
     std::signal(SIGTERM, SIG_DFL);
 #ifndef _WIN32
     alarm(0);
+    if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGALRM, SIG_DFL);
     if (interrupted == SIGALRM) interrupted = 0;
 #endif
@@ -181,7 +185,11 @@ std::filesystem::path running_program() {
 }
 #endif
 
-void prepare_terminal() {}
+void prepare_terminal() {
+    // Where nobody reads on, as behind `| head -1`, or a file reaches its limit, writing fails, but the render is not lost.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
 
 void make_binary(std::FILE*) {}
 

@@ -163,7 +163,8 @@ struct Swizzled {
         constexpr length_t indices[]{i...};
         return target[indices[component]];
     }
-    Value operator=(const Value& value) {
+    // By value, since v.zyx = v would change what is still to be read.
+    Value operator=(const Value value) {
         length_t next = 0;
         ((target[i] = value[next++]), ...);
         return value;

@@ -44,7 +44,8 @@ struct Swizzled {
         constexpr int indices[]{i...};
         return target[indices[component]];
     }
-    LAB_INLINE void operator=(const Value& value) {
+    // By value, since v.zyx = v would change what is still to be read.
+    LAB_INLINE void operator=(const Value value) {
         int next = 0;
         ((target[i] = value[next++]), ...);
     }

@@ -20,6 +20,7 @@ void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <csignal>
 #include <cstdlib>
@@ -132,7 +133,8 @@ std::string first_error(std::istream& log) {
 
 // Compiles C++ to a shared library in the cache. Returns what the compiler has against it, or nothing.
 std::string compile(const std::string& text, const std::vector<std::string>& arguments, const std::string& name) {
-    const fs::path place = cache_file(name + "-" + std::to_string(process_id()));
+    static std::atomic<unsigned> count = 0;  // two windows' halves may compile the same shader at once
+    const fs::path place = cache_file(name + "-" + std::to_string(process_id()) + "-" + std::to_string(count++));
     const auto with = [&](const char* ending) { return fs::path(place.string() + ending); };
     std::error_code ignored;
     fs::create_directories(place.parent_path(), ignored);

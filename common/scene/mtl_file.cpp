@@ -147,7 +147,7 @@ Microfacets read_microfacets(const std::string& file, const tinyobj::material_t&
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::filesystem::path& texture_folder,
                                   SourceFiles& files, std::vector<std::string>& warnings) {
     const std::string name = file.string();
-    const std::string text = files.read(file, max_mtl_bytes);
+    const std::string text = clean_text(files.read(file, max_mtl_bytes));
     if (text.find('\0') != std::string::npos) throw UserError(name + ": not a material file: it is binary");
     const std::vector<Stated> stated = check_lines(name, text, warnings);
 

@@ -54,7 +54,7 @@ class TextBuffer : public std::streambuf {
 class ObjReader : public tinyobj::MaterialReader {
   public:
     ObjReader(const std::filesystem::path& path, SourceFiles& files, std::vector<std::string>& warnings)
-        : path_(path), files_(files), warnings_(warnings), text_(files.read(path, max_obj_bytes)), buffer_(text_) {
+        : path_(path), files_(files), warnings_(warnings), text_(clean_text(files.read(path, max_obj_bytes))), buffer_(text_) {
         obj_.file = path.string();
     }
 

@@ -70,6 +70,28 @@ TEST_F(MeshFile, TextMayComeFromAnySystem) {
     EXPECT_EQ(scene.positions.at(2), vec3(0, 1, 0));
 }
 
+// What ZBrush, Rhino, Wings 3D and editors on Windows write.
+TEST_F(MeshFile, TextMayHaveMarksCommentsAndJoinedLines) {
+    const std::string square = corners_of_a_square + "vn 0 0 1\nvn 1 0 1\nvt 0 0\n";
+    const Scene plain = load(square + "f 1 2 3 4\n");
+    for (const std::string face : {"f 1// 2// 3// 4//", "f 1/ 2/ 3/ 4/ ", "f 1 2 3 4 # the front", "f 1 2 3 4#2",
+                                   "\tf 1 2 \\\n  3\\\r\n 4", "f 1 2 3 4\n# end\n\\"}) {
+        const Scene scene = load("\xEF\xBB\xBF" + square + face + std::string("\n\0\0", 3));
+        EXPECT_EQ(scene.positions, plain.positions) << face;
+        EXPECT_EQ(scene.triangles, plain.triangles) << face;
+        EXPECT_TRUE(scene.normals.empty()) << face;
+    }
+    EXPECT_EQ(load(square + "f 1//2 2//2 3//\n").normals, load(square + "f 1//2 2//2 3\n").normals);
+    EXPECT_USER_ERROR(load("v 0 0 0\n\n" + square + "f 1 2 \\\n 9\n"), "a.obj:10: the face refers to vertex 9");
+    EXPECT_USER_ERROR(load(square + "f \\\n # none\n"), "a.obj:8: a face needs at least three corners");
+    EXPECT_USER_ERROR(load("v 0 0 -1.#IND\n"), "a.obj:1: \"-1.#IND\" is not a finite number");
+    EXPECT_USER_ERROR(load_material("Kd 1 1 1.#QNAN0"), "a.mtl:2: Kd \"1.#QNAN0\": must be a finite number");
+    folder.write("a.mtl", "\xEF\xBB\xBFnewmtl m # red\nKd 1 \\\n 0 0\n" + std::string("\0", 1));
+    const Scene red = load("mtllib a.mtl\nusemtl m # x\n" + corners_of_a_square + "f 1 2 3\nusemtl\nf 1 3 4\n");
+    EXPECT_EQ(red.materials.at(0).diffuse_albedo, vec3(1, 0, 0));
+    EXPECT_EQ(count_warnings(red, "1 faces without a material are drawn in grey"), 1u);
+}
+
 TEST_F(MeshFile, VerticesAreSplitWhereNormalsDiffer) {
     const Scene scene = load(corners_of_a_square + "vn 0 0 2\nvn 1 0 1\nf 1//1 2//1 3//1\nf 1//1 3//2 4//1\n");
     EXPECT_EQ(scene.positions.size(), 5u);

@@ -310,7 +310,7 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "{ uint x = x + 5u;\nr = x; }",
         "r = 0xffffffff < 1 ? 5u : 7u;",
         "r = uint(bitfieldExtract(int(i) - 3, 0, 8) + findMSB(int(i) - 40) + 3);",
-        "uvec3 v = uvec3(x);\nv.zyx.x = 2u;\nv.zyx[2] = 3u;\nr = v.x + v.z;",
+        "uvec3 v = uvec3(x);\nv.zyx.x = 2u;\nv.zyx[2] = 3u;\nv.zyx = v;\nr = v.x + v.z;",
         "r = numbers[i].zyx.x == numbers[i].z ? 5u : 7u;",
         "r = 4u + call_ahead();",
         "int n = 2147483647 + int(gl_WorkGroupID.x);\nr = n + 1 > n ? 7u : 5u;",

@@ -36,6 +36,9 @@ TEST(Native, SwizzlesReadAndWrite) {
               (Numbers{12, 2, 1, 14, 14, 1, 2, 6}));
     EXPECT_EQ(run_shader("struct Pair { float st; vec2 xy; };", "Pair p = Pair(3.0, vec2(4, 5)); give(p.st); give(p.xy.y);"),
               (Numbers{3, 5}));
+    // The source keeps its values until all components are assigned.
+    EXPECT_EQ(run_shader("", "vec3 v = vec3(1, 2, 3); v.zyx = v; give(v.x); give(v.y); give(v.z); v.yzx = v; give(v.x); give(v.y);"),
+              (Numbers{3, 2, 1, 1, 3}));
 }
 
 TEST(Native, OutArgumentsAreCopiedInAndOut) {
