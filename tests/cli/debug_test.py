@@ -152,6 +152,17 @@ class DebugTest(CopiedLab, ProgramTest):
         self.assertRegex(seen, r"throughput = \(.*, .*, .*\)")
         self.assertRegex(seen, r"pixel +20,30 sample 3: ")
 
+    def test_it_prints_what_the_picture_has_in_this_pixel(self):
+        size = ["--headless", "--width=1600", "--height=1600", "--samples=1"]  # so large that freed memory is gone
+        self.assertEqual(self.execute(self.program, *size, "--backend=native", "--output=picture.exr").returncode, 0)
+        picture = read_rgb(self.tree / "picture.exr")
+        brightest = divmod(int(picture.sum(axis=2).argmax()), 1600)
+        self.assertGreater(picture[brightest].max(), 0)
+        for y, x in ((0, 0), brightest):
+            process = self.execute(self.program, *size, f"--debug-pixel={x},{y}")
+            expected = " ".join(f"{value:g}" for value in picture[y, x])
+            self.assertIn(f"\npixel          {x},{y} sample 0: {expected}\n", process.stdout, process.returncode)
+
     def test_visual_studio_code(self):
         process = self.execute(sys.executable, "-B", "tools", "debug", "--vscode")
         self.assertEqual(process.stdout.split(), [".vscode/launch.json", ".vscode/tasks.json"])
