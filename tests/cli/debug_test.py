@@ -3,6 +3,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import unittest
@@ -101,6 +102,23 @@ class AutomaticNativeTest(CopiedLab, ProgramTest):
 
     def test_it_needs_permission(self):
         self.assertRegex(self.automatic(b"native", LAB_WITHOUT_NATIVE="1").stdout, "backend (compute|query|pipeline)\n")
+
+
+class InterruptedCompilerTest(CopiedLab, ProgramTest):
+    """Whoever stops a program that compiles a shader finds nothing of it in the cache."""
+
+    def test_it_leaves_no_files(self):
+        environment = self.compiler(f'echo half a program > "$3"; echo > {self.folder}/started; exec sleep 60\n')
+        environment["XDG_CACHE_HOME"] = str(self.tree / "cache")
+        for to_all, number in ((True, signal.SIGINT), (False, signal.SIGINT), (False, signal.SIGTERM), (False, signal.SIGHUP)):
+            with self.subTest(signal=number, to_all=to_all):
+                with self.start(*self.SIZE, "--backend=native", environment=environment, program=self.program, prepare=os.setsid) as process:
+                    self.wait_for(self.folder / "started", process)
+                    os.killpg(process.pid, number) if to_all else process.send_signal(number)
+                    process.communicate(timeout=20)
+                self.assertEqual(process.returncode, -number)
+                self.assertEqual(list((self.tree / "cache/path_tracing_lab").glob("native-*")), [])
+                (self.folder / "started").unlink()
 
 
 class LanesTest(CopiedLab, ProgramTest):
