@@ -244,7 +244,7 @@ int run_batch(Commands& commands) {
 }  // namespace
 
 int run_chapter(const std::string& name, int argument_count, char** arguments) {
-    prepare_terminal();
+    prepare_program();
     try {
         const Chapter chapter = load_chapter(name);
         Commands commands(chapter);
