@@ -1,6 +1,7 @@
 #include "platform.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -38,31 +39,49 @@ static std::string variable(const char* name) {
     return value ? value : "";
 }
 
-static std::atomic<int> interrupted = 0;  // by this signal; read by all threads
-static_assert(std::atomic<int>::is_always_lock_free);
+static std::atomic<int> interrupted = 0;  // by this signal
+static_assert(std::atomic<int>::is_always_lock_free, "a signal may come while it is read");
 
-void install_interrupt_handler() {
-    const auto handler = [](int signal) {
-        interrupted = signal;
-        std::signal(signal, SIG_DFL);
-    };
-    std::signal(SIGINT, handler);
-    std::signal(SIGTERM, handler);
-#ifndef _WIN32
-    if (std::signal(SIGHUP, handler) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup means it to go on
-    std::signal(SIGALRM, handler);
-#endif
+#ifdef _WIN32
+static constexpr std::array ending_signals{SIGINT, SIGTERM};
+
+static bool is_ignored(int) { return false; }
+
+static bool repeats(int) { return false; }
+#else
+static constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+
+// By the caller's wish: that of nohup, or of a script for its background jobs.
+static bool is_ignored(int signal) {
+    struct sigaction action {};
+    return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
+
+// A terminal that closes sends SIGHUP twice, and a limit on processor time SIGXCPU each second: neither is impatience.
+static bool repeats(int signal) { return signal == SIGHUP || signal == SIGXCPU; }
+#endif
+
+static void interrupt(int signal) {
+    interrupted = signal;
+    if (!repeats(signal)) std::signal(signal, SIG_DFL);
+}
+
+static void handle_ending_signals(void (*handler)(int)) {
+    for (const int signal : ending_signals)
+        if (!is_ignored(signal)) std::signal(signal, handler);
+}
+
+void install_interrupt_handler() { handle_ending_signals(interrupt); }
 
 void interrupt_after([[maybe_unused]] double seconds) {
 #ifndef _WIN32
+    std::signal(SIGALRM, interrupt);
     alarm(static_cast<unsigned>(std::min(std::ceil(seconds), 1e9)));
 #endif
 }
 
 void remove_interrupt_handler() {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    handle_ending_signals(SIG_DFL);
 #ifndef _WIN32
     alarm(0);
     if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
@@ -117,7 +136,7 @@ size_t processor_count() { return std::thread::hardware_concurrency(); }
 
 const char* const vulkan_driver = "the newest driver of your graphics card from nvidia.com, amd.com or intel.com";
 
-void prepare_terminal() {
+void prepare_program() {
     SetConsoleOutputCP(CP_UTF8);
     for (const DWORD stream : {STD_OUTPUT_HANDLE, STD_ERROR_HANDLE}) {
         DWORD mode = 0;
@@ -185,10 +204,8 @@ std::filesystem::path running_program() {
 }
 #endif
 
-void prepare_terminal() {
-    // Where nobody reads on, as behind `| head -1`, or a file reaches its limit, writing fails, but the render is not lost.
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);
+void prepare_program() {
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
 void make_binary(std::FILE*) {}

@@ -7,9 +7,10 @@
 
 namespace lab {
 
-// Call this first. On Windows it switches the terminal to UTF-8 and control sequences, and keeps a terminal opened by a double
+// Call this first. Output that nobody reads and files that are too large become errors of the write, which would end the program
+// and lose a render. On Windows it switches the terminal to UTF-8 and control sequences, and keeps a terminal opened by a double
 // click until Enter is pressed, so that messages can be read.
-void prepare_terminal();
+void prepare_program();
 
 // Whether the stream is a terminal.
 bool is_terminal(std::FILE* stream);
@@ -49,12 +50,13 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 // What to install for Vulkan; follows "install " in messages.
 extern const char* const vulkan_driver;
 
-// From now on the first Ctrl-C or SIGTERM makes is_interrupted() true; the second ends the program.
+// From now on what asks the program to end makes is_interrupted() true: the first Ctrl-C or SIGTERM, of which the second ends the
+// program; a terminal that closes; a limit on processor time. What the caller has set to be ignored is still ignored.
 void install_interrupt_handler();
 bool is_interrupted();
 // Does the same after this many seconds, if the operating system can.
 void interrupt_after(double seconds);
-// From now on Ctrl-C ends the program at once, and what interrupt_after() has done or would do is void.
+// From now on they end the program at once, and what interrupt_after() has done or would do is void.
 void remove_interrupt_handler();
 
 }  // namespace lab

@@ -5,8 +5,10 @@
 
 #include "error.h"
 #include "film/film_file.h"
+#include "platform.h"
 
 int main(int argument_count, char** arguments) {
+    lab::prepare_program();
     CLI::App app("Joins renders of adjacent ranges of samples", "merge_images");
     std::vector<std::filesystem::path> parts;
     std::filesystem::path output;

@@ -135,9 +135,10 @@ void debug_pixel(Build& build, uvec2 pixel) {
                         " is outside of the image of " + size_text(size) + " pixels");
     while (build.renderer->advance(1)) {
     }
-    const FilmPixel sum = build.renderer->film().read().pixels[size_t{pixel.y} * size.x + pixel.x];
-    std::printf("pixel          %u,%u sample %u: %g %g %g\n", pixel.x, pixel.y, build.job.record.first_sample, sum.sum.r,
-                sum.sum.g, sum.sum.b);
+    const FilmImage film = build.renderer->film().read();
+    const vec3 sum = film.pixels[size_t{pixel.y} * size.x + pixel.x].sum;
+    std::printf("pixel          %u,%u sample %u: %g %g %g\n", pixel.x, pixel.y, build.job.record.first_sample, sum.r, sum.g,
+                sum.b);
 }
 
 // Prints what is worth knowing about the scene of a job. Throws UserError if a report would describe another picture.
@@ -243,7 +244,7 @@ int run_batch(Commands& commands) {
 }  // namespace
 
 int run_chapter(const std::string& name, int argument_count, char** arguments) {
-    prepare_terminal();
+    prepare_program();
     try {
         const Chapter chapter = load_chapter(name);
         Commands commands(chapter);

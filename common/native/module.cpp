@@ -27,6 +27,8 @@ void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <sstream>
 
 #include "clock.h"
@@ -96,6 +98,33 @@ std::string processor() {
     return {};
 }
 
+// Until its end, signals that would end the program at once wait for it, so that a compiler's files can be removed.
+class EndLater {
+  public:
+    EndLater() {
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+            struct sigaction before {
+            }, action{};
+            sigaction(signal, nullptr, &before);
+            if (before.sa_handler != SIG_DFL) continue;
+            action.sa_handler = [](int number) { wish = number; };
+            sigaction(signal, &action, nullptr);
+            changed_.push_back(signal);
+        }
+    }
+    EndLater(const EndLater&) = delete;
+    EndLater& operator=(const EndLater&) = delete;
+    ~EndLater() {
+        for (const int signal : changed_) std::signal(signal, SIG_DFL);
+        if (wish) raise(wish);
+    }
+    static bool is_wished() { return wish != 0; }
+
+  private:
+    static inline std::atomic<int> wish = 0;  // the signal
+    std::vector<int> changed_;
+};
+
 // Runs a program with its output in `log`. False if it fails.
 bool run_program(const std::vector<std::string>& arguments, const fs::path& log) {
     std::vector<char*> pointers;
@@ -115,8 +144,8 @@ bool run_program(const std::vector<std::string>& arguments, const fs::path& log)
     const bool is_started = posix_spawn(&process, pointers[0], &actions, nullptr, pointers.data(), environment.data()) == 0;
     posix_spawn_file_actions_destroy(&actions);
     if (!is_started) return false;
-    while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-    }
+    while (waitpid(process, &status, 0) < 0 && errno == EINTR)
+        if (EndLater::is_wished()) kill(process, SIGTERM);
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
@@ -131,26 +160,50 @@ std::string first_error(std::istream& log) {
     return first.empty() ? "it says nothing" : first;
 }
 
-// Compiles C++ to a shared library in the cache. Returns what the compiler has against it, or nothing.
-std::string compile(const std::string& text, const std::vector<std::string>& arguments, const std::string& name) {
-    static std::atomic<unsigned> count = 0;  // two windows' halves may compile the same shader at once
-    const fs::path place = cache_file(name + "-" + std::to_string(process_id()) + "-" + std::to_string(count++));
-    const auto with = [&](const char* ending) { return fs::path(place.string() + ending); };
-    std::error_code ignored;
-    fs::create_directories(place.parent_path(), ignored);
-    try {
-        write_file(with(".cpp"), text);
-    } catch (const UserError& error) {
-        throw UserError(std::string("the backend native: ") + error.what() + ": set XDG_CACHE_HOME to a folder for its code");
+// A new folder for a compiler's files, in the cache. Another program may compile the same, perhaps with the same process id in
+// another container.
+class CompilerFolder {
+  public:
+    explicit CompilerFolder(const fs::path& name) : path_(name.string() + "-XXXXXX") {
+        std::error_code ignored;
+        fs::create_directories(name.parent_path(), ignored);
+        if (!mkdtemp(path_.data())) throw UserError(name.string() + ": cannot be written: " + std::strerror(errno));
     }
-    std::vector<std::string> command{find_compiler().string(), with(".cpp").string(), "-o", with(".so").string()};
+    CompilerFolder(const CompilerFolder&) = delete;
+    CompilerFolder& operator=(const CompilerFolder&) = delete;
+    ~CompilerFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    fs::path operator/(const char* file) const { return path_ / fs::path(file); }
+
+  private:
+    const EndLater until_removed_;
+    std::string path_;
+};
+
+// Compiles C++ to a shared library in the cache. Returns what the compiler has against it, or nothing.
+std::string compile(const std::string& text, const std::vector<std::string>& arguments, const std::string& name) try {
+    const CompilerFolder folder(cache_file(name));
+    write_file(folder / "code.cpp", text);
+    std::vector<std::string> command{find_compiler().string(), (folder / "code.cpp").string(), "-o",
+                                     (folder / "code.so").string()};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    const bool is_compiled = run_program(command, with(".log"));
-    std::ifstream log(with(".log"));
-    const std::string error = first_error(log);
-    if (is_compiled) write_cache(name, read_file(with(".so"), UINT64_MAX));
-    for (const char* ending : {".cpp", ".so", ".log"}) fs::remove(with(ending), ignored);
-    return is_compiled ? "" : command.front() + " does not compile its code: " + error;
+    if (run_program(command, folder / "log")) {
+        write_cache(name, read_file(folder / "code.so", UINT64_MAX));
+        return "";
+    }
+    std::ifstream log(folder / "log");
+    return command.front() + " does not compile its code: " + first_error(log);
+} catch (const UserError& error) {
+    throw UserError(std::string("the backend native: ") + error.what() + ": set XDG_CACHE_HOME to a folder for its code");
+}
+
+std::mutex& mutex_of(const std::string& name) {
+    static std::mutex guard;
+    static std::map<std::string, std::mutex> mutexes;
+    const std::scoped_lock lock(guard);
+    return mutexes[name];
 }
 
 // A library, from the cache if possible. If the compiler refuses it, the result is null and `refusal` says why.
@@ -161,7 +214,10 @@ void* load_library(const std::string& text, const std::vector<std::string>& argu
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
     const fs::path file = cache_file(name);
-    if (!read_cache(name)) refusal = compile(text, arguments, name);
+    {
+        const std::scoped_lock lock(mutex_of(name));  // of two threads that want the same, one waits for what the other compiles
+        if (!read_cache(name)) refusal = compile(text, arguments, name);
+    }
     if (!refusal.empty()) return nullptr;
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library) return library;

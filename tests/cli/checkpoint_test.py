@@ -37,8 +37,8 @@ class Interruption(RenderTest):
         self.assert_close(resumed, self.picture("uninterrupted", f"--samples={total}", size=self.size))
         self.assertEqual(int(resumed.text("samples")), total)
 
-    def test_ctrl_c_writes_what_there_is(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
+    def test_what_asks_for_the_end_writes_what_there_is(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGXCPU):
             with self.subTest(signal=number):
                 file = self.folder / f"stopped{number}.exr"
                 code, seconds, text = self.interrupt(number, file, "--save-every=0.2")
@@ -46,6 +46,41 @@ class Interruption(RenderTest):
                 self.assertLess(seconds, 5)
                 self.assertIn("--resume", text)
                 self.assert_resumes(file)
+
+    def test_a_terminal_that_closes_may_say_so_twice(self):
+        """Its shell sends SIGHUP to all programs, and so does the kernel when the shell ends."""
+        file = self.folder / "closed.exr"
+        with self.start(*self.command("--samples=4000000000", "--output", file, "--save-every=0.2", size=self.size)) as process:
+            self.wait_for(file, process)
+            for _ in range(20):
+                process.send_signal(signal.SIGHUP)
+                time.sleep(0.002)
+            self.assertIn("--resume", process.communicate(timeout=60)[0])
+        self.assertEqual(process.returncode, 0)
+
+    def test_what_the_caller_ignores_is_ignored(self):
+        """As nohup and the background jobs of scripts want it."""
+        ignored = (signal.SIGINT, signal.SIGHUP)
+        file = self.folder / "ignored.exr"
+        with self.start(*self.command("--samples=4000000000", "--output", file, "--save-every=0.2", size=self.size),
+                        prepare=lambda: [signal.signal(number, signal.SIG_IGN) for number in ignored]) as process:
+            self.wait_for(file, process)
+            for number in ignored:
+                process.send_signal(number)
+                file.unlink()
+                self.wait_for(file, process)
+            process.send_signal(signal.SIGTERM)
+            self.assertIn("--resume", process.communicate(timeout=60)[0])
+        self.assertEqual(process.returncode, 0)
+
+    def test_nobody_needs_to_read_what_it_prints(self):
+        file = self.folder / "unread.exr"
+        with self.start(*self.command("--samples=2", "--output", file, size=self.size)) as process:
+            self.assertIn("cornell_box", process.stdout.readline())  # as `| head -1` does
+            process.stdout.close()
+            process.stderr.close()
+            self.assertEqual(process.wait(timeout=60), 0)
+        self.assertTrue(file.exists())
 
     def test_a_killed_render_goes_on_from_its_checkpoint(self):
         file = self.folder / "killed.exr"

@@ -3,6 +3,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import unittest
@@ -103,6 +104,23 @@ class AutomaticNativeTest(CopiedLab, ProgramTest):
         self.assertRegex(self.automatic(b"native", LAB_WITHOUT_NATIVE="1").stdout, "backend (compute|query|pipeline)\n")
 
 
+class InterruptedCompilerTest(CopiedLab, ProgramTest):
+    """Whoever stops a program that compiles a shader finds nothing of it in the cache."""
+
+    def test_it_leaves_no_files(self):
+        environment = self.compiler(f'echo half a program > "$3"; echo > {self.folder}/started; exec sleep 60\n')
+        environment["XDG_CACHE_HOME"] = str(self.tree / "cache")
+        for to_all, number in ((True, signal.SIGINT), (False, signal.SIGINT), (False, signal.SIGTERM), (False, signal.SIGHUP)):
+            with self.subTest(signal=number, to_all=to_all):
+                with self.start(*self.SIZE, "--backend=native", environment=environment, program=self.program, prepare=os.setsid) as process:
+                    self.wait_for(self.folder / "started", process)
+                    os.killpg(process.pid, number) if to_all else process.send_signal(number)
+                    process.communicate(timeout=20)
+                self.assertEqual(process.returncode, -number)
+                self.assertEqual(list((self.tree / "cache/path_tracing_lab").glob("native-*")), [])
+                (self.folder / "started").unlink()
+
+
 class LanesTest(CopiedLab, ProgramTest):
     """How many paths run at once is said, with the reason if it is one."""
 
@@ -151,6 +169,17 @@ class DebugTest(CopiedLab, ProgramTest):
         self.assertIn(f"{SHADER}:8", seen)
         self.assertRegex(seen, r"throughput = \(.*, .*, .*\)")
         self.assertRegex(seen, r"pixel +20,30 sample 3: ")
+
+    def test_it_prints_what_the_picture_has_in_this_pixel(self):
+        size = ["--headless", "--width=1600", "--height=1600", "--samples=1"]  # so large that freed memory is gone
+        self.assertEqual(self.execute(self.program, *size, "--backend=native", "--output=picture.exr").returncode, 0)
+        picture = read_rgb(self.tree / "picture.exr")
+        brightest = divmod(int(picture.sum(axis=2).argmax()), 1600)
+        self.assertGreater(picture[brightest].max(), 0)
+        for y, x in ((0, 0), brightest):
+            process = self.execute(self.program, *size, f"--debug-pixel={x},{y}")
+            expected = " ".join(f"{value:g}" for value in picture[y, x])
+            self.assertIn(f"\npixel          {x},{y} sample 0: {expected}\n", process.stdout, process.returncode)
 
     def test_visual_studio_code(self):
         process = self.execute(sys.executable, "-B", "tools", "debug", "--vscode")

@@ -88,7 +88,7 @@ class ProgramTest(unittest.TestCase):
         variables = {**os.environ, **(environment or {})}
         variables = {name: value for name, value in variables.items() if value is not None}
         return subprocess.Popen([program, *map(str, arguments)], cwd=self.folder, env=variables, stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, restore_signals=False, text=True)
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, text=True)
 
     def run_program(self, *arguments, timeout=TIMEOUT_SECONDS, **options):
         """Runs a program to the end; returns exit code, standard output, standard error."""

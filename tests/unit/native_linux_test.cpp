@@ -1,11 +1,14 @@
 // Shaders as C++: compiled and run, the translator's output gives the numbers that GLSL defines.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <future>
 
 #include "error.h"
 #include "native/module.h"
 #include "native/translator.h"
+#include "test_files.h"
 
 namespace lab {
 namespace {
@@ -176,6 +179,18 @@ TEST(Native, CheckedShadersNameTheLineOfADivisionByZero) {
 TEST(Native, ACrashIsAnErrorAndNotTheEndOfTheProgram) {
     EXPECT_THROW(run_shader("", "give(results[1000000000 + next]);"), DeviceFailure);
     EXPECT_EQ(run_shader("", "give(1.0);"), Numbers{1});
+}
+
+// As the two halves of a comparison do after an edit.
+TEST(Native, ThreadsThatWantTheSameShaderAllGetIt) {
+    const TestFolder cache;
+    setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+    std::vector<std::future<Numbers>> threads(4);
+    for (auto& thread : threads) thread = std::async(std::launch::async, [] { return run_shader("", "give(42.0);"); });
+    for (auto& thread : threads) EXPECT_NO_THROW(EXPECT_EQ(thread.get(), Numbers{42}));
+    unsetenv("XDG_CACHE_HOME");
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(cache.path()))
+        EXPECT_EQ(entry.path().extension(), "") << "left behind";
 }
 
 }  // namespace
