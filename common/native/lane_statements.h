@@ -44,7 +44,7 @@ struct Swizzled {
         constexpr int indices[]{i...};
         return target[indices[component]];
     }
-    LAB_INLINE void operator=(const Value& value) {
+    LAB_INLINE void operator=(Value value) {  // not by reference: it may be the target itself
         int next = 0;
         ((target[i] = value[next++]), ...);
     }
