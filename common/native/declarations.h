@@ -21,7 +21,7 @@ class DeclarationReader : protected ExpressionReader {
     std::string structure() {
         std::string text = take(), parameters, initialisers, copies, members;
         const std::string name = peek(), kind = has_lanes() ? name + "__" : name;
-        structs_.insert(name);
+        declare_type(name);
         if (has_lanes())
             text = join({" template <template <typename> class W> ", text, skip(), " ", kind, expect("{")});
         else
@@ -33,8 +33,8 @@ class DeclarationReader : protected ExpressionReader {
             const auto sizes = dimensions();
             do {
                 if (peek() == ",") skip();
-                const std::string field = spelled(peek());
-                fields_.insert(field);
+                const std::string field = variable_name(peek());
+                fields_.insert(peek());
                 space += skip();
                 std::string declared = array_type(type, dimensions(sizes));
                 if (has_lanes()) declared = "W<" + declared + ">";
@@ -67,7 +67,7 @@ class DeclarationReader : protected ExpressionReader {
         do {
             const std::string separator = peek() == "," ? skip() : "";
             const size_t token = at_;
-            const std::string name = peek(), variable = take();
+            const std::string name = peek(), variable = take_variable();
             if (is_global) globals_.insert(name);
             declared_.insert(name);
             const auto all = dimensions(sizes);
@@ -105,6 +105,7 @@ class DeclarationReader : protected ExpressionReader {
         return is_varying && type != "auto" ? "lanes::V<" + type + ">" : type;
     }
     Expression braces() {
+        const Nesting nesting(*this);
         Expression all{take()};
         while (peek() != "}") all.add(peek() == "{" ? braces() : peek() == "," ? Expression{take()} : assignment());
         all.text += take();

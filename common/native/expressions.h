@@ -8,10 +8,23 @@ namespace lab::native {
 
 class ExpressionReader : protected TokenReader, protected Variance {
   protected:
-    ExpressionReader(const std::string& glsl, Variance variance) : TokenReader(glsl), Variance(std::move(variance)) {}
+    ExpressionReader(const std::string& glsl, Variance variance) : TokenReader(glsl), Variance(std::move(variance)) {
+        for (size_t i = 1; i < tokens_.size(); ++i)
+            if (tokens_[i - 1].text == "struct") structs_.insert(tokens_[i].text);
+    }
 
     bool is_type(const std::string& token) const {
-        return scalar_types.contains(token) || is_vector_type(token) || structs_.contains(token);
+        const Variable* found = find(token);
+        return scalar_types.contains(token) || is_vector_type(token) || (found && found->is_type);
+    }
+    // A variable or field may have the name of a structure. C++ would not know that any more.
+    std::string variable_name(const std::string& token) const {
+        return spelled(token) + (structs_.contains(token) ? "_name__" : "");
+    }
+    std::string take_variable() {
+        if (peek().empty()) fail();
+        const std::string name = variable_name(peek());
+        return skip() + name;
     }
     void refuse(const std::string& what) { Variance::refuse(place(), what); }
     Change change_of(const Expression& target, bool is_varying) {
@@ -46,6 +59,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         return all;
     }
     Expression assignment() {
+        const Nesting nesting(*this);
         Expression left = conditional();
         static const Names operators{"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="};
         const std::string symbol = peek();
@@ -147,6 +161,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
         static const Names operators{"+", "-", "!", "~", "++", "--"};
         const std::string symbol = peek();
         if (!operators.contains(symbol)) return postfix();
+        const Nesting nesting(*this);
         const std::string token = take();
         const Expression inner = unary();
         if (symbol.size() == 2 && change_of(inner, false) != Change::uniform)
@@ -192,7 +207,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
             } else if (peek() == ".") {
                 const std::string dot = take(), indices = swizzle_indices(peek());
                 if (indices.empty() || fields_.contains(peek())) {
-                    const std::string name = take();
+                    const std::string name = take_variable();
                     all.text += dot + name;
                     if (!all.lvalue.empty()) all.lvalue += "[" + std::to_string(component_index(name[0])) + "]";
                     if (peek() == "(") {  // length()
@@ -238,7 +253,7 @@ class ExpressionReader : protected TokenReader, protected Variance {
             if (found == functions_.end()) return call(name, word, Call::builtin, outs_of_builtin(word));
             return call(name, word, Call::function, found->second);
         }
-        Expression all{take()};
+        Expression all{take_variable()};
         if (is_name(word)) {
             all.root = word;
             all.reads.insert(word);
@@ -341,7 +356,8 @@ class ExpressionReader : protected TokenReader, protected Variance {
         if (globals_.contains(variable)) effects_of_function_.writes.insert(variable);
     }
 
-    Names structs_, fields_;
+    Names structs_;  // all names of structures
+    Names fields_;
     Names declared_;  // names in the declaration that is being read: their initialisers still call functions of these names
     std::map<std::string, std::vector<Parameters>, std::less<>> functions_;  // of each overload
     // What functions read and write of global variables, and what the present one does.

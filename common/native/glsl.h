@@ -163,8 +163,7 @@ struct Swizzled {
         constexpr length_t indices[]{i...};
         return target[indices[component]];
     }
-    // By value, since v.zyx = v would change what is still to be read.
-    Value operator=(const Value value) {
+    Value operator=(Value value) {  // not by reference: it may be the target itself
         length_t next = 0;
         ((target[i] = value[next++]), ...);
         return value;

@@ -44,8 +44,7 @@ struct Swizzled {
         constexpr int indices[]{i...};
         return target[indices[component]];
     }
-    // By value, since v.zyx = v would change what is still to be read.
-    LAB_INLINE void operator=(const Value value) {
+    LAB_INLINE void operator=(Value value) {  // not by reference: it may be the target itself
         int next = 0;
         ((target[i] = value[next++]), ...);
     }

@@ -119,6 +119,21 @@ class TokenReader {
         ++at_;
         return tokens_[at_ - 1].space;
     }
+    // Functions that read what may be nested call each other. Where they hold one of these, they do not exhaust the stack.
+    class Nesting {
+      public:
+        explicit Nesting(TokenReader& reader) : depth_(reader.nesting_) {
+            if (++depth_ > max_nesting)
+                throw UserError(reader.place() + ": more than " + std::to_string(max_nesting) +
+                                " levels of parentheses or blocks are too many for the backend native: use another one, "
+                                "--backend compute");
+        }
+        ~Nesting() { --depth_; }
+
+      private:
+        static constexpr int max_nesting = 256;  // as many as Clang reads
+        int& depth_;
+    };
     // The file and line of the next token.
     std::string place() const {
         std::string place = "the shader";
@@ -157,6 +172,7 @@ class TokenReader {
 
     std::vector<Token> tokens_;
     size_t at_ = 0;
+    int nesting_ = 0;
 };
 
 }  // namespace lab::native

@@ -81,7 +81,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
             const std::string type = take();
             globals_.insert(peek());
             declare(peek(), at_, -1, true);
-            const std::string field = take();
+            const std::string field = take_variable();
             const auto sizes = dimensions();
             const bool is_open = !sizes.empty() && sizes[0].empty();
             const std::string declared = is_open ? type : array_type(type, sizes);
@@ -93,7 +93,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         if (peek() == ";") return text + fields + skip();
         declare(peek(), at_, -1, true);
         globals_.insert(peek());
-        const std::string instance = take();  // a name for the block
+        const std::string instance = take_variable();  // a name for the block
         return text + "struct " + name + "_block { const Bindings& bindings; " + fields + "};" + " " + name + "_block" +
                instance + "{bindings}" + take();
     }
@@ -140,7 +140,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
             if (is_name(peek())) {
                 declare(peek(), token, is_out ? -1 : 0);
                 if (is_out) vary(token);
-                variable = take();
+                variable = take_variable();
             }
             const std::string declared = varying_type(array_type(parameter, dimensions(sizes)), varies(token));
             if (has_lanes() && !is_out && !is_written(token))
@@ -320,6 +320,7 @@ extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_g
         return "{ " + assignment + "active__ = false; }";
     }
     std::string statement() {
+        const Nesting nesting(*this);
         const std::string word = peek();
         if (word == "{") return block();
         if (word == "struct") return join({structure(), expect(";")});

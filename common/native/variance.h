@@ -72,7 +72,11 @@ class Variance {
         size_t token;  // that declares it
         int depth;     // of branches around it that only some lanes may take; -1 outside of a function
         bool is_memory;
+        bool is_type = false;  // a structure, not a variable
     };
+    void declare_type(const std::string& name) {
+        scopes_.back().insert_or_assign(name, Variable{.token = 0, .depth = -1, .is_memory = false, .is_type = true});
+    }
     void declare(const std::string& name, size_t token, int depth, bool is_memory = false) {
         scopes_.back().insert_or_assign(name, Variable{token, depth, is_memory});
     }

@@ -321,6 +321,15 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
     expect_fives(bodies);
 }
 
+TEST(NativeLanes, KnowWhatHasTwoNamesOrSharesOne) {
+    const std::string bodies[] = {
+        "vec3 v = vec3(float(x), 1, 5);\nv.zyx = v;\nr = uint(v.x);",
+        "vec3 v = vec3(float(x), 1, 5);\nif (i < 20u) v.zyx = v;\nr = uint(v.x);",
+        "Named Named = Named(x + 5u, 2u);\nr = Named.offset;",
+    };
+    expect_fives(bodies);
+}
+
 TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
     const TestFolder folder;
     const auto compiler = folder.write(
