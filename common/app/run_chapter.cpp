@@ -108,7 +108,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
     if (build.backend == Backend::native) {
         const auto [count, why_not_more] = build.renderer->tracer().paths_at_once();
-        std::cout << "at once        " << count << (count == 1 ? " path" : " paths") << " on each core"
+        std::cout << "each core      traces " << count << (count == 1 ? " path" : " paths") << " at a time"
                   << (why_not_more.empty() ? "" : ": " + why_not_more) << std::endl;
     }
 }

@@ -136,10 +136,10 @@ std::string safety_limit_text(const Scene& scene) {
     const double albedo = largest_albedo(scene);
     char text[160];
     if (albedo < 1)
-        std::snprintf(text, sizeof text, "unlimited; beyond %u bounces there is at most %.0e of the brightest emission",
+        std::snprintf(text, sizeof text, "up to %u bounces; all light of more is below %.0e of the brightest emission",
                       safety_limit, std::max(std::pow(albedo, safety_limit + 1) / (1 - albedo), 1e-300));
     else
-        std::snprintf(text, sizeof text, "unlimited but for %u bounces; surfaces that absorb nothing leave no bound for the rest",
+        std::snprintf(text, sizeof text, "up to %u bounces; a surface absorbs nothing, so light of more bounces may be missing",
                       safety_limit);
     return text;
 }

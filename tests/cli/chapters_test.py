@@ -117,7 +117,7 @@ class ChapterOptions(ProgramTest):
 
     def test_the_limit_of_unlimited_paths_is_told(self):
         program = BINARIES / CHAPTERS[4]
-        self.assertRegex(self.render("quad.json", *TINY, program=program), r"beyond 10000 bounces .* at most \de-\d+")
+        self.assertRegex(self.render("quad.json", *TINY, program=program), r"up to 10000 bounces; .* below \de-\d+")
         self.assertNotIn("bounces", self.render("quad.json", *TINY, "--max-path-length=3", program=program))
 
 

@@ -127,9 +127,9 @@ class LanesTest(CopiedLab, ProgramTest):
     def test_one_variable_turns_lanes_off(self):
         if " avx2 " not in Path("/proc/cpuinfo").read_text(encoding="utf-8"):
             self.skipTest("the CPU lacks AVX2")
-        for how, arguments, environment in (("8 paths on each core", [], {}), ("1 path on each core: LAB_LANES=0", [], {"LAB_LANES": "0"}),
-                                            ("1 path on each core: --sanitize", ["--sanitize"], {})):
-            self.assertIn(f"\nat once        {how}\n", self.render(*arguments, **environment).stdout)
+        for how, arguments, environment in (("8 paths at a time", [], {}), ("1 path at a time: LAB_LANES=0", [], {"LAB_LANES": "0"}),
+                                            ("1 path at a time: --sanitize", ["--sanitize"], {})):
+            self.assertIn(f"\neach core      traces {how}\n", self.render(*arguments, **environment).stdout)
 
 
 class DebugTest(CopiedLab, ProgramTest):
