@@ -29,8 +29,9 @@ class SourceFiles {
 // Throws a UserError "<file>:<line>: <reason>"; lines count from 1.
 [[noreturn]] void fail_at_line(const std::string& file, size_t line, const std::string& reason);
 
-// The text of an .obj or .mtl file as tinyobjloader should see it, with the same numbers of lines: without a byte order mark, NULs
-// at its end, comments behind faces, and slashes behind a corner's last index; a line that ends with \ is joined with the next.
+// The text of an .obj or .mtl file as tinyobjloader should see it, with the same numbers of lines: without a byte order mark,
+// NULs at its end, comments behind faces, and slashes behind a corner's last index; a line that ends with \ is joined with the
+// next.
 std::string clean_text(std::string text);
 
 // Removes and returns the first line of the text. Lines end with \n, \r\n or \r.
