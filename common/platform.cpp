@@ -84,7 +84,6 @@ void remove_interrupt_handler() {
     handle_ending_signals(SIG_DFL);
 #ifndef _WIN32
     alarm(0);
-    if (std::signal(SIGHUP, SIG_DFL) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGALRM, SIG_DFL);
     if (interrupted == SIGALRM) interrupted = 0;
 #endif
