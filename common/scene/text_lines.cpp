@@ -39,7 +39,7 @@ std::string cleaned_face(std::string_view line) {
 }  // namespace
 
 std::string clean_text(std::string text) {
-    text.resize(text.find_last_not_of('\0') + 1);
+    text.resize(text.find_last_not_of(std::string_view("\0\r\n", 3)) + 1);
     std::string_view rest = text;
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     std::string cleaned, joined;

@@ -76,7 +76,7 @@ TEST_F(MeshFile, TextMayHaveMarksCommentsAndJoinedLines) {
     const Scene plain = load(square + "f 1 2 3 4\n");
     for (const std::string face : {"f 1// 2// 3// 4//", "f 1/ 2/ 3/ 4/ ", "f 1 2 3 4 # the front", "f 1 2 3 4#2",
                                    "\tf 1 2 \\\n  3\\\r\n 4", "f 1 2 3 4\n# end\n\\"}) {
-        const Scene scene = load("\xEF\xBB\xBF" + square + face + std::string("\n\0\0", 3));
+        const Scene scene = load("\xEF\xBB\xBF" + square + face + std::string("\n\0\0\n", 4));
         EXPECT_EQ(scene.positions, plain.positions) << face;
         EXPECT_EQ(scene.triangles, plain.triangles) << face;
         EXPECT_TRUE(scene.normals.empty()) << face;
