@@ -200,6 +200,19 @@ class ReportNumbersTest(unittest.TestCase):
                     found, trials, _ = self.share_called_biased(runs, stated, 0.02, level)
                     self.assertAlmostEqual(found / trials, numbers.POWER, delta=0.006)
 
+    def test_what_two_runs_detect_among_thousands_of_tiles(self):
+        """For the largest of these numbers, SciPy's function alone does not return."""
+        for comparisons in (1, 30, 1000, 1e5, 1e8):
+            with self.subTest(comparisons=comparisons):
+                level = numbers.FALSE_ALARMS / comparisons
+                shift = numbers.detectable_shift(level, 1)
+                # With one degree of freedom, the estimate is the size of a normal number: by trapezoids over it.
+                size = np.linspace(0, 6, 200001)
+                threshold = numbers.two_sided(1 - level, 1)
+                found = np.vectorize(math.erfc, otypes=[float])((threshold * size - shift) / math.sqrt(2)) / 2
+                density = math.sqrt(2 / math.pi) * np.exp(-size**2 / 2)
+                self.assertAlmostEqual(np.trapz(found * density, size), numbers.POWER, delta=1e-4)
+
     def test_no_level_is_exceeded_where_the_reference_is_noisy(self):
         for runs in (2, 4, 12):
             for part in (0.1, 1.0, 5.0):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from project import has_low_discrepancy
-from scipy.special import nctdtrinc, stdtrit
+from scipy.special import chdtri, nctdtrinc, stdtrit
 
 CONFIDENCE = 0.95
 FALSE_ALARMS = 0.01  # probability that an unbiased report calls anything biased
@@ -19,6 +19,7 @@ TARGET_ERROR = 0.01  # for the time to reach it; the root of rel_mse
 SLOPE_ROWS = 6  # the last ones: fixed costs dominate the first
 KNOWN = 1e6  # degrees of freedom of an error that is known, not estimated
 ROUNDING = 1e-5  # of a mean: other programs sum in a different order
+FAR = 1000  # standard errors: SciPy's time for nctdtrinc() grows with them, beyond any limit
 
 
 # ---------------------------------------------------------------------------------------------- numbers as text
@@ -47,6 +48,14 @@ def with_range(values):
 def two_sided(confidence, freedom):
     """The t such that Student's distribution lies between -t and t with this probability."""
     return -stdtrit(freedom, (1 - confidence) / 2)
+
+
+def detectable_shift(level, freedom):
+    """The shift, in standard errors, of which a two-sided test finds the share POWER."""
+    threshold = two_sided(1 - level, freedom)
+    if threshold > FAR:  # there, it only matters by how much the standard error is overestimated
+        return threshold * math.sqrt(chdtri(freedom, 1 - POWER) / freedom)
+    return nctdtrinc(freedom, 1 - POWER, threshold)
 
 
 def half_width(parts, factor=lambda freedom: two_sided(CONFIDENCE, freedom)):
@@ -211,7 +220,7 @@ def biases(runs, reference, comparisons):
     parts = [(counts @ (means - mean) ** 2 / freedom / samples / scale**2, freedom),
              (np.array(reference["variance"]) / scale**2, reference["freedom"]), (ROUNDING**2, KNOWN)]
     columns = {"value": values, "half_width": half_width(parts),
-               "detectable": half_width(parts, lambda nu: nctdtrinc(nu, 1 - POWER, two_sided(1 - level, nu))),
+               "detectable": half_width(parts, lambda nu: detectable_shift(level, nu)),
                "is_biased": np.abs(values) > half_width(parts, lambda nu: two_sided(1 - level, nu))}
     return [dict(zip(columns, row)) for row in zip(*(column.tolist() for column in columns.values()))]
 
