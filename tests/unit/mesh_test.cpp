@@ -202,7 +202,7 @@ TEST_F(MeshFile, DamagedMeshesNameFileAndLine) {
         {"vt 0 -1e7\nf 1 2 3", "2^23"},
         {"# no face", "no faces"},
         {"l 1 2 3", "no faces"},
-        {std::string("f 1 2 3\0", 8), "binary"},
+        {std::string("f 1\0 2 3", 8), "binary"},
     };
     for (const auto& [lines, part] : cases)
         EXPECT_PRED_FORMAT2(IsSubstring, part, user_error([&, line = lines] { load(corners_of_a_square + line + "\n"); }))
