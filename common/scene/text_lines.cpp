@@ -39,7 +39,9 @@ std::string cleaned_face(std::string_view line) {
 }  // namespace
 
 std::string clean_text(std::string text) {
-    text.resize(text.find_last_not_of(std::string_view("\0\r\n", 3)) + 1);
+    // ZBrush writes NULs behind the last line. A NUL within a line means a binary file, which readers refuse.
+    const size_t end = text.find_last_not_of(std::string_view("\0\r\n", 3)) + 1, line_end = text.find_first_of("\r\n", end);
+    text.resize(line_end == std::string::npos ? end : line_end);
     std::string_view rest = text;
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     std::string cleaned, joined;

@@ -165,10 +165,9 @@ int run(const Options& options) {
     record["seconds_per_run"] = options.seconds;
     record["scenes"] = describe_shipped_scenes(device);
     std::vector<Backend> backends;
-    std::copy_if(std::begin(all_backends), std::end(all_backends), std::back_inserter(backends),
-                 [&](Backend backend) {
-                     return description.supports(backend) && (backend != Backend::native || description.kind == "CPU");
-                 });
+    std::copy_if(std::begin(all_backends), std::end(all_backends), std::back_inserter(backends), [&](Backend backend) {
+        return description.supports(backend) && (backend != Backend::native || description.kind == "CPU");
+    });
     for (const Backend backend : backends)
         if (backend != Backend::native)  // which has no SPIR-V to count
             record["features"].push_back(measure_features(device, backend, options));
