@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <map>
 
 #include "files/project_folder.h"
@@ -102,7 +103,10 @@ class PathBuilder {
     void add_light_sample(const RecordedEvent& event) {
         site_ = vertex_at(event.origin);
         if (site_ < 0) return;
-        site().light_samples.push_back({.point = event.origin + event.end * event.direction, .is_visible = event.is_hit == 0});
+        LightSample light{.direction = glm::normalize(event.direction), .point = {}, .is_visible = event.is_hit == 0};
+        constexpr float no_limit = std::numeric_limits<float>::max();  // the shaders' NO_LIMIT
+        if (event.end < no_limit) light.point = event.origin + event.end * event.direction;
+        site().light_samples.push_back(light);
         is_light_sampled_ = true;
     }
 

@@ -8,9 +8,10 @@
 
 namespace lab {
 
-// A point on a light that a shadow ray was sent to.
+// What a shadow ray was sent to.
 struct LightSample {
-    vec3 point;
+    vec3 direction;             // unit length
+    std::optional<vec3> point;  // on a light, or null: the sky
     bool is_visible = false;
     vec3 radiance{0};  // contribution, throughput included
 };

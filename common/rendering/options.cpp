@@ -1,6 +1,7 @@
 #include "rendering/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <sstream>
 
@@ -152,12 +153,26 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
 // Finds a scene by its path or by its name in assets/scenes.
 std::filesystem::path find_scene(const std::string& name) {
     std::error_code ignored;  // names that the file system refuses are reported on reading
-    if (std::filesystem::exists(name, ignored)) return name;
-    const auto shipped = project_folder() / "assets" / "scenes" / (name + ".json");
-    return std::filesystem::exists(shipped, ignored) ? shipped : std::filesystem::path(name);
+    const std::filesystem::path file = name;
+    if (file.has_extension() || file.has_parent_path() || std::filesystem::exists(file, ignored)) return file;
+    std::string names;
+    for (const auto& shipped : shipped_scenes()) {
+        if (shipped.stem() == name) return shipped;
+        names += (names.empty() ? "" : ", ") + shipped.stem().string();
+    }
+    throw UserError(name + ": there is no such scene: name a .json or .obj file, or one of " + names);
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> shipped_scenes() {
+    std::vector<std::filesystem::path> scenes;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(project_folder() / "assets" / "scenes", ignored))
+        if (entry.path().extension() == ".json") scenes.push_back(entry.path());
+    std::sort(scenes.begin(), scenes.end());
+    return scenes;
+}
 
 bool needs_no_window(const Options& options) {
     return !options.run.report.empty() || !options.run.reference.empty() || options.run.target_error || options.run.time_limit ||

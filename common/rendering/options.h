@@ -19,6 +19,10 @@ struct View {
     DisplayTransform display;
     std::string observer = {};
 };
+
+// The scene files in assets/scenes, sorted by name; empty without that folder.
+std::vector<std::filesystem::path> shipped_scenes();
+
 const std::vector<View>& views();
 
 // Whether to open a window; automatic: if there is a terminal and a display.

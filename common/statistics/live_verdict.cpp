@@ -169,9 +169,8 @@ std::string to_text(const Verdict& verdict) {
                        interval_text(differences[2]);
     const uint32_t off = verdict.bright_tiles + verdict.dark_tiles;
     if (off > 0)
-        text += "; too bright in " + std::to_string(verdict.bright_tiles) + " (red), too dark in " +
-                std::to_string(verdict.dark_tiles) + " (blue) of " + std::to_string(verdict.tiles) + " tiles of " +
-                std::to_string(verdict.tile_size) + " pixels";
+        text += "; of " + std::to_string(verdict.tiles) + " tiles of " + std::to_string(verdict.tile_size) + " pixels, " +
+                std::to_string(verdict.bright_tiles) + " are too bright and " + std::to_string(verdict.dark_tiles) + " too dark";
     return text;
 }
 

@@ -32,7 +32,7 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
     const Session& second = comparison.second();
     const auto row = [](const char* side, const Session& session) {
         const auto error = session.relative_error();
-        ImGui::TextWrapped("%s %.6g samples per pixel in %s, relative error %s", side, session.samples(),
+        ImGui::TextWrapped("%s %.6g samples per pixel in %s, noise %s", side, session.samples(),
                            duration_text(session.seconds()).c_str(),
                            error ? (short_number(100 * *error) + " %").c_str() : "not known yet");
     };

@@ -12,6 +12,7 @@
 #include "rendering/numbers_text.h"
 #include "rendering/render_job.h"
 #include "rendering/settings.h"
+#include "scene/features.h"
 
 namespace lab {
 namespace {
@@ -72,10 +73,10 @@ void draw_progress(const Session& session, double frames_per_second) {
                        short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
     constexpr double wanted = 0.01;
     if (const auto error = session.relative_error(); error && *error > wanted)
-        ImGui::TextWrapped("relative error %.3g %%, 1 %% in %s", 100 * *error,
+        ImGui::TextWrapped("noise %.3g %%, 1 %% in %s", 100 * *error,
                            duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
     else if (error)
-        ImGui::Text("relative error %.2g %%", 100 * *error);
+        ImGui::Text("noise %.2g %%", 100 * *error);
     else
         ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves" : "error not known yet");
     if (session.is_building()) ImGui::TextUnformatted("building ...");
@@ -118,13 +119,6 @@ void draw_picture(const Session& session, Options& options) {
 }
 
 }  // namespace
-
-Controls::Controls() {
-    std::error_code ignored;  // without the folder there is nothing to choose from
-    for (const auto& entry : std::filesystem::directory_iterator(project_folder() / "assets" / "scenes", ignored))
-        if (entry.path().extension() == ".json") scenes_.push_back(entry.path());
-    std::sort(scenes_.begin(), scenes_.end());
-}
 
 int Controls::width() const { return static_cast<int>(std::ceil(panel_width() * ImGui::GetIO().DisplayFramebufferScale.x)); }
 
@@ -188,7 +182,14 @@ void Controls::draw_scene(Session& session, Options& options) {
     vec3 background = session.background();
     if (ImGui::ColorEdit3("background radiance", &background.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR))
         options.light.background = glm::max(background, vec3(0));
-    ImGui::Checkbox("specular lobes (Ks)", &options.scene.specular);
+    // The file's own lobes cannot be switched off.
+    const Scene& scene = *session.build().job.scene;
+    const bool are_of_file = !scene.has_added_lobes && features_of(scene).specular;
+    bool has_lobes = are_of_file || options.scene.specular;
+    ImGui::BeginDisabled(are_of_file);
+    if (ImGui::Checkbox(are_of_file ? "specular lobes (Ks), of the scene" : "specular lobes (Ks)", &has_lobes))
+        options.scene.specular = has_lobes;
+    ImGui::EndDisabled();
 }
 
 void Controls::draw_paths(const Chapter& chapter, const RenderParameters& parameters, Options& options) {

@@ -11,8 +11,6 @@ namespace lab {
 
 class Controls {
   public:
-    Controls();
-
     // Call between Screen::begin_frame() and Screen::show(). `further` draws more sections of the panel.
     void draw(Session& session, CameraControl& camera_control, double frames_per_second, const std::function<void()>& further);
     int width() const;                               // in framebuffer pixels
@@ -25,8 +23,8 @@ class Controls {
     void draw_camera(Session& session, CameraControl& camera_control);
     void save(Session& session, const char* ending);
 
-    std::vector<std::filesystem::path> scenes_;  // of assets/scenes
-    std::string notice_;                         // the latest action
+    const std::vector<std::filesystem::path> scenes_ = shipped_scenes();
+    std::string notice_;  // the latest action
     vec2 seed_field_{0};
 };
 

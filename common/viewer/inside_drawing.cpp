@@ -30,16 +30,19 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
         if (const auto ends = project_segment(camera, from, to))
             list.AddLine(placement.at((*ends)[0]), placement.at((*ends)[1]), colour, width);
     };
+    const auto far_away = [&](const vec3& start, const vec3& direction) {
+        constexpr float far = 1e3f;
+        return start + far * glm::length(start - camera.position) * direction;
+    };
     const auto& vertices = path.vertices;
     for (const PathVertex& vertex : vertices)
         for (const LightSample& light : vertex.light_samples)
-            draw_line(vertex.position, light.point, light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200),
-                      1);
+            draw_line(vertex.position, light.point.value_or(far_away(vertex.position, light.direction)),
+                      light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200), 1);
     for (const PathVertex& vertex : vertices) {
         if (vertex.parent < 0) continue;  // the camera's own ray is a single point in the picture
         const vec3 start = vertices[static_cast<size_t>(vertex.parent)].position;
-        constexpr float far = 1e3f;
-        const vec3 end = vertex.is_hit ? vertex.position : start + far * glm::length(start - camera.position) * vertex.direction;
+        const vec3 end = vertex.is_hit ? vertex.position : far_away(start, vertex.direction);
         draw_line(start, end, IM_COL32(60, 200, 255, 255), 2);
     }
     for (size_t i = 0; i < vertices.size(); ++i) {

@@ -30,27 +30,30 @@ int InsidePanel::height() const {
     return static_cast<int>(17 * ImGui::GetFontSize() * ImGui::GetIO().DisplayFramebufferScale.y);
 }
 
-void InsidePanel::draw(const Session& session, const Rectangle& picture, const Rectangle& panel, double seconds) {
-    select_clicked_pixel(session, picture);
-    inspection_.update(session, seconds);
+void InsidePanel::draw(const Session& session, const Session* beside, float split, const Rectangle& picture,
+                       const Rectangle& panel, double seconds) {
+    select_clicked_pixel(session, split, picture);
+    const Session& inspected = is_beside_ && beside ? *beside : session;
+    inspection_.update(inspected, seconds);
     overlay_.draw(session, picture);
     if (hovered_) overlay_.explain(session, *hovered_);
     if (inspection_.path())
         draw_path(*inspection_.path(), inspection_.parameters().camera, inspection_.selection()->vertex, picture);
 
-    if (inspection_.selection() && panel.size.y > 0) draw_panel(panel);
+    const std::string whose = beside ? "A path of " + inspected.chapter().name : "A path";
+    if (inspection_.selection() && panel.size.y > 0) draw_panel(whose, panel);
 }
 
-void InsidePanel::draw_panel(const Rectangle& panel) {
+void InsidePanel::draw_panel(const std::string& whose, const Rectangle& panel) {
     const Placement placement(panel);
     ImGui::SetNextWindowPos({placement.corner.x, placement.corner.y});
     ImGui::SetNextWindowSize({placement.size.x, placement.size.y});
     const auto& selection = *inspection_.selection();
-    char title[80];
-    std::snprintf(title, sizeof title, "A path: sample %u of pixel (%u, %u)###path", selection.sample, selection.pixel.x,
-                  selection.pixel.y);
+    const std::string title = whose + ": sample " + std::to_string(selection.sample) + " of pixel (" +
+                              std::to_string(selection.pixel.x) + ", " + std::to_string(selection.pixel.y) + ")###path";
     bool is_open = true;
-    if (ImGui::Begin(title, &is_open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse)) {
+    if (ImGui::Begin(title.c_str(), &is_open,
+                     ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse)) {
         if (inspection_.is_building()) ImGui::TextColored(grey, "compiling the recorder ...");
         if (!inspection_.message().empty()) ImGui::TextWrapped("%s", inspection_.message().c_str());
         if (inspection_.path()) {
@@ -80,7 +83,7 @@ void InsidePanel::draw_controls(const Session& session) {
     if (!overlay_.legend().empty()) ImGui::TextWrapped("%s", overlay_.legend().c_str());
 }
 
-void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& picture) {
+void InsidePanel::select_clicked_pixel(const Session& session, float split, const Rectangle& picture) {
     const ImGuiIO& io = ImGui::GetIO();
     const glm::uvec2 size = session.build().job.parameters.image_size;
     const Placement placement(picture);
@@ -93,7 +96,10 @@ void InsidePanel::select_clicked_pixel(const Session& session, const Rectangle& 
     if (io.WantCaptureMouse || !is_inside) return;
     hovered_ = glm::min(glm::uvec2(position * glm::vec2(size)), size - 1u);
     // A drag moves the camera instead.
-    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !was_dragged_) inspection_.select(*hovered_);
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !was_dragged_) {
+        inspection_.select(*hovered_);
+        is_beside_ = position.x >= split;
+    }
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) inspection_.deselect();
 }
 
@@ -162,7 +168,8 @@ void InsidePanel::draw_vertices() {
             text_point("leaves the scene towards", vertex.direction);
         }
         for (const LightSample& light : vertex.light_samples) {
-            text_point("light sample at", light.point);
+            text_point(light.point ? "light sample at" : "light sample of the sky, towards",
+                       light.point.value_or(light.direction));
             if (light.is_visible)
                 text_colour("  visible: adds", light.radiance);
             else

@@ -66,7 +66,9 @@ class InsidePanel {
 
     // Draws over the picture, and a panel for the path of a selected pixel. Renders hemispheres for about this many seconds. Call
     // between Screen::begin_frame() and Screen::show().
-    void draw(const Session& session, const Rectangle& picture, const Rectangle& panel, double seconds);
+    // `beside` is a second render that shows the picture right of `split`, a fraction of its width, or null.
+    void draw(const Session& session, const Session* beside, float split, const Rectangle& picture, const Rectangle& panel,
+              double seconds);
     int height() const;  // of the panel, in framebuffer pixels
     // Draws a section of the controls.
     void draw_controls(const Session& session);
@@ -74,10 +76,10 @@ class InsidePanel {
     void show_next_overlay() { overlay_.show_next(); }
 
   private:
-    void select_clicked_pixel(const Session& session, const Rectangle& picture);
+    void select_clicked_pixel(const Session& session, float split, const Rectangle& picture);
     void draw_verdict(const Session& session);
     void draw_pixel(const Session& session);
-    void draw_panel(const Rectangle& panel);
+    void draw_panel(const std::string& whose, const Rectangle& panel);
     void draw_sample();
     void draw_vertices();
     void draw_hemisphere();
@@ -85,6 +87,7 @@ class InsidePanel {
     Inspection inspection_;
     TileOverlay overlay_;
     std::optional<glm::uvec2> hovered_;  // pixel
+    bool is_beside_ = false;             // whether the selected path is that of the second render
     bool was_dragged_ = false;           // since the mouse button was pressed
     HemisphereView::Pictures pictures_;
     double pictures_samples_ = -1;

@@ -52,7 +52,9 @@ bool Viewer::frame() {
     screen_.begin_frame();
     for (const auto& file : window_.dropped_files()) session_.open_scene(file);
     if (shows_controls_) {
-        inside_panel_.draw(session_, picture_rectangle(), path_rectangle(), 0.15 * budget);
+        const Session* beside = comparison_.is_active() ? &comparison_.second() : nullptr;
+        inside_panel_.draw(session_, beside, beside ? comparison_.split : 1, picture_rectangle(), path_rectangle(),
+                           0.15 * budget);
         draw_halves(comparison_, session_, picture_rectangle());
         controls_.draw(session_, camera_control_, frames_per_second_, [&] {
             inside_panel_.draw_controls(session_);

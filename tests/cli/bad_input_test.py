@@ -36,6 +36,9 @@ class SceneFiles(ProgramTest):
         self.refuse("nowhere.obj", r"nowhere\.obj")
         self.refuse("", "scene")
 
+    def test_a_misspelt_scene_lists_all(self):
+        self.refuse("cornel_box", "cornel_box: there is no such scene", "cornell_box, furnace, glass,", "torus")
+
     def test_neither_scene_nor_mesh(self):
         self.write("picture.png", b"\x89PNG")
         self.refuse("picture.png", r"picture\.png", r"\.json", r"\.obj")

@@ -26,7 +26,7 @@ struct Recorded {
 
 // Paths of `count` pixels spread over the image, with varying sample indices.
 std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
-    const GpuScene gpu_scene(test_device(), scene, settings.strategy);
+    const GpuScene gpu_scene(test_device(), scene, settings.strategy, scene.light_probe.has_value());
     const auto acceleration_structure = build_acceleration_structure(settings.backend, test_device(), gpu_scene);
     PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator, {settings.width, settings.height});
     std::vector<Recorded> paths;
@@ -113,6 +113,7 @@ TEST_P(PathRecorderOf, TellsWhereRadianceWasFound) {
             sum += vertex.radiance;
             for (const LightSample& light : vertex.light_samples) {
                 ++(light.is_visible ? visible : occluded);
+                EXPECT_TRUE(light.point);
                 EXPECT_EQ(light.radiance.g > 0, light.is_visible);
                 EXPECT_LE(light.radiance.g, vertex.radiance.g);
             }
@@ -121,6 +122,19 @@ TEST_P(PathRecorderOf, TellsWhereRadianceWasFound) {
     }
     EXPECT_EQ(visible > 20, samples_lights(GetParam()));
     EXPECT_EQ(occluded > 3, samples_lights(GetParam()));
+}
+
+TEST(PathRecorder, KnowsThatASampleOfTheSkyHasNoPoint) {
+    size_t samples = 0;
+    for (const auto& [pixel, sample, path] :
+         record_paths(load_shipped_scene("sunny.json"), settings_for(chapter_named("light_probes")), 60))
+        for (const PathVertex& vertex : path.vertices)
+            for (const LightSample& light : vertex.light_samples) {
+                ++samples;
+                EXPECT_FALSE(light.point);
+                EXPECT_NEAR(glm::length(light.direction), 1, 1e-5f);
+            }
+    EXPECT_GT(samples, 20u);
 }
 
 TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {

@@ -126,8 +126,8 @@ TEST(LiveVerdict, SaysItInOneLine) {
     verdict.tiles = 256;
     verdict.dark_tiles = 31;
     EXPECT_EQ(to_text(verdict),
-              "biased: red -14 % ± 1 %, green +1.20 % ± 0.08 %, blue +0 % ± 10 %; too bright in 0 (red), too dark "
-              "in 31 (blue) of 256 tiles of 32 pixels");
+              "biased: red -14 % ± 1 %, green +1.20 % ± 0.08 %, blue +0 % ± 10 %; of 256 tiles of 32 pixels, 0 "
+              "are too bright and 31 too dark");
 }
 
 TEST(LiveVerdict, SeesTilesThatCancelEachOther) {

@@ -172,6 +172,27 @@ TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage_all) {
     EXPECT_FALSE(session().waits);
 }
 
+TEST_F(InsideTest, AClickFollowsAPathOfTheRenderThatIsShownThere) {
+    open(options_with_reference());
+    Comparison& comparison = viewer_->comparison();
+    comparison.start(session(), chapter_named("uniform_sampling"));
+    wait_until("both", [&] { return comparison.is_active() && session().samples() >= 1 && comparison.second().samples() >= 1; });
+    const auto takes_light_samples = [&](float x) {
+        click(x, 300);
+        run_frames(1);
+        wait_until("a path", [&] { return inspection().path().has_value() && !inspection().is_building(); });
+        const auto& vertices = inspection().path()->vertices;
+        return std::any_of(vertices.begin(), vertices.end(),
+                           [](const PathVertex& vertex) { return !vertex.light_samples.empty(); });
+    };
+    EXPECT_TRUE(takes_light_samples(500));
+    EXPECT_FALSE(takes_light_samples(760));
+    EXPECT_TRUE(takes_light_samples(500));
+    click(760, 300);
+    comparison.stop();
+    wait_until("the path of the render that is left", [&] { return inspection().path().has_value(); });
+}
+
 TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
     Options options = make_options();
     options.scene.file = scenes / "glass.json";

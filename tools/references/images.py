@@ -85,8 +85,11 @@ def find_reference(word, paths):
     found = [path for path in paths if path.stem == Path(word).stem]
     if not found:
         found = [path for path in paths if Path(read_attributes(path).get("scene", "")).stem == Path(word).stem]
+    if not found and not scene_file(word).exists():
+        names = ", ".join(sorted(path.stem for path in (ROOT / "assets/scenes").glob("*.json")))
+        raise UserError(f"{word}: no such scene: name a .json or .obj file, or one of {names}")
     if not found:
-        raise UserError(f"{word}: no such scene, or it has no reference yet: ./lab reference {scene_file(word)} makes one")
+        raise UserError(f"{word}: has no reference yet: ./lab reference {scene_file(word)} makes one")
     best = max(found, key=lambda path: int(read_attributes(path).get("max_path_length", 0)))
     scene = Path(word).resolve() if is_file else scene_file(Path(read_attributes(best).get("scene", word)).stem)
     return scene, best
