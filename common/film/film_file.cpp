@@ -87,6 +87,7 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
 
 FilmFile read_film(const std::filesystem::path& file) {
     ExrFile exr = read_exr(file);
+    if (!exr.is_complete) throw UserError(file.string() + ": lacks pixels of its display window: render again");
     FilmFile film;
     for (const auto& [name, text] : texts) film.record.*text = exr.attributes[name];
     film.record.seed = number<uint32_t>(exr, "seed", file);

@@ -33,16 +33,19 @@ struct ExrFile {
     Image image;
     std::map<std::string, std::vector<float>> channels;  // each has width * height numbers
     std::map<std::string, std::string> attributes;
+    bool is_complete = true;           // whether the file has all pixels of its display window
+    bool has_other_primaries = false;  // than sRGB
 };
 
 // Largest width and height of an image, in pixels.
 inline constexpr uint32_t max_image_extent = 16384;
 
-// Reads single-part scan line files, uncompressed or RLE, ZIP or PIZ; 16-bit floats are widened.
+// Reads the display window of single-part scan line files, uncompressed or RLE, ZIP or PIZ; 16-bit floats are widened. Pixels
+// outside of the data window are 0, channels of integers are left out.
 ExrFile read_exr(const std::filesystem::path& file);
 
-// Radiance from .hdr or .exr. Negative, infinite and NaN pixels are an error.
-Image read_radiance(const std::filesystem::path& file);
+// Radiance from .hdr or .exr. Negative, infinite and NaN pixels are an error. Adds what has no effect to the notes.
+Image read_radiance(const std::filesystem::path& file, std::vector<std::string>& notes);
 
 // Colour from .png, .jpg, .bmp or .tga.
 Texture read_texture(const std::filesystem::path& file);

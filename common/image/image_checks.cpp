@@ -1,5 +1,8 @@
 #include "image/image_checks.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "error.h"
 #include "files/file.h"
 #include "image/image.h"
@@ -9,6 +12,8 @@ namespace lab {
 void fail(const std::filesystem::path& file, const std::string& reason) {
     throw UserError(printable(file.string()) + ": " + reason);
 }
+
+void fail_damaged(const std::filesystem::path& file) { fail(file, "damaged image: copy or export it again"); }
 
 void fail_truncated(const std::filesystem::path& file) { fail(file, "the file ends too early: copy or export it again"); }
 
@@ -30,6 +35,11 @@ void check_memory(const std::filesystem::path& file, uint64_t bytes, uint64_t fi
     if (bytes > memory_limit(file_size))
         fail(file, "its pixels need " + std::to_string(bytes >> 20) + " MiB, far more than a file of " +
                        std::to_string(file_size >> 10) + " KiB should: make the image smaller");
+}
+
+bool are_primaries_of_srgb(std::span<const float, 8> chromaticities) {
+    constexpr float srgb[] = {0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
+    return std::ranges::equal(chromaticities, srgb, [](float a, float b) { return std::abs(a - b) < 0.001f; });
 }
 
 }  // namespace lab

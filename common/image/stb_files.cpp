@@ -9,6 +9,7 @@
 #include "image/encoding.h"
 #include "image/image.h"
 #include "image/image_checks.h"
+#include "image/texture_file.h"
 
 namespace lab {
 
@@ -93,33 +94,6 @@ struct ByteSource {
 
 constexpr stbi_io_callbacks callbacks{ByteSource::read, ByteSource::skip, ByteSource::at_end};
 
-// stb_image up to 2.27 overruns an array if Huffman tables have more than 256 codes, and many scans of a few bytes each make it
-// traverse a large progressive image over and over (encoders make about ten scans). Walks the segments of a .jpg file (0xff,
-// marker, two bytes of length) as stb_image does.
-bool is_harmless_jpg(std::string_view jpg) {
-    constexpr size_t max_scans = 64;
-    size_t scans = 0;
-    const auto byte = [&](size_t i) { return i < jpg.size() ? static_cast<uint8_t>(jpg[i]) : 0u; };
-    size_t position = 0;
-    while ((position = jpg.find('\xff', position)) != std::string_view::npos) {
-        const uint32_t marker = byte(++position);
-        if (marker == 0xff) continue;                                                    // padding
-        if (marker == 0 || marker == 1 || (marker >= 0xd0 && marker <= 0xd9)) continue;  // no length
-        const size_t end = position + 1 + (byte(position + 1) << 8 | byte(position + 2));
-        if (marker == 0xda && ++scans > max_scans) return false;
-        if (marker == 0xc4) {
-            for (size_t table = position + 3; table < end;) {
-                uint32_t code_count = 0;
-                for (size_t length = 1; length <= 16; ++length) code_count += byte(table + length);
-                if (code_count > 256) return false;
-                table += 17 + code_count;
-            }
-        }
-        position = end;
-    }
-    return true;
-}
-
 void append(void* bytes, void* data, int size) {
     static_cast<std::string*>(bytes)->append(static_cast<const char*>(data), static_cast<size_t>(size));
 }
@@ -128,20 +102,30 @@ void check_written(int success, const std::filesystem::path& file) {
     if (!success) fail(file, "the image cannot be encoded: out of memory");
 }
 
+void mirror(Texture& texture) {
+    for (uint32_t y = 0; y < texture.height; ++y) {
+        uint8_t* row = &texture.pixels[4 * size_t{y} * texture.width];
+        for (uint32_t left = 0, right = texture.width - 1; left < right; ++left, --right)
+            std::swap_ranges(row + 4 * left, row + 4 * left + 4, row + 4 * right);
+    }
+}
+
 }  // namespace
 
 Texture read_texture(const std::filesystem::path& file) {
-    const std::string bytes = read_file(file, max_image_file_bytes);
-    if (bytes.starts_with('\xff') && !is_harmless_jpg(bytes)) fail(file, "damaged image: copy or export it again");
+    const TextureFile prepared = prepare_texture(file, read_file(file, max_image_file_bytes));
+    const std::string& bytes = prepared.bytes;
+    if (prepared.format.empty()) fail(file, "not a texture: it must be a .png, .jpg, .bmp or .tga file");
     int width = 0, height = 0, channels = 0;
     ByteSource source{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &source, &width, &height, &channels))
-        fail(file, "not a texture: it must be a .png, .jpg, .bmp or .tga file");
-    check_image_size(file, width, height);
+        fail(file, "this kind of " + prepared.format + " is not supported, or it is damaged: export it again as an RGB .png");
+    const int64_t rows = prepared.format == ".bmp" ? std::abs(int64_t{height}) : height;  // negative: from the top
+    check_image_size(file, width, rows);
     // A pixel takes at least one deflated bit in .png, and 1/64 bit in .jpg (one bit per 8 x 8 block): refuse more before
     // allocating.
-    const uint64_t max_pixels_a_byte = bytes.starts_with("\x89PNG") ? 8 * max_deflate_ratio : 8 * 64;
-    if (static_cast<uint64_t>(width) * height > max_pixels_a_byte * bytes.size()) fail_truncated(file);
+    const uint64_t max_pixels_a_byte = prepared.format == ".png" ? 8 * max_deflate_ratio : 8 * 64;
+    if (static_cast<uint64_t>(width * rows) > max_pixels_a_byte * bytes.size()) fail_truncated(file);
 
     source = {bytes};
     stb_memory = {.largest_block = memory_limit(bytes.size())};
@@ -149,9 +133,12 @@ Texture read_texture(const std::filesystem::path& file) {
         stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 4), stbi_image_free);
     if (stb_memory.exceeded) fail(file, "needs far more memory than a file of its size should: make the image smaller");
     if (source.exhausted) fail_truncated(file);
-    if (!pixels) fail(file, "damaged image: copy or export it again");
+    if (!pixels) fail_damaged(file);
     Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
     texture.pixels.assign(pixels.get(), pixels.get() + 4 * static_cast<size_t>(width) * height);
+    if (prepared.is_mirrored) mirror(texture);
+    if (prepared.without_alpha)
+        for (size_t i = 3; i < texture.pixels.size(); i += 4) texture.pixels[i] = 255;
     return texture;
 }
 

@@ -187,7 +187,11 @@ class Assembly {
     int add_texture(const std::filesystem::path& file) {
         const auto [texture, is_new] = textures_.try_emplace(file.lexically_normal(), static_cast<int>(scene_.textures.size()));
         if (is_new) {
-            scene_.textures.push_back(read_texture(file));
+            const std::vector<uint8_t>& pixels = scene_.textures.emplace_back(read_texture(file)).pixels;
+            bool is_opaque = true;
+            for (size_t i = 3; i < pixels.size(); i += 4) is_opaque &= pixels[i] == 255;
+            if (!is_opaque)
+                scene_.warnings.push_back(printable(file.string()) + ": its alpha has no effect: d makes a material transparent");
             sources_.read(file, max_image_file_bytes);  // for the hash
         }
         return texture->second;

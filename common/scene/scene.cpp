@@ -100,7 +100,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
 
     if (!description.light_probe.empty()) {
-        load([&] { scene.light_probe = read_radiance(description.light_probe); });
+        load([&] { scene.light_probe = read_radiance(description.light_probe, scene.warnings); });
         sources.read(description.light_probe, max_image_file_bytes);  // for the hash
     }
     if (is_bare_mesh && !features_of(scene).area_lights) {

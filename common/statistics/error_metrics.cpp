@@ -78,6 +78,7 @@ Reference::Part Reference::part(size_t channel, glm::uvec2 corner, glm::uvec2 si
 
 Reference read_reference(const std::filesystem::path& file) {
     ExrFile exr = read_exr(file);
+    if (!exr.is_complete) throw UserError(file.string() + ": lacks pixels of its display window: it cannot serve as a reference");
     Reference reference{std::move(exr.image), std::nullopt, std::move(exr.attributes)};
     if (!std::all_of(reference.mean.pixels.begin(), reference.mean.pixels.end(),
                      [](float value) { return std::isfinite(value); }))

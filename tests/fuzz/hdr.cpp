@@ -4,6 +4,9 @@ namespace lab {
 
 const char* const hostile_file_name = "input.hdr";
 
-void read_hostile_file(const std::filesystem::path& file) { read_radiance(file); }
+void read_hostile_file(const std::filesystem::path& file) {
+    std::vector<std::string> notes;
+    read_radiance(file, notes);
+}
 
 }  // namespace lab

@@ -26,7 +26,9 @@ TEST(HostileImages, AllocateNoMoreThanTheirSizeExplains) {
     const TestFolder folder;
     // Run-length encoding keeps a file small: 17 MB are enough for 16384 x 16384 pixels, which take 3 GiB.
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n";
-    EXPECT_USER_ERROR(read_radiance(folder.write("a.hdr", header + std::string(17 << 20, '\0'))), "its pixels need 3072 MiB");
+    std::vector<std::string> notes;
+    EXPECT_USER_ERROR(read_radiance(folder.write("a.hdr", header + std::string(17 << 20, '\0')), notes),
+                      "its pixels need 3072 MiB");
 
     write_exr(folder / "small.exr", {{1, 1, {1, 1, 1}}, {}, {}});
     std::string exr = file_bytes(folder / "small.exr");
