@@ -4,6 +4,7 @@ import json
 import os
 import platform
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -187,9 +188,13 @@ def read_json(file):
 
 
 def write_bytes(file, content):
-    """Writes a file and creates its folder. The file is complete at all times."""
+    """Writes a file and creates its folder. The file is complete at all times, and keeps its mode; symbolic links are followed."""
+    file = file.resolve()
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_name(file.name + ".unfinished")
+    unfinished.touch()
+    if file.exists():
+        shutil.copymode(file, unfinished)
     unfinished.write_bytes(content)
     os.replace(unfinished, file)
 

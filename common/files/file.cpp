@@ -15,6 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What a write to this name replaces: a symbolic link stays one, and the file that it leads to is written.
+fs::path target_of(const fs::path& file) {
+    constexpr int max_links = 40;  // as in Linux
+    const auto fail = [&](const char* reason) { throw UserError(file.string() + ": cannot be written: " + reason); };
+    std::error_code error;
+    fs::path target = file;
+    for (int links = 0; fs::is_symlink(target, error); ++links) {
+        if (links == max_links) fail("too many symbolic links");
+        target = target.parent_path() / fs::read_symlink(target, error);
+    }
+    const fs::file_status status = fs::status(target, error);
+    if (fs::exists(status) && !fs::is_regular_file(status)) fail("not a regular file");
+    return target;
+}
+
 // In the target's folder, because renaming is atomic only within a file system. The process id separates two programs that write
 // the same file.
 fs::path temporary_name(const fs::path& file) {
@@ -26,10 +41,14 @@ fs::path temporary_name(const fs::path& file) {
     return file.parent_path() / name;
 }
 
-// Whether all bytes were written: a full disk may show only on flush or close.
-bool write_bytes(const fs::path& file, std::string_view bytes) {
+// Whether all bytes were written: a full disk may show only on flush or close. The file gets the mode of the one that it will
+// replace, if there is one.
+bool write_bytes(const fs::path& file, const fs::path& replaced, std::string_view bytes) {
     std::FILE* stream = std::fopen(file.string().c_str(), "wb");
     if (!stream) return false;
+    std::error_code ignored;
+    const fs::file_status status = fs::status(replaced, ignored);
+    if (fs::exists(status)) fs::permissions(file, status.permissions(), ignored);
     const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
     // The contents must reach the disk before the rename, or a power failure could leave an empty file.
     const bool flushed = std::fflush(stream) == 0 && write_to_disk(stream);
@@ -64,12 +83,12 @@ std::string read_file(const fs::path& file, uint64_t max_bytes) {
 }
 
 void write_file(const fs::path& file, std::string_view bytes) {
-    const fs::path temporary = temporary_name(file);
+    const fs::path target = target_of(file), temporary = temporary_name(target);
     std::error_code error;
-    if (!write_bytes(temporary, bytes))
+    if (!write_bytes(temporary, target, bytes))
         error = {errno, std::generic_category()};
     else
-        rename_file(temporary, file, error);
+        rename_file(temporary, target, error);
     if (!error) return;
     const std::string reason = error.message();
     fs::remove(temporary, error);
@@ -89,8 +108,8 @@ void check_writable(const fs::path& file, const std::vector<std::string>& ending
         fs::create_directories(file.parent_path(), error);
         if (error) throw UserError(name + ": its folder cannot be created: " + error.message());
     }
-    const fs::path temporary = temporary_name(file);
-    const bool writable = write_bytes(temporary, "");
+    const fs::path target = target_of(file), temporary = temporary_name(target);
+    const bool writable = write_bytes(temporary, target, "");
     const std::string reason = std::strerror(errno);
     fs::remove(temporary, error);
     if (!writable) throw UserError(name + ": cannot be written: " + reason);

@@ -16,7 +16,8 @@ std::string read_file(const std::filesystem::path& file, uint64_t max_bytes);
 // Largest single allocation, in bytes, while reading a file of this size: a small hostile file must not exhaust memory.
 constexpr uint64_t memory_limit(uint64_t file_size) { return 16 * file_size + (uint64_t{1} << 30); }
 
-// Writes a temporary file and renames it. If any step fails, throws UserError and leaves an existing file untouched.
+// Writes a temporary file and renames it. If any step fails, throws UserError and leaves an existing file untouched, whose mode
+// is kept. Symbolic links are followed.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 // Creates the folders of a file to be written later. Throws UserError if the file has none of the endings or cannot be written.

@@ -49,6 +49,32 @@ TEST(WriteFile, FullDiskKeepsTheOlderFile) {
     EXPECT_EQ(folder.file_count(), 1u) << "a temporary file was left behind";
 }
 
+TEST(WriteFile, FollowsLinksAndKeepsTheMode) {
+    const TestFolder folder, elsewhere;
+    namespace fs = std::filesystem;
+    constexpr auto mode = fs::perms::owner_read | fs::perms::owner_write;
+    fs::permissions(elsewhere.write("a.png", "older contents"), mode);
+    fs::create_symlink(elsewhere / "a.png", folder / "second.png");
+    fs::create_symlink("second.png", folder / "first.png");
+    check_writable(folder / "first.png");
+    EXPECT_EQ(file_bytes(elsewhere / "a.png"), "older contents");
+    write_file(folder / "first.png", "contents");
+    EXPECT_TRUE(fs::is_symlink(folder / "first.png") && fs::is_symlink(folder / "second.png"));
+    EXPECT_EQ(file_bytes(elsewhere / "a.png"), "contents");
+    EXPECT_EQ(fs::status(elsewhere / "a.png").permissions(), mode);
+
+    fs::create_symlink("new.png", folder / "dangling.png");
+    write_file(folder / "dangling.png", "contents");
+    EXPECT_EQ(file_bytes(folder / "new.png"), "contents");
+    fs::create_symlink("loop.png", folder / "loop.png");
+    EXPECT_USER_ERROR(check_writable(folder / "loop.png"), "too many symbolic links");
+    mkfifo((folder / "pipe").c_str(), 0600);
+    fs::create_symlink("pipe", folder / "pipe.png");
+    for (const char* name : {"pipe", "pipe.png"}) EXPECT_USER_ERROR(write_file(folder / name, "contents"), "not a regular file");
+    EXPECT_EQ(folder.file_count(), 7u) << "a temporary file was left behind";
+    EXPECT_EQ(elsewhere.file_count(), 1u) << "a temporary file was left behind";
+}
+
 TEST(CheckWritable, RefusesAFolderOfTheSystem) { EXPECT_USER_ERROR(check_writable("/proc/a.png"), "cannot be written"); }
 
 // Reading one would block forever.
