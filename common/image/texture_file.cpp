@@ -1,9 +1,10 @@
 #include "image/texture_file.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
+#include <initializer_list>
 #include <string_view>
 #include <utility>
 
@@ -94,59 +95,84 @@ void check_jpg(const std::filesystem::path& file, std::string_view bytes) {
         fail_unsupported(file, "a CMYK .jpg without Adobe's marker");
 }
 
-// stb_image misreads the palettes of OS/2, palettes that end early, and the masks of some headers. All kinds become one: its
-// header is Windows' version 4, its palette has 256 colours, those that were missing are black.
-void prepare_bmp(const std::filesystem::path& file, std::string& bytes) {
-    constexpr uint32_t uncompressed = 0, with_masks = 3, offset_of_masks = 54;
-    const Numbers numbers(bytes);
-    const size_t pixels = numbers.little32(10), header = numbers.little32(14), end_of_header = 14 + header;
-    const bool is_short = header == 12;  // of OS/2
-    if (header != 12 && header != 16 && header != 40 && header != 52 && header != 56 && header != 64 && header != 108 &&
-        header != 124)
-        fail_unsupported(file, "a .bmp with a header of " + std::to_string(header) + " bytes");
-    const uint32_t bits = is_short ? numbers.little16(24) : numbers.little16(28);
-    const uint32_t compression = header >= 40 ? numbers.little32(30) : uncompressed;
-    if (compression != uncompressed && (compression != with_masks || header == 64 || (bits != 16 && bits != 32)))
-        fail_unsupported(file, "a compressed .bmp");
-    if (bits != 1 && bits != 4 && bits != 8 && bits != 16 && bits != 24 && bits != 32)
-        fail_unsupported(file, "a .bmp of " + std::to_string(bits) + " bits");
+// The fields of a .bmp header. It has 12 bytes in OS/2 1, 16 or 64 in OS/2 2, and others in Windows.
+struct BmpHeader {
+    explicit BmpHeader(const Numbers& numbers)
+        : pixels(numbers.little32(10)),
+          size(numbers.little32(14)),
+          width(is_short() ? numbers.little16(18) : numbers.little32(18)),
+          height(is_short() ? numbers.little16(20) : numbers.little32(22)),
+          bits(is_short() ? numbers.little16(24) : numbers.little16(28)),
+          compression(size >= 40 ? numbers.little32(30) : uncompressed),
+          colours(size >= 40 ? numbers.little32(46) : 0) {}
 
-    const bool has_masks = compression == with_masks;
-    const size_t end_of_masks = header == 40 && has_masks ? offset_of_masks + 12 : end_of_header;
-    if (pixels < end_of_masks) fail_damaged(file);
-    std::string masks, palette;
-    if (has_masks) {
-        for (uint32_t i = 0; i < 4; ++i) {
-            const bool is_alpha = i == 3;
-            const uint32_t mask = is_alpha && header < 56 ? 0 : numbers.little32(offset_of_masks + 4 * i);
-            if (std::popcount(mask) > 8) fail_unsupported(file, "a .bmp with more than 8 bits a channel");
-            if (mask == 0 && !is_alpha) fail_unsupported(file, "a .bmp without red, green or blue");
-            masks += little_endian(mask);
+    bool is_short() const { return size == 12; }
+    size_t end() const { return 14 + size_t{size}; }
+
+    static constexpr uint32_t uncompressed = 0, with_masks = 3, offset_of_masks = 54;
+    uint32_t pixels;  // their offset
+    uint32_t size, width, height, bits, compression;
+    uint32_t colours;  // in the palette; 0: as many as there are indices
+};
+
+// The masks of red, green, blue and alpha. Those of a header of 40 bytes lie behind it, which is where they are in longer ones.
+std::string bmp_masks(const std::filesystem::path& file, const BmpHeader& header, const Numbers& numbers) {
+    std::array<uint32_t, 4> masks{};
+    if (header.compression == BmpHeader::with_masks) {
+        const size_t count = header.size >= 56 ? 4 : 3;
+        for (size_t i = 0; i < count; ++i) masks[i] = numbers.little32(BmpHeader::offset_of_masks + 4 * i);
+        for (size_t i = 0; i < count; ++i) {
+            if (std::popcount(masks[i]) > 8) fail_unsupported(file, "a .bmp with more than 8 bits a channel");
+            if (masks[i] == 0 && i < 3) fail_unsupported(file, "a .bmp without red, green or blue");
         }
-    } else if (bits == 16) {
-        masks = little_endian(0x7c00) + little_endian(0x3e0) + little_endian(0x1f) + little_endian(0);
-    } else if (bits == 32) {
-        masks = little_endian(0xff0000) + little_endian(0xff00) + little_endian(0xff) + little_endian(0);
+    } else if (header.bits == 16) {
+        masks = {0x7c00, 0x3e0, 0x1f};
+    } else if (header.bits == 32) {
+        masks = {0xff0000, 0xff00, 0xff};
     }
-    masks.resize(16);
-    if (bits <= 8) {
-        const size_t size = is_short ? 3 : 4, named = header >= 40 ? numbers.little32(46) : 0;
-        const size_t stored = std::min({named > 0 ? named : size_t{1} << bits, (pixels - end_of_header) / size, size_t{256}});
-        for (size_t i = 0; i < stored; ++i) {
-            palette += part(bytes, end_of_header + i * size, 3);
-            palette.resize(4 * (i + 1));
-        }
-        palette.resize(4 * 256);
+    std::string bytes;
+    for (const uint32_t mask : masks) bytes += little_endian(mask);
+    return bytes;
+}
+
+// 256 colours of four bytes; black behind the end of those in the file.
+std::string bmp_palette(const BmpHeader& header, std::string_view bytes) {
+    const size_t size = header.is_short() ? 3 : 4, used = header.colours > 0 ? header.colours : size_t{1} << header.bits;
+    const size_t count = std::min({used, (header.pixels - header.end()) / size, size_t{256}});
+    std::string palette;
+    for (size_t i = 0; i < count; ++i) {
+        palette += part(bytes, header.end() + i * size, 3);
+        palette.resize(4 * (i + 1));
     }
-    constexpr uint32_t headers = 14 + 108;
+    palette.resize(4 * 256);
+    return palette;
+}
+
+// stb_image misreads the palettes of OS/2, palettes that end early, and the masks of some headers. All kinds become one: with
+// the header of Windows' version 4, masks in it, and a whole palette.
+void prepare_bmp(const std::filesystem::path& file, std::string& bytes) {
+    const Numbers numbers(bytes);
+    const BmpHeader header(numbers);
+    const auto is_among = [](uint32_t number, std::initializer_list<uint32_t> known) {
+        return std::ranges::count(known, number) > 0;
+    };
+    if (!is_among(header.size, {12, 16, 40, 52, 56, 64, 108, 124}))
+        fail_unsupported(file, "a .bmp with a header of " + std::to_string(header.size) + " bytes");
+    const bool has_masks = header.compression == BmpHeader::with_masks && header.size != 64 && is_among(header.bits, {16, 32});
+    if (header.compression != BmpHeader::uncompressed && !has_masks) fail_unsupported(file, "a compressed .bmp");
+    if (!is_among(header.bits, {1, 4, 8, 16, 24, 32}))
+        fail_unsupported(file, "a .bmp of " + std::to_string(header.bits) + " bits");
+    if (header.pixels < header.end() + (header.size == 40 && has_masks ? 12 : 0)) fail_damaged(file);
+
+    constexpr uint32_t rewritten_size = 108, headers = 14 + rewritten_size;
+    const std::string masks = bmp_masks(file, header, numbers), palette = header.bits <= 8 ? bmp_palette(header, bytes) : "";
     std::string rewritten = "BM" + std::string(8, '\0') + little_endian(static_cast<uint32_t>(headers + palette.size()));
-    rewritten += little_endian(108);
-    rewritten += little_endian(is_short ? numbers.little16(18) : numbers.little32(18));
-    rewritten += little_endian(is_short ? numbers.little16(20) : numbers.little32(22));
-    rewritten += little_endian(uint16_t{1}) + little_endian(static_cast<uint16_t>(bits));
-    rewritten += little_endian(bits == 16 || bits == 32 ? with_masks : uncompressed) + std::string(20, '\0') + masks;
+    rewritten += little_endian(rewritten_size) + little_endian(header.width) + little_endian(header.height);
+    rewritten += little_endian(uint16_t{1}) + little_endian(static_cast<uint16_t>(header.bits));
+    rewritten += little_endian(is_among(header.bits, {16, 32}) ? BmpHeader::with_masks : BmpHeader::uncompressed);
+    rewritten += std::string(20, '\0') + masks;
     rewritten.resize(headers);
-    bytes.replace(0, pixels, rewritten + palette);
+    bytes.replace(0, header.pixels, rewritten + palette);
 }
 
 // stb_image knows neither rows from the right nor palettes that start at another index than 0, and takes palettes of pictures

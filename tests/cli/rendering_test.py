@@ -1,9 +1,11 @@
 """Pictures: the same command gives the same bits, parts add up to the whole, and every file format is correct."""
 
 import re
+import stat
 
 from image_files import Exr, read_png
-from program import MERGE, RenderTest
+from program import MERGE, ProgramTest, RenderTest
+from project import write_bytes
 
 class Determinism(RenderTest):
     def test_the_same_command_gives_the_same_bits(self):
@@ -211,3 +213,18 @@ class PictureFiles(RenderTest):
             self.assertEqual(exr.text(name), value)
         self.assertTrue(exr.text("device"))
         self.assertGreater(float(exr.text("seconds")), 0)
+
+
+class WrittenFilesTest(ProgramTest):
+    def test_links_are_followed_and_modes_are_kept(self):
+        file, link = self.write("kept/file.png", "older contents"), self.folder / "link.png"
+        file.chmod(0o600)
+        link.symlink_to("kept/file.png")
+        for write in (lambda: write_bytes(link, b"contents"),
+                      lambda: self.render("quad.json", "--samples=1", "--width=4", "--height=4", "--output", link)):
+            before = file.read_bytes()
+            write()
+            self.assertTrue(link.is_symlink())
+            self.assertNotEqual(file.read_bytes(), before)
+            self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
+            self.assertEqual(list(file.parent.iterdir()), [file])
