@@ -12,168 +12,8 @@
 namespace lab {
 namespace {
 
-// Writes functions of unsigned integers, which wrap around in C++ as well.
-class ProgramWriter {
-  public:
-    explicit ProgramWriter(uint32_t seed) : random_(seed) {}
-
-    std::string function(const std::string& name, bool has_helper) {
-        has_helper_ = has_helper;
-        next_name_ = 0;
-        variables_ = {"x", "y", "v.x", "v.y", "p.first", "p.rest.z"};
-        return "uint " + name + "(uint x, inout uint y) {\nuvec2 v = uvec2(x, y);\nPair p = Pair(x + 1u, uvec3(y));\n" +
-               statements(2) + "return " + value(2) + ";\n}\n";
-    }
-
-  private:
-    uint32_t roll(uint32_t count) { return static_cast<uint32_t>(random_() % count); }
-    std::string variable() { return variables_[roll(static_cast<uint32_t>(variables_.size()))]; }
-    std::string new_name() { return "n" + std::to_string(next_name_++); }
-    std::string value(int depth) {
-        const auto part = [&] { return value(depth - 1); };
-        switch (roll(depth > 0 ? 14 : 3)) {
-            case 0:
-                return std::to_string(roll(9)) + "u";
-            case 1:
-            case 2:
-                return variable();
-            case 3:
-                return "(" + part() + " + " + part() + ")";
-            case 4:
-                return "(" + part() + " * " + part() + ")";
-            case 5:
-                return "(" + part() + " ^ (" + part() + " >> 3u))";
-            case 6:
-                return "(" + condition(depth - 1) + " ? " + part() + " : " + part() + ")";
-            case 7:
-                return "table[" + part() + " & 15u]";
-            case 8:
-                return "(" + part() + " % (" + part() + " | 1u) + uint(float(" + part() + " & 255u) * 0.25))";
-            case 9:
-                return "uvec3(" + part() + ", " + part() + ", 7u).zxy.y";
-            case 10:
-                return is_pure_ ? part() : variable() + "++";
-            case 11:
-                return "pairs[" + part() + " & 3u].rest.y";
-            case 12:
-                return "min(" + part() + ", " + part() + ")";
-            default:
-                return has_helper_ && !is_pure_ ? "helper(" + part() + ", " + variable() + ")" : part();
-        }
-    }
-    std::string condition(int depth) {
-        switch (roll(depth > 0 ? 6 : 3)) {
-            case 0:
-                return "(" + value(depth) + " & 1u) == 0u";
-            case 1:
-                return value(depth) + " < " + value(depth);
-            case 2:
-                return "uvec2(" + value(0) + ", 3u) != v";
-            case 3:
-                return "(" + condition(depth - 1) + " && " + condition(depth - 1) + ")";
-            case 4:
-                return "(" + condition(depth - 1) + " || " + condition(depth - 1) + ")";
-            default:
-                return "!(" + condition(depth - 1) + ")";
-        }
-    }
-    std::string statements(int depth) {
-        const size_t outer = variables_.size();
-        std::string text;
-        for (uint32_t i = 1 + roll(4); i > 0; --i) text += statement(depth);
-        variables_.resize(outer);
-        return text;
-    }
-    std::string loop_body(int depth) {
-        ++loops_;
-        const std::string text = statements(depth - 1);
-        --loops_;
-        return text;
-    }
-    std::string statement(int depth) {
-        const std::string bound = roll(2) ? "(" + value(1) + " & 3u)" : "3u";
-        switch (roll(depth > 0 ? 13 : 6)) {
-            case 0:
-                return variable() + " = " + value(2) + ";\n";
-            case 1: {  // GLSL leaves it open which side comes first
-                is_pure_ = true;
-                const std::string text = variable() + " += " + value(1) + ";\n";
-                is_pure_ = false;
-                return text;
-            }
-            case 2:
-                return roll(2) ? "v.yx = uvec2(" + value(1) + ", " + value(1) + ");\n" : "p = pairs[" + value(1) + " & 3u];\n";
-            case 3:
-                return "--" + variable() + ";\n";
-            case 4: {
-                const std::string name = new_name(), text = "uint " + name + " = " + value(2) + ";\n";
-                variables_.push_back(name);
-                return text;
-            }
-            case 5:
-                return jump();
-            case 6:
-            case 7:
-                return "if (" + condition(2) + ") {\n" + statements(depth - 1) + "}\n";
-            case 8:
-                return "if (" + condition(1) + ") {\n" + statements(depth - 1) + "} else {\n" + statements(depth - 1) + "}\n";
-            case 9:
-            case 10: {
-                const std::string i = new_name();
-                return "for (uint " + i + " = 0u; " + i + " < " + bound + "; ++" + i + ") {\n" + loop_body(depth) + "}\n";
-            }
-            case 11: {
-                const std::string i = new_name();
-                return "uint " + i + " = 0u;\nwhile (" + i + " < " + bound + " && " + condition(1) + ") {\n++" + i + ";\n" +
-                       loop_body(depth) + "}\n";
-            }
-            default: {
-                const std::string i = new_name();
-                return "uint " + i + " = 0u;\ndo {\n++" + i + ";\n" + loop_body(depth) + "} while (" + i + " < " + bound + ");\n";
-            }
-        }
-    }
-    std::string jump() {
-        const std::string guard = roll(8) ? "if (" + condition(1) + ") " : "";
-        switch (roll(loops_ > 0 ? 3 : 1)) {
-            case 1:
-                return guard + "break;\n";
-            case 2:
-                return guard + "continue;\n";
-            default:
-                return "if (" + condition(1) + ") return " + value(1) + ";\n";
-        }
-    }
-
-    std::mt19937 random_;
-    std::vector<std::string> variables_;
-    bool has_helper_ = false, is_pure_ = false;
-    int next_name_ = 0, loops_ = 0;
-};
-
 constexpr uint32_t invocations = 13;  // in the second packet some lanes are idle
 constexpr uint32_t group_count = 2;
-
-std::string shader_of(const std::vector<uint32_t>& seeds) {
-    std::string functions, calls;
-    for (size_t i = 0; i < seeds.size(); ++i) {
-        ProgramWriter writer(seeds[i]);
-        const std::string name = std::to_string(i), helper = "helper_" + name;
-        std::string text = writer.function(helper, false) + writer.function("program_" + name, true);
-        for (size_t at = 0; (at = text.find("helper(", at)) != std::string::npos; at += helper.size())
-            text.replace(at, 6, helper);
-        functions += text;
-        calls += "y = place * 7u;\nresults[" + name + "u * " + std::to_string(invocations * group_count) +
-                 "u + place] = program_" + name + "(place * 2654435761u >> (place & 15u), y) ^ y;\n";
-    }
-    return "#line 1 \"random.glsl\"\nstruct Pair { uint first; uvec3 rest; };\n"
-           "layout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
-           "layout(scalar, set = 0, binding = 2) readonly buffer Table { uint table[]; };\n"
-           "layout(scalar, set = 0, binding = 3) readonly buffer Pairs { Pair pairs[]; };\n"
-           "layout(local_size_x = " +
-           std::to_string(invocations) + ") in;\n" + functions + "void main() {\nuint place = gl_GlobalInvocationID.x, y;\n" +
-           calls + "}\n";
-}
 
 std::vector<uint32_t> run(const native::Code& code, size_t program_count) {
     std::vector<uint32_t> results(program_count * invocations * group_count), table(16);
@@ -187,39 +27,6 @@ std::vector<uint32_t> run(const native::Code& code, size_t program_count) {
     bind(3, table);  // four pairs
     native::run_groups(code.run, bindings, 0, group_count);
     return results;
-}
-
-// Runs 50 programs of each batch in lanes and one by one.
-void expect_equal_results(uint32_t first_seed, uint32_t batch_count) {
-    constexpr uint32_t count = 50;
-    const auto seed_of = [&](size_t batch, size_t program) {
-        return first_seed + static_cast<uint32_t>(batch * count + program);
-    };
-    const auto load_all = [&](native::Mode mode) {  // on all cores
-        native::set_mode(mode);
-        std::vector<native::Code> codes(batch_count);
-        in_parallel(batch_count, 1, [&](size_t batch, size_t) {
-            std::vector<uint32_t> seeds(count);
-            std::iota(seeds.begin(), seeds.end(), seed_of(batch, 0));
-            codes[batch] = native::load(shader_of(seeds));
-        });
-        native::set_mode(native::Mode::fast);
-        return codes;
-    };
-    const std::vector<native::Code> lanes = load_all(native::Mode::fast), scalar = load_all(native::Mode::debug);
-    for (size_t batch = 0; batch < batch_count; ++batch) {
-        ASSERT_EQ(lanes[batch].why_one_by_one, "");
-        ASSERT_NE(scalar[batch].why_one_by_one, "");
-        const std::vector<uint32_t> in_lanes = run(lanes[batch], count), one_by_one = run(scalar[batch], count);
-        for (size_t i = 0; i < in_lanes.size(); ++i) {
-            if (in_lanes[i] != one_by_one[i]) {
-                const uint32_t seed = seed_of(batch, i / (invocations * group_count));
-                FAIL() << "seed " << seed << ", invocation " << i % (invocations * group_count) << ": " << in_lanes[i]
-                       << " in lanes, " << one_by_one[i] << " one by one, in\n"
-                       << shader_of({seed});
-            }
-        }
-    }
 }
 
 native::Code load_main(const std::string& body) {
@@ -341,9 +148,6 @@ TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
               std::pair(5u, compiler.string() + " does not compile its code: test.glsl:7: no vectors"));
     unsetenv("CXX");
 }
-
-TEST(NativeLanes, RandomProgramsGiveWhatTheyGiveOneByOne) { expect_equal_results(0, 1); }
-TEST(NativeLanes, TenThousandRandomProgramsGiveWhatTheyGiveOneByOne_all) { expect_equal_results(1000, 200); }
 
 }  // namespace
 }  // namespace lab

@@ -1,0 +1,265 @@
+// Shaders as C++, in lanes and one by one, give what the device gives: random programs of everything that may divide lanes.
+#include <numeric>
+#include <random>
+
+#include "files/file.h"
+#include "native/module.h"
+#include "parallel.h"
+#include "support/gpu_test.h"
+#include "support/temporary_folder.h"
+
+namespace lab {
+namespace {
+
+// Writes functions of unsigned integers, which wrap around in C++ as well.
+class ProgramWriter {
+  public:
+    explicit ProgramWriter(uint32_t seed) : random_(seed) {}
+
+    std::string function(const std::string& name, bool has_helper) {
+        has_helper_ = has_helper;
+        next_name_ = 0;
+        variables_ = {"x", "y", "v.x", "v.y", "p.first", "p.rest.z"};
+        return "uint " + name + "(uint x, inout uint y) {\nuvec2 v = uvec2(x, y);\nPair p = Pair(x + 1u, uvec3(y));\n" +
+               statements(2) + "return " + value(2) + ";\n}\n";
+    }
+
+  private:
+    uint32_t roll(uint32_t count) { return static_cast<uint32_t>(random_() % count); }
+    std::string variable() { return variables_[roll(static_cast<uint32_t>(variables_.size()))]; }
+    std::string new_name() { return "n" + std::to_string(next_name_++); }
+    std::string value(int depth) {
+        const auto part = [&] { return value(depth - 1); };
+        switch (roll(depth > 0 ? 14 : 3)) {
+            case 0:
+                return std::to_string(roll(9)) + "u";
+            case 1:
+            case 2:
+                return variable();
+            case 3:
+                return "(" + part() + " + " + part() + ")";
+            case 4:
+                return "(" + part() + " * " + part() + ")";
+            case 5:
+                return "(" + part() + " ^ (" + part() + " >> 3u))";
+            case 6:
+                return "(" + condition(depth - 1) + " ? " + part() + " : " + part() + ")";
+            case 7:
+                return "table[" + part() + " & 15u]";
+            case 8:
+                return "(" + part() + " % (" + part() + " | 1u) + uint(float(" + part() + " & 255u) * 0.25))";
+            case 9:
+                return "uvec3(" + part() + ", " + part() + ", 7u).zxy.y";
+            case 10:
+                return is_pure_ ? part() : variable() + "++";
+            case 11:
+                return "pairs[" + part() + " & 3u].rest.y";
+            case 12:
+                return "min(" + part() + ", " + part() + ")";
+            default:
+                return has_helper_ && !is_pure_ ? "helper(" + part() + ", " + variable() + ")" : part();
+        }
+    }
+    std::string condition(int depth) {
+        switch (roll(depth > 0 ? 6 : 3)) {
+            case 0:
+                return "(" + value(depth) + " & 1u) == 0u";
+            case 1:
+                return value(depth) + " < " + value(depth);
+            case 2:
+                return "uvec2(" + value(0) + ", 3u) != v";
+            case 3:
+                return "(" + condition(depth - 1) + " && " + condition(depth - 1) + ")";
+            case 4:
+                return "(" + condition(depth - 1) + " || " + condition(depth - 1) + ")";
+            default:
+                return "!(" + condition(depth - 1) + ")";
+        }
+    }
+    std::string statements(int depth) {
+        const size_t outer = variables_.size();
+        std::string text;
+        for (uint32_t i = 1 + roll(4); i > 0; --i) text += statement(depth);
+        variables_.resize(outer);
+        return text;
+    }
+    std::string loop_body(int depth) {
+        ++loops_;
+        const std::string text = statements(depth - 1);
+        --loops_;
+        return text;
+    }
+    std::string statement(int depth) {
+        const std::string bound = roll(2) ? "(" + value(1) + " & 3u)" : "3u";
+        switch (roll(depth > 0 ? 13 : 6)) {
+            case 0:
+                return variable() + " = " + value(2) + ";\n";
+            case 1: {  // GLSL leaves it open which side comes first
+                is_pure_ = true;
+                const std::string text = variable() + " += " + value(1) + ";\n";
+                is_pure_ = false;
+                return text;
+            }
+            case 2:
+                return swizzle();
+            case 3:
+                return "--" + variable() + ";\n";
+            case 4: {
+                const std::string name = new_name(), text = "uint " + name + " = " + value(2) + ";\n";
+                variables_.push_back(name);
+                return text;
+            }
+            case 5:
+                return jump();
+            case 6:
+            case 7:
+                return "if (" + condition(2) + ") {\n" + statements(depth - 1) + "}\n";
+            case 8:
+                return "if (" + condition(1) + ") {\n" + statements(depth - 1) + "} else {\n" + statements(depth - 1) + "}\n";
+            case 9:
+            case 10: {
+                const std::string i = new_name();
+                return "for (uint " + i + " = 0u; " + i + " < " + bound + "; ++" + i + ") {\n" + loop_body(depth) + "}\n";
+            }
+            case 11: {
+                const std::string i = new_name();
+                return "uint " + i + " = 0u;\nwhile (" + i + " < " + bound + " && " + condition(1) + ") {\n++" + i + ";\n" +
+                       loop_body(depth) + "}\n";
+            }
+            default: {
+                const std::string i = new_name();
+                return "uint " + i + " = 0u;\ndo {\n++" + i + ";\n" + loop_body(depth) + "} while (" + i + " < " + bound + ");\n";
+            }
+        }
+    }
+    std::string swizzle() {  // or all of a structure
+        switch (roll(4)) {
+            case 0:
+                return "v.yx = uvec2(" + value(1) + ", " + value(1) + ");\n";
+            case 1:
+                return "v.yx = v;\n";
+            case 2:
+                return "p.rest.zxy = p.rest;\n";
+            default:
+                return "p = pairs[" + value(1) + " & 3u];\n";
+        }
+    }
+    std::string jump() {
+        const std::string guard = roll(8) ? "if (" + condition(1) + ") " : "";
+        switch (roll(loops_ > 0 ? 3 : 1)) {
+            case 1:
+                return guard + "break;\n";
+            case 2:
+                return guard + "continue;\n";
+            default:
+                return "if (" + condition(1) + ") return " + value(1) + ";\n";
+        }
+    }
+
+    std::mt19937 random_;
+    std::vector<std::string> variables_;
+    bool has_helper_ = false, is_pure_ = false;
+    int next_name_ = 0, loops_ = 0;
+};
+
+constexpr uint32_t invocations = 13;  // in the second packet some lanes are idle
+constexpr uint32_t group_count = 2;
+constexpr uint32_t program_count = 25;  // of a shader
+
+std::string shader_of(const std::vector<uint32_t>& seeds) {
+    std::string functions, calls;
+    for (size_t i = 0; i < seeds.size(); ++i) {
+        ProgramWriter writer(seeds[i]);
+        const std::string name = std::to_string(i), helper = "helper_" + name;
+        std::string text = writer.function(helper, false) + writer.function("program_" + name, true);
+        for (size_t at = 0; (at = text.find("helper(", at)) != std::string::npos; at += helper.size())
+            text.replace(at, 6, helper);
+        functions += text;
+        calls += "y = place * 7u;\nresults[" + name + "u * " + std::to_string(invocations * group_count) +
+                 "u + place] = program_" + name + "(place * 2654435761u >> (place & 15u), y) ^ y;\n";
+    }
+    return "#version 460\n#extension GL_EXT_scalar_block_layout : require\n"
+           "struct Pair { uint first; uvec3 rest; };\n"
+           "layout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
+           "layout(scalar, set = 0, binding = 2) readonly buffer Table { uint table[]; };\n"
+           "layout(scalar, set = 0, binding = 3) readonly buffer Pairs { Pair pairs[]; };\n"
+           "layout(local_size_x = " +
+           std::to_string(invocations) + ") in;\n" + functions + "void main() {\nuint place = gl_GlobalInvocationID.x, y;\n" +
+           calls + "}\n";
+}
+
+std::vector<uint32_t> table() {
+    std::vector<uint32_t> numbers(16);
+    for (uint32_t i = 0; i < 16; ++i) numbers[i] = i * i * 40503u;
+    return numbers;
+}
+
+std::vector<uint32_t> run_natively(const native::Code& code) {
+    std::vector<uint32_t> results(program_count * invocations * group_count), numbers = table();
+    native::Bindings bindings{};
+    const auto bind = [&](size_t index, std::vector<uint32_t>& words) {
+        bindings.ranges[index] = {reinterpret_cast<std::byte*>(words.data()), words.size() * sizeof(uint32_t)};
+    };
+    bind(1, results);
+    bind(2, numbers);
+    bind(3, numbers);  // four pairs
+    native::run_groups(code.run, bindings, 0, group_count);
+    return results;
+}
+
+std::vector<uint32_t> run_on_device(const ShaderSource& source) {
+    std::vector<uint32_t> results(program_count * invocations * group_count);
+    Buffer result_buffer(test_device(), results.size() * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer);
+    const std::vector<uint32_t> words = table();
+    const Buffer numbers(test_device(), std::span(words), vk::BufferUsageFlagBits::eStorageBuffer);
+    const std::vector<Binding> bindings{storage_binding(1, result_buffer), storage_binding(2, numbers),
+                                        storage_binding(3, numbers)};
+    const ComputeKernel kernel(test_device(), source, bindings, 0);
+    test_device().submit([&](const vk::raii::CommandBuffer& commands) { kernel.record(commands, nullptr, group_count); });
+    result_buffer.read(results.data(), results.size() * sizeof(uint32_t));
+    return results;
+}
+
+// Compares programs on the device with the same programs in lanes and one by one.
+void expect_equal_results(uint32_t first_seed, uint32_t shader_count) {
+    const TemporaryFolder folder;
+    const auto seed_of = [&](size_t shader, size_t program) {
+        return first_seed + static_cast<uint32_t>(shader * program_count + program);
+    };
+    std::vector<ShaderSource> sources(shader_count);
+    for (size_t i = 0; i < shader_count; ++i) {
+        std::vector<uint32_t> seeds(program_count);
+        std::iota(seeds.begin(), seeds.end(), seed_of(i, 0));
+        sources[i].file = folder.path() / (std::to_string(i) + ".comp");
+        write_file(sources[i].file, shader_of(seeds));
+    }
+    const auto load_all = [&](native::Mode mode) {  // on all cores
+        native::set_mode(mode);
+        std::vector<native::Code> codes(shader_count);
+        in_parallel(shader_count, 1, [&](size_t i, size_t) { codes[i] = native::load(preprocess_shader(sources[i])); });
+        native::set_mode(native::Mode::fast);
+        return codes;
+    };
+    const std::vector<native::Code> lanes = load_all(native::Mode::fast), scalar = load_all(native::Mode::debug);
+    for (size_t shader = 0; shader < shader_count; ++shader) {
+        ASSERT_EQ(lanes[shader].why_one_by_one, "");
+        ASSERT_NE(scalar[shader].why_one_by_one, "");
+        const std::vector<uint32_t> expected = run_on_device(sources[shader]);
+        for (const auto& [code, how] : {std::pair(lanes[shader], "in lanes"), std::pair(scalar[shader], "one by one")}) {
+            const std::vector<uint32_t> results = run_natively(code);
+            const auto wrong = std::mismatch(results.begin(), results.end(), expected.begin());
+            if (wrong.first == results.end()) continue;
+            const auto i = static_cast<size_t>(wrong.first - results.begin());
+            const uint32_t seed = seed_of(shader, i / (invocations * group_count));
+            FAIL() << "seed " << seed << ", invocation " << i % (invocations * group_count) << ": " << *wrong.first << " " << how
+                   << ", " << *wrong.second << " on the device, in\n"
+                   << shader_of({seed});
+        }
+    }
+}
+
+TEST(NativePrograms, GiveWhatTheDeviceGives) { expect_equal_results(test_seed(0), 2); }
+TEST(NativePrograms, TenThousandGiveWhatTheDeviceGives_all) { expect_equal_results(test_seed(1000), 400); }
+
+}  // namespace
+}  // namespace lab
