@@ -1,7 +1,9 @@
 // Embree for translated shaders. It is no part of the lab's programs: like a shader it is compiled on the computer that runs it,
 // after the header of Embree 3 or 4 that this one has.
 #pragma once
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <new>
 #include <vector>
@@ -12,7 +14,7 @@ namespace lab::native {
 
 class EmbreeTracer final : public RayTracer {
   public:
-    EmbreeTracer(const Triangle* triangles, size_t count) {
+    EmbreeTracer(const Triangle* triangles, size_t count) : unit_(unit_for(triangles, count)) {
         device_.reset(rtcNewDevice(nullptr));
         rtcSetDeviceMemoryMonitorFunction(
             device_.get(),
@@ -35,7 +37,7 @@ class EmbreeTracer final : public RayTracer {
             const auto& [x, y, z] = triangles[i];
             places_.push_back({x.id, y.id});
             for (size_t j = 0; j < 3; ++j) {
-                for (const auto& row : {x, y, z}) *corner++ = row.corners[j];
+                for (const auto& row : {x, y, z}) *corner++ = row.corners[j] * unit_;
                 *index++ = static_cast<uint32_t>(3 * i + j);
             }
         }
@@ -48,15 +50,15 @@ class EmbreeTracer final : public RayTracer {
 
     bool trace(const float* origin, const float* direction, float t_max, RayHit* hit) const override {
         RTCRayHit query;
-        query.ray = {.org_x = origin[0],
-                     .org_y = origin[1],
-                     .org_z = origin[2],
+        query.ray = {.org_x = origin[0] * unit_,
+                     .org_y = origin[1] * unit_,
+                     .org_z = origin[2] * unit_,
                      .tnear = 0,
                      .dir_x = direction[0],
                      .dir_y = direction[1],
                      .dir_z = direction[2],
                      .time = 0,
-                     .tfar = t_max,
+                     .tfar = t_max * unit_,
                      .mask = ~0u,
                      .id = 0,
                      .flags = 0};
@@ -68,13 +70,14 @@ class EmbreeTracer final : public RayTracer {
         intersect(query);
         if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
         const Place& place = places_[query.hit.primID];
-        *hit = {place.instance, place.triangle, {query.hit.u, query.hit.v}, query.ray.tfar};
+        *hit = {place.instance, place.triangle, {query.hit.u, query.hit.v}, query.ray.tfar / unit_};
         return true;
     }
     void find_closest_hits(RayPacket& packet) const override {
         static_assert(sizeof(RTCRayHit8) <= offsetof(RayPacket, instance));
         static_assert(offsetof(RTCRayHit8, hit.primID) == offsetof(RayPacket, primitive));
         std::fill_n(packet.geometry, lane_count, RTC_INVALID_GEOMETRY_ID);
+        to_units(packet);
         intersect(packet.is_active, *reinterpret_cast<RTCRayHit8*>(&packet), packet.is_coherent);
         for (int i = 0; i < lane_count; ++i) {
             packet.is_active[i] &= packet.geometry[i] == RTC_INVALID_GEOMETRY_ID ? 0 : -1;
@@ -82,15 +85,34 @@ class EmbreeTracer final : public RayTracer {
             const Place& place = places_[packet.primitive[i]];
             packet.instance[i] = place.instance;
             packet.triangle[i] = place.triangle;
+            packet.t_max[i] /= unit_;
         }
     }
     void find_any_hits(RayPacket& packet) const override {
+        to_units(packet);
         occluded(packet.is_active, *reinterpret_cast<RTCRay8*>(&packet), packet.is_coherent);
         for (int i = 0; i < lane_count; ++i) packet.is_active[i] &= packet.t_max[i] < 0 ? -1 : 0;
     }
     size_t bytes() const override { return bytes_ + places_.size() * sizeof(Place); }
 
   private:
+    // Embree multiplies three lengths, which must neither overflow nor underflow: it gets a scene whose coordinates are up to 1.
+    // As a power of two, this factor changes no digit.
+    static float unit_for(const Triangle* triangles, size_t count) {
+        float largest = 0;
+        for (size_t i = 0; i < count; ++i)
+            for (const auto& row : {triangles[i].x, triangles[i].y, triangles[i].z})
+                for (const float coordinate : row.corners) largest = std::max(largest, std::abs(coordinate));
+        int exponent = 0;
+        std::frexp(largest, &exponent);
+        return std::ldexp(1.0f, std::clamp(-exponent, -126, 126));
+    }
+    void to_units(RayPacket& packet) const {
+        for (auto& coordinates : packet.origin)
+            for (float& coordinate : coordinates) coordinate *= unit_;
+        for (float& distance : packet.t_max) distance *= unit_;
+    }
+
 #if RTC_VERSION_MAJOR >= 4
     void occluded(RTCRay& ray) const { rtcOccluded1(scene_.get(), &ray); }
     void intersect(RTCRayHit& query) const { rtcIntersect1(scene_.get(), &query); }
@@ -141,6 +163,7 @@ class EmbreeTracer final : public RayTracer {
     struct Place {  // of a triangle in the scene
         uint32_t instance, triangle;
     };
+    float unit_;  // length of the scene's unit in Embree
     std::vector<Place> places_;
     std::atomic<size_t> bytes_ = 0;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;

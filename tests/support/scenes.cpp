@@ -152,7 +152,8 @@ Scene lit_scene(const TriangleMesh& mesh) {
 }
 
 void place(Scene& scene, const mat4x3& object_to_world) {
-    scene.instances.push_back({object_to_world, glm::inverse(glm::transpose(mat3(object_to_world)))});
+    // In 64 bits, as the loader does it: a determinant is a volume.
+    scene.instances.push_back({object_to_world, mat3(glm::inverse(glm::transpose(glm::dmat3(object_to_world))))});
     scene.instance_meshes.push_back(0);
 }
 
