@@ -1,9 +1,13 @@
 """The Python reader that passes scenes to other renderers: it draws what models from elsewhere lack as the chapters do."""
 
 import contextlib
+import copy
 import io
+import json
+import re
 
-from program import QUAD_OBJ, ProgramTest  # first: it finds the tools
+from program import PROJECT, QUAD_MTL, QUAD_OBJ, ProgramTest  # first: it finds the tools
+from project import UserError
 from references.scenes import read_scene
 
 
@@ -34,3 +38,174 @@ class SceneReaderTest(ProgramTest):
         for byte in model.read_bytes() + (self.folder / "quad.mtl").read_bytes():
             value = (value ^ byte) * 0x100000001B3 % 2**64
         self.assertEqual(read_scene(model).hash, f"{value:x}")
+
+
+# What the chapters read: for each key of a scene a path to it and another value, for each keyword of a material the lines before
+# it and its own.
+SCENE = {
+    "description": "one", "meshes": [{"file": "quad.obj", "rotation": {"axis": [0, 1, 0], "degrees": 30}}],
+    "camera": {"position": [0, 0, 3], "target": [0, 0, 0]}, "background": {"radiance": [1, 1, 1]},
+}
+PROBE = {"light_probe": "quad.obj", "intensity": 2}  # of which only the name and the bytes are read
+KEYS = {
+    "description": ("description", "two"), "meshes": ("meshes", 2 * SCENE["meshes"]), "camera": ("camera", None),
+    "background": ("background", {"radiance": 0.5}), "specular": ("specular", True),
+    "multiple_scattering": ("multiple_scattering", True), "width": ("width", 300), "height": ("height", 300),
+    "samples": ("samples", 3), "max_path_length": ("max_path_length", 3), "file": ("meshes/0/file", "other.obj"),
+    "scale": ("meshes/0/scale", 2), "rotation": ("meshes/0/rotation", {"axis": [1, 0, 0], "degrees": 30}),
+    "translation": ("meshes/0/translation", [1, 0, 0]), "axis": ("meshes/0/rotation/axis", [1, 0, 0]),
+    "degrees": ("meshes/0/rotation/degrees", 40), "position": ("camera/position", [0, 1, 3]),
+    "target": ("camera/target", [0, 1, 0]), "up": ("camera/up", [1, 0, 0]), "vertical_fov": ("camera/vertical_fov", 50),
+    "radiance": ("background/radiance", 0.5), "light_probe": ("background", PROBE),
+    "intensity": ("background", {**PROBE, "intensity": 3}), "rotation_degrees": ("background", {**PROBE, "rotation_degrees": 90}),
+}
+KEYWORDS = {
+    "newmtl": ("", "newmtl another"), "map_Kd": ("", "map_Kd quad.obj"), "Kd": ("", "Kd 0.2 0.2 0.2"), "Ke": ("", "Ke 1 1 1"),
+    "Ks": ("", "Ks 0.1 0.1 0.1"), "Ns": ("Ks 0.1 0.1 0.1", "Ns 5"), "d": ("Ni 1.5", "d 0.5"), "Tr": ("Ni 1.5", "Tr 0.5"),
+    "Ni": ("d 0.5", "Ni 1.3"), "Tf": ("d 0.5", "Tf 0.5 0.5 0.5"), "Kt": ("d 0.5", "Kt 0.5 0.5 0.5"), "Pr": ("", "Pr 0.3"),
+    "Pm": ("Pr 0.3", "Pm 1"), "Ka": ("", "Ka 1 1 1"), "illum": ("", "illum 4"),
+}
+WITHOUT_EFFECT = {"description", "samples", "Ka", "illum"}
+
+
+def plain(value):
+    """Everything in a scene that a picture depends on, for comparisons."""
+    if hasattr(value, "__dict__") and not hasattr(value, "parts"):
+        return {key: plain(part) for key, part in vars(value).items() if key not in ("hash", "name")}
+    return [plain(part) for part in value] if isinstance(value, list) else repr(getattr(value, "tolist", lambda: value)())
+
+
+class WhatChaptersReadTest(ProgramTest):
+    """A reference shows the scene that the chapters show, or there is none. A new key or keyword needs a place above."""
+
+    def known_to_chapters(self, file, pattern):
+        source = (PROJECT / "common/scene" / file).read_text()
+        return {word for names in re.findall(pattern, source) for word in re.findall(r'"(\w+)"', names)}
+
+    def read(self, scene=None, material=""):
+        self.write("other.obj", QUAD_OBJ.replace("v 1 1 0", "v 2 1 0"))
+        self.write("quad.obj", QUAD_OBJ + "usemtl rough\nf 1 2 3\n")
+        self.write("quad.mtl", QUAD_MTL + material + "\nnewmtl glossy\nKs 0.1 0.1 0.1\nnewmtl rough\nPr 0.5\n")
+        return plain(read_scene(self.write("scene.json", json.dumps(scene or SCENE))))
+
+    def assert_read_or_refused(self, name, usual, other):
+        """Whether both pictures are the same, only where the name has no effect."""
+        try:
+            changed = other()
+        except UserError as error:
+            self.assertIn(name, str(error))
+            return
+        self.assertEqual(changed == usual, name in WITHOUT_EFFECT, "is not read")
+
+    def test_every_key_of_a_scene(self):
+        known = self.known_to_chapters("scene_file.cpp", r'\{((?:\s*"\w+",?)+)\}')
+        self.assertEqual(known, KEYS.keys())
+        for key, (place, value) in KEYS.items():
+            with self.subTest(key=key):
+                scene, usual = copy.deepcopy(SCENE), SCENE
+                *outer, last = place.split("/")
+                entry = scene
+                for part in outer:
+                    entry = entry[int(part) if part.isdigit() else part]
+                entry[last] = value
+                if key in ("intensity", "rotation_degrees"):
+                    usual = {**SCENE, "background": PROBE}
+                material = "Ks 0.1 0.1 0.1"
+                self.assert_read_or_refused(key, self.read(usual, material), lambda: self.read(scene, material))
+
+    def test_every_keyword_of_a_material(self):
+        known = self.known_to_chapters("mtl_file.cpp", r'(\{"\w+", \{\d|other_keywords = \{[^}]*\})')
+        self.assertEqual(known, KEYWORDS.keys())
+        for keyword, (before, line) in KEYWORDS.items():
+            with self.subTest(keyword=keyword):
+                scene = {**SCENE, "specular": True}
+                usual = self.read(scene, before)
+                if keyword == "newmtl":
+                    usual, line = self.read(scene, "Kd 0.2 0.2 0.2"), line + "\nKd 0.2 0.2 0.2"
+                self.assert_read_or_refused(keyword, usual, lambda: self.read(scene, f"{before}\n{line}"))
+
+    def test_keys_that_nobody_knows(self):
+        for place in ("", "meshes/0", "meshes/0/rotation", "camera", "background"):
+            with self.subTest(place=place):
+                scene = copy.deepcopy(SCENE)
+                entry = scene
+                for part in filter(None, place.split("/")):
+                    entry = entry[int(part) if part.isdigit() else part]
+                entry["fog"] = 1
+                with self.assertRaisesRegex(UserError, r'scene.json: .*"fog"'):
+                    self.read(scene)
+
+    def test_several_scatterings_of_smooth_surfaces_are_none(self):
+        self.write("quad.mtl", QUAD_MTL)
+        self.write("quad.obj", QUAD_OBJ)
+        read_scene(self.write("scene.json", json.dumps({**SCENE, "multiple_scattering": True})))
+
+
+# A square in front of a larger one, so that it has room on both sides.
+LAMP_OBJ = """mtllib lamp.mtl
+v -1 -1 0
+v 1 -1 0
+v 1 1 0
+v -1 1 0
+v -9 -9 -1
+v 9 -9 -1
+v 0 9 -1
+usemtl wall
+f 5 6 7
+"""
+LAMP_MTL = "newmtl wall\nKd 0.5 0.5 0.5\nnewmtl lamp\nKe 1 1 1\nnewmtl dim\nKe 0.5 0.5 0.5\nnewmtl glass\nd 0\nNi 1.5\n"
+
+
+class LampsInTheSamePlaceTest(ProgramTest):
+    """As chapters draw them, which coincident_lights.h says, or refused."""
+
+    def lamps(self, faces, placements=({},)):
+        """Materials of the triangles that stay on each side of the square, and the least distance between these sides."""
+        self.write("lamp.mtl", LAMP_MTL)
+        self.write("lamp.obj", LAMP_OBJ + faces)
+        camera = {"position": [0, 0, 9], "target": [0, 0, 0]}
+        meshes = [{"file": "lamp.obj", **placement} for placement in placements]
+        sides = {1: [], -1: []}
+        for surface in read_scene(self.write("scene.json", json.dumps({"meshes": meshes, "camera": camera}))).surfaces:
+            for corners in surface.positions:
+                x, y = corners[1] - corners[0], corners[2] - corners[0]
+                if abs(corners[:, 2]).max() < 0.1:
+                    front = 1 if x[0] * y[1] > x[1] * y[0] else -1
+                    sides[front].append((surface.material.name, front * corners[0, 2]))
+        distances = [min(distance for _, distance in side) for side in sides.values() if side]
+        return [[name for name, _ in sides[front]] for front in (1, -1)], sum(distances)
+
+    def test_those_with_two_sides_shine_on_both(self):
+        for faces, back in (("usemtl lamp\nf 1 2 3 4\nf 1 4 3 2\n", "lamp"), ("usemtl lamp\nf 1 2 3 4\nusemtl dim\nf 1 4 3 2\n", "dim"),
+                            ("usemtl lamp\nf 1 2 3 4\nusemtl wall\nf 1 4 3 2\n", "wall")):
+            with self.subTest(back=back):
+                sides, distance = self.lamps(faces)
+                self.assertEqual(sides, [["lamp"] * 2, [back] * 2])
+                self.assertGreater(distance, 1e-4)  # so that rays cannot miss it
+                self.assertLess(distance, 1e-3)
+
+    def test_the_first_that_emits_stays(self):
+        for faces in ("usemtl lamp\nf 1 2 3 4\nusemtl dim\nf 1 2 3 4\n", "usemtl wall\nf 1 2 3 4\nusemtl lamp\nf 1 2 3 4\n"):
+            with self.subTest(faces=faces):
+                self.assertEqual(self.lamps(faces), ([["lamp"] * 2, []], 0))
+
+    def test_one_that_is_placed_twice_shines_once(self):
+        self.assertEqual(self.lamps("usemtl lamp\nf 1 2 3 4\n", ({}, {})), ([["lamp"] * 2, []], 0))
+        sides, _ = self.lamps("usemtl lamp\nf 1 2 3 4\nf 1 4 3 2\n", ({}, {}, {}))
+        self.assertEqual(sides, [["lamp"] * 2] * 2)
+
+    def test_those_that_only_touch_stay(self):
+        sides, _ = self.lamps("usemtl lamp\nf 1 2 3\nf 1 3 4\n", ({}, {"translation": [2, 0, 0]}))
+        self.assertEqual(sides, [["lamp"] * 4, []])
+
+    def test_what_is_left_to_chance_is_refused(self):
+        quad = "usemtl lamp\nf 1 2 3 4\n"
+        for faces, placements in ((quad, ({}, {"scale": [1, 1, -1]})),  # the same lamp, turned
+                                  (quad, ({}, {"translation": [0.5, 0, 0]})),  # a part of it
+                                  (quad, ({}, {"scale": 0.5})), (quad, ({"scale": 0.5}, {})),
+                                  (quad + "f 4 3 2 1\n", ({},)),  # two triangles of one side meet each of the other
+                                  (quad + "usemtl wall\nf 2 3 4 1\n", ({},)), (quad + "usemtl glass\nf 1 2 3 4\n", ({},)),
+                                  ("usemtl lamp\nf 1 2 3 4\nf 1 4 3 2\n", ({}, {"scale": [0.9, 0.9, 1]}))):
+            with self.subTest(faces=faces, placements=placements):
+                with self.assertRaisesRegex(UserError, "scene.json: a lamp .* by chance.* move one"):
+                    self.lamps(faces, placements)

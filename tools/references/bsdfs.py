@@ -91,17 +91,19 @@ def define_bsdfs():
             diffuse, specular, probability = self.lobe_albedos(si, active)
             # cos^n alpha, with 1 - cos alpha computed accurately.
             one_minus_cos = 0.5 * dr.squared_norm(mi.reflect(si.wi) - wo)
-            power = dr.exp(-2 * self.exponent * dr.atanh(one_minus_cos / (2 - one_minus_cos)))
+            in_front = dr.minimum(one_minus_cos, 1 - 1e-6)  # where the division and the logarithm have a value
+            power = dr.exp(-2 * self.exponent * dr.atanh(in_front / (2 - in_front)))
             lobe = dr.select(one_minus_cos < 1, power, 0) / (2 * dr.pi)
             value = (diffuse / dr.pi + specular * (self.exponent + 2) * lobe) * wo.z
             pdf = (1 - probability) * wo.z / dr.pi + probability * (self.exponent + 1) * lobe
             return dr.select(active, value, 0), dr.select(active, pdf, 0)
 
     def correlation(alpha, wi, wo):
-        """Height-correlated masking-shadowing divided by the product of both sides', which Mitsuba uses."""
-        def term(w):
-            return 0.5 * (dr.sqrt(1 + alpha**2 * dr.maximum(1 / dr.square(w.z) - 1, 0)) - 1)
-        return (1 + term(wi)) * (1 + term(wo)) / (1 + term(wi) + term(wo))
+        """Height-correlated masking-shadowing divided by the product of both sides', which Mitsuba uses. Either direction may lie
+        in the surface: a scalar variant divides by no 0."""
+        z_i, z_o = dr.abs(wi.z), dr.abs(wo.z)
+        root_i, root_o = (dr.sqrt(dr.square(z) + alpha**2 * dr.maximum(1 - dr.square(z), 0)) for z in (z_i, z_o))
+        return (z_i + root_i) * (z_o + root_o) / dr.maximum(2 * (z_o * root_i + z_i * root_o), 1e-20)
 
     class RoughGlass(ByEvalPdf):
         """Mitsuba's rough dielectric, with height-correlated masking-shadowing for reflection."""

@@ -21,6 +21,10 @@ class Material:
     metalness: float = 0.0
     coat_index: float = 1.5  # for an opaque surface with microfacets
 
+    def equals(self, other):
+        """Whether both look the same, whatever their names."""
+        return all(np.array_equal(value, getattr(other, key)) for key, value in vars(self).items() if key != "name")
+
 
 NUMBERS = {"Kd": 3, "Ke": 3, "Ks": 3, "Tf": 3, "Kt": 3, "Ns": 1, "Ni": 1, "d": 1, "Tr": 1, "Pr": 1, "Pm": 1}
 

@@ -1,7 +1,7 @@
 """Reads our scene files (.json, .obj, .mtl) in Python, for tools that hand them to other renderers.
 
 Shares no code with common/scene: if the two read a file differently, a comparison with a reference shows it. Does not check
-files for mistakes, as the chapters do. Arrays are in double precision.
+files for mistakes, as the chapters do, but refuses what it does not read. Arrays are in double precision.
 """
 import itertools
 import json
@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from project import UserError
+from references.lamps import resolve_lamps
 from references.meshes import Material, ObjFile, triangle_normals
 
 
@@ -66,24 +67,27 @@ def limit_reflectance(material, specular):
     material.specular = material.specular / largest
 
 
-def place_meshes(meshes, placements):
+def place_meshes(path, meshes, placements):
     """Surfaces in world space, one per material; placements: (index of the mesh, object-to-world matrix)."""
-    pieces = {}  # material -> arrays of its instances
+    parts = []
     for index, matrix in placements:
         mesh, linear = meshes[index], matrix[:3, :3]
-        materials = np.array([id(m) for m in mesh.materials])
-        positions = mesh.positions @ linear.T + matrix[:3, 3]
-        normals = mesh.normals @ np.linalg.inv(linear)
         # The front is determined in object space: a mirrored instance keeps it.
         order = [0, 2, 1] if np.linalg.det(linear) < 0 else [0, 1, 2]
-        for material in dict.fromkeys(mesh.materials):
-            chosen = materials == id(material)
-            arrays = (positions, normals, mesh.texture_coordinates)
-            pieces.setdefault(material, []).append([array[chosen][:, order] for array in arrays])
+        arrays = (mesh.positions @ linear.T + matrix[:3, 3], mesh.normals @ np.linalg.inv(linear), mesh.texture_coordinates)
+        parts.append([array[:, order] for array in arrays])
+    all_positions, all_normals, all_coordinates = (np.concatenate(arrays) for arrays in zip(*parts))
+    all_materials = [material for index, _ in placements for material in meshes[index].materials]
+    owners = np.repeat(range(len(parts)), [len(positions) for positions, _, _ in parts])
+    all_positions, is_kept = resolve_lamps(path, all_positions, all_materials, owners)
 
     surfaces = []
-    for material, parts in pieces.items():
-        positions, normals, texture_coordinates = (np.concatenate(arrays) for arrays in zip(*parts))
+    identities = np.array([id(material) for material in all_materials])
+    for material in dict.fromkeys(all_materials):
+        chosen = is_kept & (identities == id(material))
+        if not chosen.any():
+            continue
+        positions, normals, texture_coordinates = (array[chosen] for array in (all_positions, all_normals, all_coordinates))
         flat = np.broadcast_to(triangle_normals(positions)[:, None], normals.shape)
         normals = np.where(np.isnan(normals), flat, normals)
         length = np.linalg.norm(normals, axis=2, keepdims=True)
@@ -93,17 +97,27 @@ def place_meshes(meshes, placements):
 
 
 # ---------------------------------------------------------------------------------------------- scenes
+def only(path, entry, *keys):
+    """The entry. A key that is not read here may change the picture."""
+    for key in entry:
+        if key not in keys:
+            raise UserError(f'{path}: references have no key "{key}": leave it out')
+    return entry
+
+
 def triple(value):
     return np.broadcast_to(np.asarray(value, float), 3)
 
 
-def placement_matrix(entry):
+def placement_matrix(path, entry):
     """Scale, then rotation, then translation."""
+    only(path, entry, "file", "scale", "rotation", "translation")
     matrix = np.eye(4)
     matrix[:3, :3] = np.diag(triple(entry.get("scale", 1)))
     if "rotation" in entry:
-        x, y, z = np.array(entry["rotation"]["axis"], float) / np.linalg.norm(entry["rotation"]["axis"])
-        angle = math.radians(entry["rotation"]["degrees"])
+        turn = only(path, entry["rotation"], "axis", "degrees")
+        x, y, z = np.array(turn["axis"], float) / np.linalg.norm(turn["axis"])
+        angle = math.radians(turn["degrees"])
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # Rodrigues' formula
         rotation = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
         matrix[:3, :3] = rotation @ matrix[:3, :3]
@@ -136,14 +150,15 @@ def read_scene(path):
     path = Path(path)
     files = SourceFiles()
     try:
-        root = read_description(path, files)
+        root = only(path, read_description(path, files), "description", "meshes", "camera", "background", "specular",
+                    "multiple_scattering", "width", "height", "samples", "max_path_length")
         meshes, indices, placements = [], {}, []
         for entry in root["meshes"]:
             file = path.parent / entry["file"]
             if file.resolve() not in indices:
                 indices[file.resolve()] = len(meshes)
                 meshes.append(ObjFile(file, files))
-            placements.append((indices[file.resolve()], placement_matrix(entry)))
+            placements.append((indices[file.resolve()], placement_matrix(path, entry)))
 
         textures = set()
         for mesh in meshes:
@@ -152,9 +167,11 @@ def read_scene(path):
                 if material.texture and material.texture.resolve() not in textures:
                     textures.add(material.texture.resolve())
                     files.read(material.texture)
-        surfaces = place_meshes(meshes, placements)
+        surfaces = place_meshes(path, meshes, placements)
+        if root.get("multiple_scattering") and any(surface.material.roughness > 0 for surface in surfaces):
+            raise UserError(f'{path}: Mitsuba has no "multiple_scattering" on microfacets: leave it out')
 
-        background = root.get("background", {})
+        background = only(path, root.get("background", {}), "radiance", "light_probe", "intensity", "rotation_degrees")
         light_probe = path.parent / background["light_probe"] if "light_probe" in background else None
         if light_probe:
             files.read(light_probe)
@@ -163,7 +180,8 @@ def read_scene(path):
             radiance = 1  # a bare mesh without lights is lit by a white sky
         camera = {"up": [0, 1, 0], "vertical_fov": 45,
                   **(root.get("camera") or framing_camera(meshes, placements))}
-        camera = {key: np.asarray(camera[key], float) for key in ("position", "target", "up", "vertical_fov")}
+        camera = {key: np.asarray(value, float) for key, value in
+                  only(path, camera, "position", "target", "up", "vertical_fov").items()}
         return Scene(surfaces, camera,
                      triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
                      root.get("width", 512), root.get("height", 512), root.get("max_path_length", 8),
