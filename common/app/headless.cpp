@@ -117,10 +117,11 @@ class HeadlessRender {
     }
 
     // Rendering time as the user sees it, earlier runs included.
-    double seconds() const { return job_.record.seconds + seconds_since(start_) - measuring_seconds_; }
+    double seconds() const { return job_.record.seconds + seconds_since(start_) - measuring_seconds_ - saving_seconds_; }
 
     bool is_time_over() const {
-        return options_.time_limit && renderer_.samples() > 0 && seconds() - job_.record.seconds >= *options_.time_limit;
+        return options_.time_limit && renderer_.samples() > 0 &&
+               seconds() + saving_seconds_ - job_.record.seconds >= *options_.time_limit;
     }
 
     // The factor by which the sample count must grow to reach the target error, at the rate of random sampling.
@@ -134,17 +135,22 @@ class HeadlessRender {
     void save_if_due() {
         // If the device is lost, the last snapshot is what remains.
         constexpr double seconds_between_snapshots = 10;
-        const double interval = options_.save_every.value_or(seconds_between_snapshots);
-        if (seconds_since(last_save_) < interval) return;
-        last_save_ = Clock::now();
+        // Rendering gets at least half of the time, however slow the disk is.
+        if (seconds_since(last_save_) < std::max(options_.save_every.value_or(seconds_between_snapshots), last_save_seconds_))
+            return;
+        const auto start = Clock::now();
+        const double cpu_start = processor_seconds();
         take_snapshot();
-        if (!options_.save_every) return;
-        try {
-            write_outputs();
-        } catch (const UserError& error) {
-            // By the time the render ends the disk may have room again.
-            std::fprintf(stderr, "\nnote: %s\n", error.what());
-        }
+        if (options_.save_every) try {
+                write_outputs();
+            } catch (const UserError& error) {
+                // By the time the render ends the disk may have room again.
+                std::fprintf(stderr, "\nnote: %s\n", error.what());
+            }
+        last_save_ = Clock::now();
+        last_save_seconds_ = seconds_since(start);
+        saving_seconds_ += last_save_seconds_;
+        unmeasured_cpu_seconds_ += processor_seconds() - cpu_start;
     }
 
     // Reads the film back, so that something is left if the device is lost.
@@ -234,9 +240,11 @@ class HeadlessRender {
     FilmRecord record_;   // of that snapshot
     std::vector<ReportRow> rows_;
     Clock::time_point start_ = Clock::now();  // of rendering
-    Clock::time_point last_save_;
-    double measuring_seconds_ = 0;       // spent on the report's rows
-    double unmeasured_cpu_seconds_ = 0;  // spent on them and before rendering
+    Clock::time_point last_save_;             // when it ended
+    double last_save_seconds_ = 0;            // how long it took
+    double saving_seconds_ = 0;               // all of them
+    double measuring_seconds_ = 0;            // spent on the report's rows
+    double unmeasured_cpu_seconds_ = 0;       // spent on both and before rendering
 };
 
 }  // namespace

@@ -127,6 +127,17 @@ class Checkpoints(RenderTest):
                 self.write("cut.exr", whole[:size])
                 self.assert_refused(self.command("--samples=8", "--resume=cut.exr"), r"cut\.exr")
 
+    def test_saving_is_not_rendering(self):
+        """Where writing takes longer than the interval, half of the time is left for rendering, and only that counts as seconds."""
+        outputs = [f"--output=saved{i}.{ending}" for i in range(3) for ending in ("exr", "png")]
+        start = time.monotonic()
+        self.render(*self.command("--samples=8", "--save-every=0.001", "--report=saved.json", *outputs, size=(320, 320)))
+        total = time.monotonic() - start
+        row = json.loads((self.folder / "saved.json").read_text(encoding="utf-8"))["rows"][-1]
+        self.assertLess(row["seconds"], 1.5 * row["device_seconds"])
+        self.assertLess(total, 3 * row["device_seconds"] + 3)
+        self.assertAlmostEqual(float(Exr(self.folder / "saved0.exr").text("seconds")), row["seconds"], delta=0.01)
+
     def test_a_failed_write_keeps_the_old_file(self):
         """A file size limit, set while the program runs, simulates a full disk."""
         files = [self.folder / f"old.{ending}" for ending in ("exr", "hdr", "png", "jpg", "json")]
