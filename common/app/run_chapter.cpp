@@ -202,7 +202,8 @@ class Commands {
             device_.emplace(DeviceOptions{now.device, now.validation});
         }
         BuildStage first = BuildStage::scene;
-        if (build_ && build_->job.options.run.backend == now.backend)
+        // Views, too, decide which backends are suitable.
+        if (build_ && build_->job.options.run.backend == now.backend && build_->job.options.image.view == job.options.image.view)
             first = std::min(first_difference(build_->job.options, job.options), BuildStage::renderer);
         if (first == BuildStage::scene) build_.reset();  // there may not be room for both
         build_ = build_headless(*device_, chapter_, std::move(job), first, build_ ? &*build_ : nullptr);

@@ -60,6 +60,15 @@ class BatchOfPictures(ProgramTest):
             pictures.add(str(single.pixels()))
         self.assertGreaterEqual(len(pictures), 8, "they differ")
 
+    def test_a_view_is_refused_where_a_command_of_its_own_would_refuse_it(self):
+        backends = [name for name in ("query", "pipeline", "native") if re.search(rf"{name} +works", self.render("--list-devices"))]
+        for backend in backends:
+            code, out, err = self.batch(f"quad.json {SMALL} --backend {backend} --quiet --output first.exr",
+                                        f"quad.json {SMALL} --backend {backend} --quiet --output last.exr --view bvh-steps")
+            self.assertEqual((code, out), (1, "line 1 is done\n"))
+            self.assertRegex(err, rf"\Aerror: line 2 [^\n]*bvh-steps does not work with the backend {backend}")
+        self.assertFalse((self.folder / "last.exr").exists())
+
     def test_an_error_names_its_line_and_what_is_before_it_is_kept(self):
         for wrong, words, code in ((f"quad.json --samples {2**32}", "--samples", 1), ("nothing.json", "nothing.json", 1),
                                    ("quad.json --device 99", "99", 2), ("--batch", "--batch goes alone", 1),
