@@ -1,8 +1,11 @@
 """How ./lab builds: in a mock project, whose programs take no time to compile."""
 
+import os
 import shutil
 
 from program import PROJECT, ProgramTest
+
+NOBODY = 65534  # Debian's user of this name
 
 # A build that takes a second and fails if another one is in progress.
 CMAKE = """cmake_minimum_required(VERSION 3.25)
@@ -50,6 +53,28 @@ class LabBuildTest(ProgramTest):
         ends = [process.communicate() for process in both]
         self.assertEqual([(process.returncode, out) for process, (out, _) in zip(both, ends)], [(0, "first\n")] * 2, ends)
         self.assertEqual(sum("waiting for another ./lab" in err for _, err in ends), 1, ends)
+
+    def test_others_run_what_they_may_not_build(self):
+        """As in a computer room, whose checkout belongs to somebody else."""
+        def become_somebody_else():
+            if os.geteuid() == 0:
+                os.setgroups([])
+                os.setgid(NOBODY)
+                os.setuid(NOBODY)
+
+        self.folder.chmod(0o755)
+        self.run_chapter(self.tree / "lab")
+        self.program_says("changed")
+        programs = self.tree / "build/bin"
+        for folder in (self.tree, self.tree / "build", programs):
+            folder.chmod(0o555)
+        self.addCleanup(lambda: [folder.chmod(0o755) for folder in (self.tree, self.tree / "build", programs)])
+        self.assertEqual(self.render("run", 1, program=self.tree / "lab", prepare=become_somebody_else), "first\n")
+        programs.chmod(0o755)
+        (programs / "01_first").unlink()
+        programs.chmod(0o555)
+        self.assert_refused(["run", 1], "build cannot be written, and 01_first is missing there", program=self.tree / "lab",
+                            prepare=become_somebody_else)
 
     def test_nobody_waits_for_a_program_that_runs(self):
         self.write("lab/01_first", "#!/bin/sh\necho first\nsleep 60\n").chmod(0o755)
