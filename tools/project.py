@@ -66,11 +66,19 @@ def course():
     return [number for number in CHAPTERS if original(number) == number]
 
 
+def text_of(file):
+    """The text of a source. A student's editor may have saved it in the encoding of Windows, or with a byte order mark."""
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        return file.read_text(encoding="cp1252", errors="replace")
+
+
 def shaders_of(number):
     """The shaders that make up a chapter: those in its folder, and those of other chapters that they include."""
     shaders = sorted((ROOT / "chapters" / CHAPTERS[number]).glob("*.glsl"))
     for shader in shaders:  # grows meanwhile
-        for name in re.findall(r'^#include "(.*)"', shader.read_text(encoding="utf-8"), re.MULTILINE):
+        for name in re.findall(r'^#include "(.*)"', text_of(shader), re.MULTILINE):
             files = [folder / name for folder in (shader.parent, ROOT / "chapters")]
             shaders += [file for file in files if file.is_file() and file not in shaders][:1]
     return shaders
@@ -121,6 +129,10 @@ def run_tool(tool):
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         tool.main()
+        sys.stdout.flush()
+    except BrokenPipeError:  # nobody reads any more, as in ./lab diff 5 | head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for what Python still has to write
+        sys.exit(1)
     except (UserError, OSError) as error:
         sys.exit(f"error: {error}")
     except KeyboardInterrupt:

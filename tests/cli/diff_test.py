@@ -31,6 +31,12 @@ class DiffTest(unittest.TestCase):
             with mock.patch.multiple(show_diff, ROOT=Path(folder), CHAPTERS=numbers, BEFORE=before):
                 return {files[1]: show_diff.compare(*map(show_diff.shader_lines, files))[0] for files in show_diff.lesson(len(chapters))}
 
+    def test_nobody_needs_to_read_to_the_end(self):
+        """As in ./lab diff all | head."""
+        with subprocess.Popen([ROOT / "lab", "diff", "all"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            process.stdout.close()
+            self.assertEqual(process.stderr.read(), "")
+
     def test_rows_are_the_two_shaders(self):
         for number in STEPS:
             for files in show_diff.lesson(number):

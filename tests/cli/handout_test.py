@@ -92,7 +92,7 @@ class HandoutTest(ProgramTest):
             self.assertIn("`vec3 get_brdf(", (tree / "docs/shader.md").read_text(encoding="utf-8"))
             self.assertIn("](docs/shader.md)", (tree / "README.md").read_text(encoding="utf-8"))
 
-    def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
+    def copied_project(self):
         project = self.folder / "project"
         for name in ("chapters", "shaders", "tools", "docs"):
             shutil.copytree(PROJECT / name, project / name)
@@ -100,6 +100,21 @@ class HandoutTest(ProgramTest):
             (project / name).symlink_to(PROJECT / name)
         for name in (".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"):
             shutil.copy(PROJECT / name, project / name)
+        return project
+
+    def test_sources_may_have_the_encoding_of_windows(self):
+        """Handouts, and the other tools that read shaders."""
+        project = self.copied_project()
+        with open(project / "chapters/03_next_event_estimation/path_trace.glsl", "a", encoding="cp1252") as shader:
+            shader.write("// Prüfen\n")
+        for words in (["handout", 3, "lab"], ["diff", 3], ["diff", "all"], ["bug", 3], ["bug", 3, 1, "--answer"]):
+            code, out, err = self.run_program("-B", project / "tools", *words, program=sys.executable)
+            self.assertEqual((code, err), (0, ""), words)
+            self.assertTrue("// Prüfen" in out or words != ["diff", 3])
+        self.assertTrue((self.folder / "lab/chapters/03_next_event_estimation/path_trace.glsl").read_text(encoding="utf-8").endswith("// Prüfen\n"))
+
+    def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
+        project = self.copied_project()
         for name in FOR_TEACHERS:
             self.write(project / name, "planted")
         page = project / "chapters/03_next_event_estimation/README.md"

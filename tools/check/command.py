@@ -24,7 +24,7 @@ from check.diagnosis import diagnose, verdict_with
 from check.folder import UNGRADED, grade_all
 from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
 from check.words import explain, hint_lines, scene_words, tell_early
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable, text_of
 from report.measurement import relative
 
 POINTS = 10
@@ -102,7 +102,7 @@ def own_file(chapter):
 
 def find_todo(file):
     """Number of the first line with a TODO, or None."""
-    lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = text_of(file).splitlines()
     return next((number for number, line in enumerate(lines, 1) if "TODO" in line), None)
 
 

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import BINARIES, CHAPTERS, ROOT, UserError, description, printable, program_file, read_json, show_progress
+from project import BINARIES, CHAPTERS, ROOT, UserError, description, printable, program_file, read_json, show_progress, text_of
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
 from report.measurement import new_case, run_case
@@ -52,7 +52,7 @@ def knowledge_file(chapter, name=KNOWLEDGE):
 
 
 def functions_in(shader):
-    return set(re.findall(r"^\w+ (\w+)\(", shader.read_text(encoding="utf-8", errors="replace"), re.MULTILINE))
+    return set(re.findall(r"^\w+ (\w+)\(", text_of(shader), re.MULTILINE))
 
 
 def shader_like(chapter, file):

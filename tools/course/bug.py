@@ -19,7 +19,7 @@ from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, program_with
 from check.words import percent
 from course.mistakes import bugs_of
 from lesson import diff
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, has_low_discrepancy, number, show_progress
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, has_low_discrepancy, number, show_progress, text_of
 from references.images import averaged, find_references, read_rgb, scene_file
 from report.measurement import new_case, run_case
 from report.numbers import batches, biases, last_rows, mean_of, runs_in_batches
@@ -157,7 +157,7 @@ def caught_by(bug):
 
 def changes(bug):
     """Rows of the difference from the chapter's own shader, as lesson.diff shows them."""
-    own = bug.file.read_text(encoding="utf-8")
+    own = text_of(bug.file)
     return diff.compare(own.splitlines(), bug.text.splitlines())[0]
 
 
@@ -186,7 +186,7 @@ def main():
     if options.answer:
         answer(bug)
         return
-    chapter, own = CHAPTERS[bug.chapter], bug.file.read_text(encoding="utf-8")
+    chapter, own = CHAPTERS[bug.chapter], text_of(bug.file)
     with program_with(chapter, own, bug.file) as right, program_with(chapter, bug.text, bug.file) as wrong:
         if options.sanitize:
             return sanitize(bug, wrong, options)

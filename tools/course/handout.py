@@ -12,7 +12,7 @@ from pathlib import Path
 
 from course.pages import clean_pages
 from package.make import pack
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress, write_json
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress, text_of, write_json
 
 HERE = Path(__file__).parent
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
@@ -65,7 +65,7 @@ def write_handout(chapter, folder):
         write_json(file, knowledge | {"mistakes": numbered}, 2)
     exercise = read_json(exercise_file(chapter))
     shader = folder / "chapters" / CHAPTERS[chapter] / exercise["file"]
-    text, solution = take_out(shader.read_text(encoding="utf-8"), exercise)
+    text, solution = take_out(text_of(shader), exercise)
     shader.write_text(text, encoding="utf-8")
     readme = (HERE / "readme.md").read_text(encoding="utf-8")
     for name, value in (("NUMBER", str(chapter)), ("FOLDER", CHAPTERS[chapter]), ("SHADER", shader.relative_to(folder).as_posix())):

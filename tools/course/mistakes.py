@@ -8,7 +8,7 @@ A mistake that leaves the picture right has instead a "question", and under "san
 from dataclasses import dataclass
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, UserError, course, original, read_json, shaders_of
+from project import CHAPTERS, ROOT, UserError, course, original, read_json, shaders_of, text_of
 
 NO_QUESTION = "Where do the two pictures differ, and which line decides that?"
 SAID_ONCE = ("explanation", "hint", "slide", "test")
@@ -61,14 +61,14 @@ def shader_of(chapter, record):
     if "file" in record:
         folders = [own_shader(chapter).parent, ROOT] if chapter else [ROOT]
         return next((folder / record["file"] for folder in folders if (folder / record["file"]).exists()), ROOT / record["file"])
-    return next((file for file in shaders_of(chapter) if record["find"] in file.read_text(encoding="utf-8")), own_shader(chapter))
+    return next((file for file in shaders_of(chapter) if record["find"] in text_of(file)), own_shader(chapter))
 
 
 def planted(chapter, mistake):
     """The bug that a record makes in a chapter's shaders."""
     file = shader_of(chapter, mistake)
     what = f"{mistake['name']} in {file.relative_to(ROOT)}"
-    return Bug(chapter, mistake, file, plant(file.read_text(encoding="utf-8"), mistake["find"], mistake["replace"], what))
+    return Bug(chapter, mistake, file, plant(text_of(file), mistake["find"], mistake["replace"], what))
 
 
 def bugs_of(chapter):

@@ -4,6 +4,7 @@ import re
 from itertools import takewhile
 
 from book.code_blocks import BLOCK
+from project import text_of
 
 FENCED = re.compile(r"^ *```\w+\n.*?^ *```$", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"(?<!!)\[(`[^`]+`|[^\[\]]+)\]\(([^()\s]+)\)")
@@ -52,7 +53,7 @@ def leave_out_commands(text, missing):
 
 def clean_pages(folder, solution):
     """Cleans all pages of the tree, which is otherwise in its final state."""
-    shaders = "\n".join(shader.read_text(encoding="utf-8") for shader in folder.rglob("*.glsl"))
+    shaders = "\n".join(text_of(shader) for shader in folder.rglob("*.glsl"))
     secret = {line.strip() for line in solution.splitlines()} - set(map(str.strip, shaders.splitlines()))
     needs_tests = re.search(r"^needs_tests='(.*)'$", (folder / "lab").read_text(encoding="utf-8"), re.MULTILINE)[1]
     first_steps = folder / "docs/first_steps.md"
@@ -63,7 +64,7 @@ def clean_pages(folder, solution):
             file = page.parent / target.split("#")[0]
             is_quotation = file.suffix in SHADERS and text.startswith("`") and not NAME.fullmatch(text)
             if "://" in target or file.exists():
-                is_gone = is_quotation and text[1:-1].replace("\\|", "|") not in file.read_text(encoding="utf-8")
+                is_gone = is_quotation and text[1:-1].replace("\\|", "|") not in text_of(file)
                 return f"[TODO]({target})" if is_gone else link[0]
             return source_of(target) if is_quotation else text
 

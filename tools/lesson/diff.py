@@ -8,7 +8,7 @@ import sys
 from collections import Counter
 from difflib import SequenceMatcher
 
-from project import CHAPTERS, ROOT, Parser, original
+from project import CHAPTERS, ROOT, Parser, original, text_of
 
 CONTEXT = 3  # unchanged lines around a change
 # Number of a chapter: that of the one to compare it with.
@@ -19,21 +19,21 @@ INCLUDE = re.compile(r'#include "(?:\.\./)?([\w/]+\.glsl)"')
 ESTIMATOR = re.compile(r"^vec3 path_trace\(", re.MULTILINE)
 
 
-def text_of(file):
+def shader_text(file):
     """The text of a shader, given by its path below chapters/; empty if the file does not exist."""
     path = ROOT / "chapters" / file
-    return path.read_text(encoding="utf-8") if path.is_file() else ""
+    return text_of(path) if path.is_file() else ""
 
 
 def shader_lines(file):
     """The lines of a shader below chapters/. If it includes its namesake from another chapter, or a file with the function
     path_trace(), the included lines follow, so that chapters are compared as if each were written in full."""
     (folder, name), lines = file.split("/"), []
-    for line in text_of(file).splitlines():
+    for line in shader_text(file).splitlines():
         lines.append(line)
         target = INCLUDE.match(line)[1] if INCLUDE.match(line) else ""
         target = target if "/" in target else f"{folder}/{target}"
-        if target != file and (target.endswith(f"/{name}") or ESTIMATOR.search(text_of(target))):
+        if target != file and (target.endswith(f"/{name}") or ESTIMATOR.search(shader_text(target))):
             lines += shader_lines(target)
     return lines
 
@@ -42,7 +42,7 @@ def lesson(number):
     """(file before, file) below chapters/ for each shader of a chapter's folder, the estimator first."""
     folder, names = CHAPTERS[number], ["path_trace.glsl"]
     for path in sorted((ROOT / "chapters" / folder).glob("*.glsl")):
-        if path.name not in names and not ESTIMATOR.search(text_of(f"{folder}/{path.name}")):  # otherwise it is part of the first
+        if path.name not in names and not ESTIMATOR.search(shader_text(f"{folder}/{path.name}")):  # otherwise it is part of the first
             names.append(path.name)
     return [(f"{CHAPTERS[BEFORE[number]]}/{name}", f"{folder}/{name}") for name in names]
 
@@ -107,7 +107,7 @@ def show(names, rows):
     """Prints rows of compare() under the names of the two files."""
     colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
     rule = "." * min(shutil.get_terminal_size().columns, 120)
-    print("\n".join(paint(mark, f"chapters/{name}", None, colour) for mark, name in zip("-+", names) if text_of(name)))
+    print("\n".join(paint(mark, f"chapters/{name}", None, colour) for mark, name in zip("-+", names) if shader_text(name)))
     for row in visible(rows):
         print(paint(*row, colour) if row else paint("@", rule, None, True) if colour else "@")
 

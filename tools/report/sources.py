@@ -6,7 +6,7 @@ Comments and blanks do not count, and neither do chapters that a record does not
 import hashlib
 import re
 
-from project import CHAPTERS, ROOT, shaders_of
+from project import CHAPTERS, ROOT, shaders_of, text_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.
 RENDERER = ["shaders", "common/film", "common/gpu", "common/rendering", "common/scene", "common/tracing"]
@@ -23,7 +23,7 @@ def digest(files):
     """Digest of the code in these files and of their names, wherever the project lies."""
     found = hashlib.sha256()
     for path in sorted(set(files)):
-        found.update(f"{path.relative_to(ROOT).as_posix()}\n{code(path.read_text(encoding='utf-8'))}\n".encode())
+        found.update(f"{path.relative_to(ROOT).as_posix()}\n{code(text_of(path))}\n".encode())
     return found.hexdigest()[:12]
 
 
