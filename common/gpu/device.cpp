@@ -156,20 +156,31 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-// Index of the chosen device: by number, by part of a name, or the first usable one of the fastest kind.
+// Index of the chosen device: by number, by its name or a part that no other name has, or the first usable one of the fastest
+// kind.
 size_t choose_device(const std::vector<DeviceDescription>& devices, const std::string& choice) {
-    if (!choice.empty() && choice.find_first_not_of("0123456789") == std::string::npos) {
-        if (choice.size() < 6 && std::stoul(choice) < devices.size()) return std::stoul(choice);
-    } else if (!choice.empty()) {
-        for (size_t i = 0; i < devices.size(); ++i)
-            if (lower_case(devices[i].name).find(lower_case(choice)) != std::string::npos) return i;
-    } else {
+    if (choice.empty()) {
         for (const char* kind : {"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"})
             for (size_t i = 0; i < devices.size(); ++i)
                 if (devices[i].kind == kind && devices[i].supports(Backend::compute)) return i;
         return 0;
     }
-    throw DeviceError("no device '" + choice + "': --list-devices shows the " + std::to_string(devices.size()) + " there are");
+    const bool is_number = choice.size() < 6 && choice.find_first_not_of("0123456789") == std::string::npos;
+    if (is_number && std::stoul(choice) < devices.size()) return std::stoul(choice);
+    std::vector<size_t> named, similar;
+    for (size_t i = 0; i < devices.size(); ++i) {
+        const size_t place = lower_case(devices[i].name).find(lower_case(choice));
+        if (place == std::string::npos) continue;
+        similar.push_back(i);
+        if (devices[i].name.size() == choice.size()) named.push_back(i);
+    }
+    const auto& found = named.empty() ? similar : named;
+    if (found.size() == 1) return found.front();
+    if (found.empty())
+        throw DeviceError("no device '" + choice + "': --list-devices shows the " + std::to_string(devices.size()) +
+                          " there are");
+    throw DeviceError("--device " + choice + " may be '" + devices[found[0]].name + "' or '" + devices[found[1]].name +
+                      "': choose by number, such as --device " + std::to_string(found[0]) + " (see --list-devices)");
 }
 
 }  // namespace

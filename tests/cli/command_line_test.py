@@ -1,6 +1,7 @@
 """The command line: what it accepts, and that it refuses everything else with one clear line."""
 
 import re
+from pathlib import Path
 
 from program import MERGE, ProgramTest
 
@@ -142,6 +143,20 @@ class Devices(ProgramTest):
     def test_unknown_devices(self):
         for device in ("99", "-1", "No Such Device"):
             self.assert_refused(["quad.json", f"--device={device}"], re.escape(device), "--list-devices", code=2)
+
+    def test_a_name_stands_for_one_device(self):
+        """Numbers, too, are parts of names: a user means 4090 by 4090."""
+        drivers = sorted(Path("/usr/share/vulkan/icd.d").glob("lvp_icd*.json"))
+        if not drivers:
+            self.skipTest("Mesa's driver for CPUs is not installed")
+        copies = [self.write(f"{i}.json", drivers[0].read_bytes()) for i in range(2)]
+        one, two = ({name: ":".join(map(str, files)) for name in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES")} for files in (copies[:1], copies))
+        name = re.match(r"0  (llvmpipe \(LLVM .*?(\d+) bits\))", self.render("--list-devices", environment=two))
+        for choice in (name[1], "LLVMpipe", name[2], "0"):
+            arguments = ["quad.json", "--headless", "--width=8", "--height=8", "--samples=1", "--backend=compute", "--device", choice]
+            self.assertIn(name[1], self.render(*arguments, environment=one))
+            if choice != "0":
+                self.assert_refused(arguments, re.escape(choice), "choose by number, such as --device 0", code=2, environment=two)
 
     def test_backends_work_or_are_refused(self):
         devices = self.render("--list-devices")
