@@ -68,6 +68,10 @@ class WhatIsBuilt(ProgramTest):
             self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$", regex)
             self.assertRegex(noted, rf"(?m)^ctest .* -R {re.escape(regex)}$")
 
+    def test_the_name_of_a_test_may_not_be_missing(self):
+        for arguments in (["test", "-R"], ["test", 3, "-R"]):
+            self.assert_refused(arguments, "-R needs the name of a test", program=self.folder / "tree/lab")
+
     def test_what_is_not_named_is_left_to_all(self):
         for arguments, targets, choice in (((), "all", r" -LE \^all\$"), (("--all",), "all only_in_all", ""),
                                            (("--quick",), "quick_tests", r" -L \^quick\$"), (("-I", "1,,6"), "all", r" -LE \^all\$ -I 1,,6")):

@@ -54,6 +54,13 @@ class LabBuildTest(ProgramTest):
         self.assertEqual([(process.returncode, out) for process, (out, _) in zip(both, ends)], [(0, "first\n")] * 2, ends)
         self.assertEqual(sum("waiting for another ./lab" in err for _, err in ends), 1, ends)
 
+    def test_without_the_folder_for_temporary_files(self):
+        (self.tree / "build").mkdir()
+        environment = {"TMPDIR": str(self.folder / "nowhere")}
+        code, out, err = self.run_program("run", 1, program=self.tree / "lab", environment=environment)
+        self.assertEqual((code, out), (0, "first\n"), err)
+        self.assertNotIn("mktemp", err)
+
     def test_others_run_what_they_may_not_build(self):
         """As in a computer room, whose checkout belongs to somebody else."""
         def become_somebody_else():
