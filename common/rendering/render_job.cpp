@@ -30,7 +30,7 @@ void check_sample_count(const RenderJob& job) {
 
 void check_scene(const Chapter& chapter, const Scene& scene) {
     if (features_of(scene).dielectrics && !chapter.dielectrics)
-        throw UserError(scene.file.string() + ": has a dielectric (d < 1), which " + chapter.name +
+        throw UserError(scene.file.string() + ": has a dielectric (d < 1 or Tr > 0), which " + chapter.name +
                         " cannot render: use chapter 6, ./lab run 6");
 }
 

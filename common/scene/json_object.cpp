@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <vector>
 
 #include "error.h"
 #include "files/file.h"
@@ -24,12 +26,18 @@ bool is_number(const json& value) {
 }  // namespace
 
 json parse_json(const std::string& file, const std::string& text) {
-    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
+    std::vector<std::set<std::string>> keys;  // of the objects around the current place
+    const auto check = [&](int depth, json::parse_event_t event, const json& value) {
         if (depth > max_depth) throw UserError(file + ": brackets are nested more than 16 deep");
+        if (event == json::parse_event_t::object_start) keys.emplace_back();
+        if (event == json::parse_event_t::object_end) keys.pop_back();
+        if (event == json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second)
+            throw UserError(file + ": the key " + in_quotes(value.get<std::string>()) +
+                            " stands twice in one object: remove one");
         return true;
     };
     try {
-        return json::parse(text, limit_depth);
+        return json::parse(text, check);
     } catch (const json::parse_error& error) {
         const size_t end = std::min(error.byte, text.size());
         const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');

@@ -9,7 +9,7 @@
 
 namespace lab {
 
-// Parses JSON. Throws UserError for syntax errors, with the line number, and for deep nesting.
+// Parses JSON. Throws UserError for syntax errors, with the line number, for deep nesting, and for a key that stands twice.
 nlohmann::json parse_json(const std::string& file, const std::string& text);
 
 // An object whose keys are read one by one. Throws UserError for values of the wrong type or out of range; absent keys give an

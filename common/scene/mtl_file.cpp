@@ -1,13 +1,10 @@
 #include "scene/mtl_file.h"
 
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "error.h"
 #include "scene/microfacets.h"
@@ -31,55 +28,81 @@ const std::map<std::string_view, Numbers> number_keywords = {
 };
 const std::set<std::string_view> other_keywords = {"newmtl", "map_Kd", "Ka", "illum"};
 
-// What tinyobjloader does not report: the whole name (its releases differ after a space), and which of these keywords a material
-// has at all.
-struct Stated {
-    std::string name;
-    bool diffuse = false;
-    bool transmittance = false;
-    bool refractive_index = false;
-    bool roughness = false;
-    bool metalness = false;
+// Options of a texture, and how many words may follow them. All but the first of these are numbers that may be left out.
+const std::map<std::string_view, size_t> texture_options = {
+    {"-blendu", 1},     {"-blendv", 1}, {"-clamp", 1}, {"-cc", 1}, {"-type", 1}, {"-imfchan", 1}, {"-texres", 1},
+    {"-colorspace", 1}, {"-bm", 1},     {"-boost", 1}, {"-mm", 2}, {"-o", 3},    {"-s", 3},       {"-t", 3},
 };
 
-// Checks all numbers, since tinyobjloader reads missing or malformed ones as 0. Returns one element per material.
-std::vector<Stated> check_lines(const std::string& file, std::string_view text, std::vector<std::string>& warnings) {
+constexpr const char* transparent = "is transparent (d < 1 or Tr > 0)";
+
+// A material's statements.
+struct Stated {
+    std::string name;
+    std::map<std::string_view, vec3> numbers;  // by keyword, with Tf for Kt; the last statement of a keyword counts
+    std::string texture;                       // empty without map_Kd
+
+    bool has(std::string_view keyword) const { return numbers.contains(keyword); }
+    vec3 vector(std::string_view keyword, vec3 absent) const { return has(keyword) ? numbers.at(keyword) : absent; }
+    float number(std::string_view keyword, float absent) const { return vector(keyword, vec3(absent)).x; }
+    float opacity() const { return has("d") ? number("d", 1) : 1 - number("Tr", 0); }
+};
+
+// Reads a statement with numbers.
+void read_numbers(const Statements& statement, Stated& material) {
+    const auto known = number_keywords.find(statement.keyword());
+    const auto& [keyword, allowed] = *known;
+    const std::string name(keyword);
+    const std::vector<std::string_view>& words = statement.words();
+    if (words.size() < allowed.count)
+        statement.fail(name + " needs " + (allowed.count == 1 ? "a number" : std::to_string(allowed.count) + " numbers"));
+    vec3& values = material.numbers[keyword == "Kt" ? "Tf" : keyword];
+    for (size_t i = 0; i < allowed.count; ++i) {
+        const std::optional<float> number = to_number(words[i]);
+        if (!number || *number < 0 || *number > allowed.largest)
+            statement.fail(name + " " + in_quotes(words[i]) +
+                           (allowed.largest == any ? ": must be a finite number, at least 0" : ": must be a number in [0,1]"));
+        values[static_cast<int>(i)] = *number;
+    }
+}
+
+// Reads the name behind map_Kd. Options may stand before and behind it; they are ignored.
+void read_texture_name(const Statements& statement, Stated& material, std::set<std::string>& ignored) {
+    const std::vector<std::string_view>& words = statement.words();
+    std::string_view name;
+    for (size_t i = 0; i < words.size(); ++i) {
+        const auto option = texture_options.find(words[i]);
+        if (option == texture_options.end()) {
+            // The name goes on, with the blanks in it.
+            const char* const start = name.empty() ? words[i].data() : name.data();
+            name = std::string_view(start, static_cast<size_t>(words[i].data() + words[i].size() - start));
+            continue;
+        }
+        ignored.insert("options of map_Kd");
+        const size_t last = i + option->second;
+        for (++i; i < last && i + 1 < words.size() && to_number(words[i + 1]);) ++i;
+    }
+    if (name.empty()) ignored.insert("map_Kd without a name");
+    material.texture = to_path(name);
+}
+
+std::vector<Stated> read_statements(Statements statements, const std::string& file, std::vector<std::string>& warnings) {
     std::vector<Stated> materials;
     std::set<std::string> ignored;
-    for (size_t line_number = 1; !text.empty(); ++line_number) {
-        const std::string_view line = take_line(text);
-        const std::vector<std::string_view> words = words_of(line);
-        if (words.empty()) continue;
-        const auto fail = [&](const std::string& reason) { fail_at_line(file, line_number, reason); };
-        const std::string keyword(words[0]);
+    while (statements.next()) {
+        const std::string_view keyword = statements.keyword();
         if (keyword == "newmtl") {
-            if (name_in(line).empty()) fail("newmtl needs a name");
-            // tinyobjloader would read it as a different keyword.
-            if (line.substr(line.find("newmtl")).starts_with("newmtl#")) fail("newmtl needs a space after it");
-            materials.emplace_back().name = name_in(line);
+            if (statements.name().empty()) statements.fail("newmtl needs a name");
+            materials.emplace_back().name = statements.name();
         } else if (materials.empty()) {
-            fail("not a material file: it must start with newmtl");
+            statements.fail("not a material file: it must start with newmtl");
         }
-        if (keyword == "Kd") materials.back().diffuse = true;
-        if (keyword == "Tf" || keyword == "Kt") materials.back().transmittance = true;
-        if (keyword == "Ni") materials.back().refractive_index = true;
-        if (keyword == "Pr") materials.back().roughness = true;
-        if (keyword == "Pm") materials.back().metalness = true;
-        if (keyword == "map_Kd" && words.size() > 1 && words[1].starts_with('-')) ignored.insert("options of map_Kd");
-
-        if (const auto known = number_keywords.find(keyword); known != number_keywords.end()) {
-            const auto [count, largest] = known->second;
-            if (words.size() < count + 1)
-                fail(keyword + " needs " + (count == 1 ? "a number" : std::to_string(count) + " numbers"));
-            for (size_t i = 1; i <= count; ++i) {
-                const std::optional<float> number = to_number(words[i]);
-                if (!number || *number < 0 || *number > largest)
-                    fail(keyword + " " + in_quotes(words[i]) +
-                         (largest == any ? ": must be a finite number, at least 0" : ": must be a number in [0,1]"));
-            }
-        } else if (!other_keywords.contains(keyword)) {
+        if (number_keywords.contains(keyword))
+            read_numbers(statements, materials.back());
+        else if (keyword == "map_Kd")
+            read_texture_name(statements, materials.back(), ignored);
+        else if (!other_keywords.contains(keyword))
             ignored.insert(in_quotes(keyword));
-        }
     }
     if (materials.empty()) throw UserError(file + ": there is no material (newmtl) in it");
     if (!ignored.empty()) {
@@ -95,92 +118,79 @@ std::vector<Stated> check_lines(const std::string& file, std::string_view text, 
     return materials;
 }
 
-// A smooth dielectric with the index and transmittance that the file states.
-void make_dielectric(const std::string& file, const tinyobj::material_t& source, const Stated& stated, Material& material) {
-    const auto fail = [&](const std::string& reason) {
-        throw UserError(file + ": material " + in_quotes(stated.name) + ": " + reason);
-    };
+// A smooth dielectric with the index and transmittance that the file states. `subject` starts messages.
+void make_dielectric(const std::string& subject, const Stated& stated, Material& material, std::vector<std::string>& warnings) {
+    material.refractive_index = stated.number("Ni", 1);
     // Nothing transparent lies outside this range, and Fresnel's formulas would overflow.
-    if (!(source.ior >= 0.01f && source.ior <= 100))
-        fail("is transparent (d < 1) and needs a refractive index Ni from 0.01 to 100");
-    material.refractive_index = source.ior;
-    if (!stated.transmittance) return;
+    if (!(material.refractive_index >= 0.01f && material.refractive_index <= 100))
+        throw UserError(subject + transparent + " and needs a refractive index Ni from 0.01 to 100");
+    const vec3 transmittance = stated.vector("Tf", vec3(1));
     for (int channel = 0; channel < 3; ++channel) {
-        const float transmittance = source.transmittance[channel];
-        if (!(transmittance > 0)) fail("Tf 0 absorbs everything at once: Tf must be in (0,1]");
-        material.absorption[channel] = std::max(0.0f, -std::log(transmittance));
+        if (!(transmittance[channel] > 0)) throw UserError(subject + "Tf 0 absorbs everything at once: Tf must be in (0,1]");
+        material.absorption[channel] = std::max(0.0f, -std::log(transmittance[channel]));
     }
+    if (material.refractive_index == 1 && material.absorption == vec3(0))
+        warnings.push_back(subject + transparent + ", and with Ni 1 it is invisible: state Ni, or d 1 if it is opaque");
 }
 
-vec3 to_vec3(const float (&values)[3]) { return {values[0], values[1], values[2]}; }
-
 // Microfacets from Pr. Contradictions get a warning that says what takes effect.
-Microfacets read_microfacets(const std::string& file, const tinyobj::material_t& source, const Stated& stated,
-                             std::vector<std::string>& warnings) {
-    const std::string subject = file + ": material " + in_quotes(stated.name) + ": ";
-    const bool is_dielectric = source.dissolve < 1, is_metal = stated.metalness && source.metallic > 0;
-    if (is_metal && !stated.roughness) warnings.push_back(subject + "Pm has no effect without Pr, the roughness");
+Microfacets read_microfacets(const std::string& subject, const Stated& stated, std::vector<std::string>& warnings) {
+    const float metalness = stated.number("Pm", 0), stated_roughness = stated.number("Pr", 0);
     Microfacets microfacets{};
-    if (!stated.roughness) return microfacets;
-    if (is_dielectric) {
-        if (is_metal) warnings.push_back(subject + "is transparent (d < 1), so that Pm has no effect");
-        // At an index of 1 nothing bends, however rough.
-        const bool is_smooth = source.roughness < smallest_roughness || source.ior == 1;
-        microfacets.roughness = is_smooth ? 0 : source.roughness * source.roughness;
+    if (!stated.has("Pr")) {
+        if (metalness > 0) warnings.push_back(subject + "Pm has no effect without Pr, the roughness");
         return microfacets;
     }
-    if (source.roughness < smallest_roughness)
+    if (stated.opacity() < 1) {
+        if (metalness > 0) warnings.push_back(subject + transparent + ", so that Pm has no effect");
+        // At an index of 1 nothing bends, however rough.
+        const bool is_smooth = stated_roughness < smallest_roughness || stated.number("Ni", 1) == 1;
+        microfacets.roughness = is_smooth ? 0 : stated_roughness * stated_roughness;
+        return microfacets;
+    }
+    if (stated_roughness < smallest_roughness)
         warnings.push_back(subject + "Pr below 0.01 makes a lobe that 32 bits cannot tell from a mirror's: it becomes 0.01");
-    if (stated.transmittance && to_vec3(source.transmittance) != vec3(1))
-        warnings.push_back(subject + "is opaque (d is 1), so that Tf has no effect");
-    microfacets.coat_index = stated.refractive_index ? source.ior : default_coat_index;
+    if (stated.vector("Tf", vec3(1)) != vec3(1)) warnings.push_back(subject + "is opaque (d is 1), so that Tf has no effect");
+    // A metal has no coat, and may have any index: that of gold is below 1.
+    microfacets.coat_index = metalness == 1 ? default_coat_index : stated.number("Ni", default_coat_index);
     if (!(microfacets.coat_index >= 1 && microfacets.coat_index <= 100))
         throw UserError(subject + "has a coat (Pr) and needs a refractive index Ni from 1 to 100");
-    const float roughness = std::max(source.roughness, smallest_roughness);
+    const float roughness = std::max(stated_roughness, smallest_roughness);
     microfacets.roughness = roughness * roughness;
-    if (stated.metalness) microfacets.metalness = source.metallic;
+    microfacets.metalness = metalness;
     return microfacets;
+}
+
+MtlMaterial make_material(const std::string& file, const Stated& stated, const std::filesystem::path& texture_folder,
+                          std::vector<std::string>& warnings) {
+    const std::string subject = file + ": material " + in_quotes(stated.name) + ": ";
+    const bool has_texture = !stated.texture.empty(), is_opaque = !(stated.opacity() < 1);
+    Material material = {
+        .diffuse_albedo = stated.vector("Kd", vec3(has_texture ? 1 : 0)),
+        .albedo_texture = -1,
+        .emission = stated.vector("Ke", vec3(0)),
+        .specular_exponent = stated.number("Ns", 1),
+        .specular_albedo = stated.vector("Ks", vec3(0)),
+        .refractive_index = 0,
+        .absorption = vec3(0),
+        .light_density = 0,
+    };
+    if (!is_opaque) make_dielectric(subject, stated, material, warnings);
+    if (is_opaque && has_texture && material.diffuse_albedo == vec3(0))
+        warnings.push_back(subject + "Kd 0 makes map_Kd black, as they are multiplied: set Kd 1 1 1 to see the texture");
+    const Microfacets microfacets = read_microfacets(subject, stated, warnings);
+    if (stated.has("Pr")) material.specular_albedo = vec3(0);  // microfacets replace the Phong lobe
+    return {stated.name, material, has_texture ? texture_folder / stated.texture : "", microfacets};
 }
 
 }  // namespace
 
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::filesystem::path& texture_folder,
                                   SourceFiles& files, std::vector<std::string>& warnings) {
-    const std::string name = file.string();
-    const std::string text = clean_text(files.read(file, max_mtl_bytes));
-    if (text.find('\0') != std::string::npos) throw UserError(name + ": not a material file: it is binary");
-    const std::vector<Stated> stated = check_lines(name, text, warnings);
-
-    std::map<std::string, int> indices;
-    std::vector<tinyobj::material_t> sources;
-    std::istringstream stream(text);
-    tinyobj::LoadMtl(&indices, &sources, &stream, nullptr, nullptr);
-
+    const std::string name = file.string(), text = files.read(file, max_mtl_bytes);
     std::vector<MtlMaterial> materials;
-    for (size_t i = 0; i < stated.size(); ++i) {
-        const tinyobj::material_t& source = sources.at(i);
-        Material material = {
-            .diffuse_albedo = to_vec3(source.diffuse),
-            .albedo_texture = -1,
-            .emission = to_vec3(source.emission),
-            .specular_exponent = source.shininess,
-            .specular_albedo = to_vec3(source.specular),
-            .refractive_index = 0,
-            .absorption = vec3(0),
-            .light_density = 0,
-        };
-        std::filesystem::path texture;
-        if (!source.diffuse_texname.empty()) {
-            std::string relative = source.diffuse_texname;
-            std::replace(relative.begin(), relative.end(), '\\', '/');  // as on Windows
-            texture = texture_folder / relative;
-            if (!stated[i].diffuse) material.diffuse_albedo = vec3(1);
-        }
-        if (source.dissolve < 1) make_dielectric(name, source, stated[i], material);
-        const Microfacets microfacets = read_microfacets(name, source, stated[i], warnings);
-        if (stated[i].roughness) material.specular_albedo = vec3(0);  // microfacets replace the Phong lobe
-        materials.push_back({stated[i].name, material, texture, microfacets});
-    }
+    for (const Stated& stated : read_statements(Statements(name, text), name, warnings))
+        materials.push_back(make_material(name, stated, texture_folder, warnings));
     return materials;
 }
 

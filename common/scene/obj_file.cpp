@@ -1,170 +1,131 @@
 #include "scene/obj_file.h"
 
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
-#include <span>
-#include <streambuf>
 #include <unordered_map>
 
 #include "error.h"
-#include "scene/text_lines.h"
 #include "scene/triangulate.h"
 
 namespace lab {
 namespace {
 
 constexpr uint64_t max_obj_bytes = uint64_t{1} << 30;
-constexpr int max_polygon_corners = 256;
+constexpr size_t max_polygon_corners = 256;
 constexpr size_t max_library_names = 256;
 
-// Lets tinyobjloader read from memory, and knows which line it read last.
-class TextBuffer : public std::streambuf {
-  public:
-    explicit TextBuffer(std::string& text) {
-        setg(text.data(), text.data(), text.data() + text.size());
-        counted_end_ = eback();
-    }
-
-    std::string_view last_line() const {
-        std::string_view line(eback(), static_cast<size_t>(gptr() - eback()));
-        if (line.ends_with('\n')) line.remove_suffix(1);
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        const size_t end_before = line.find_last_of("\r\n");
-        return end_before == std::string_view::npos ? line : line.substr(end_before + 1);
-    }
-
-    // Counts on from the previous call.
-    size_t last_line_number() const {
-        std::string_view text(counted_end_, static_cast<size_t>(gptr() - counted_end_));
-        for (; !text.empty(); ++counted_lines_) take_line(text);
-        counted_end_ = gptr();
-        return counted_lines_;
-    }
-
-  private:
-    mutable const char* counted_end_;
-    mutable size_t counted_lines_ = 0;
+// A name behind usemtl, and how many faces use it.
+struct UsedMaterial {
+    std::string name;
+    size_t line = 0;  // of its first usemtl; 0 for the faces before any
+    size_t face_count = 0;
 };
 
-// Collects what tinyobjloader's callbacks report.
-class ObjReader : public tinyobj::MaterialReader {
+MtlMaterial grey_material() {
+    Material material{};
+    material.diffuse_albedo = vec3(0.5f);
+    material.albedo_texture = -1;
+    return {"", material, {}};
+}
+
+class ObjReader {
   public:
     ObjReader(const std::filesystem::path& path, SourceFiles& files, std::vector<std::string>& warnings)
-        : path_(path), files_(files), warnings_(warnings), text_(clean_text(files.read(path, max_obj_bytes))), buffer_(text_) {
+        : path_(path),
+          files_(files),
+          warnings_(warnings),
+          text_(files.read(path, max_obj_bytes)),
+          statements_(path.string(), text_) {
         obj_.file = path.string();
     }
 
     ObjFile read() {
-        if (text_.find('\0') != std::string::npos) throw UserError(obj_.file + ": not an .obj file: it is binary");
-        check_faces_without_corners();
-        tinyobj::callback_t callbacks;
-        callbacks.vertex_cb = [](void* self, float x, float y, float z, float) {
-            static_cast<ObjReader*>(self)->check_numbers(3);
-            static_cast<ObjReader*>(self)->obj_.positions.emplace_back(x, y, z);
-        };
-        callbacks.normal_cb = [](void* self, float x, float y, float z) {
-            static_cast<ObjReader*>(self)->check_numbers(3);
-            static_cast<ObjReader*>(self)->obj_.normals.emplace_back(x, y, z);
-        };
-        callbacks.texcoord_cb = [](void* self, float u, float v, float) {
-            static_cast<ObjReader*>(self)->check_numbers(1);
-            static_cast<ObjReader*>(self)->check_texture_coordinate(u, v);
-            static_cast<ObjReader*>(self)->obj_.texture_coordinates.emplace_back(u, v);
-        };
-        callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
-            static_cast<ObjReader*>(self)->add_face({indices, static_cast<size_t>(count)});
-        };
-        callbacks.usemtl_cb = [](void* self, const char*, int) { static_cast<ObjReader*>(self)->use_material(); };
-        std::istream stream(&buffer_);
-        tinyobj::LoadObjWithCallback(stream, callbacks, this, this);
-
+        while (statements_.next()) {
+            const std::string_view keyword = statements_.keyword();
+            if (keyword == "v") add_position();
+            if (keyword == "vn") obj_.normals.push_back(numbers(3));
+            if (keyword == "vt") add_texture_coordinates();
+            if (keyword == "f") add_face();
+            if (keyword == "usemtl") use_material();
+            if (keyword == "mtllib") read_libraries();
+        }
         if (obj_.corners.empty()) throw UserError(obj_.file + ": there are no faces in it");
-        if (faces_without_material_ > 0)
-            missing_ += ": " + std::to_string(faces_without_material_) + " faces without a material are drawn in grey";
-        if (!missing_.empty()) warnings_.push_back((missing_.starts_with(':') ? obj_.file : "") + missing_);
+        if (has_weights_ || has_colours_)
+            warnings_.push_back(obj_.file + ": without effect here: " + (has_colours_ ? "colours" : "weights") + " of vertices");
+        resolve_materials();
         return std::move(obj_);
     }
 
-    // Called for a word after mtllib. Exporters do not escape spaces, so all words together are tried first, and then each one
-    // until one of them is a file.
-    bool operator()(const std::string&, std::vector<tinyobj::material_t>*, std::map<std::string, int>*, std::string*,
-                    std::string*) override {
-        std::string all(name_in(buffer_.last_line()));
-        std::erase(all, '\\');  // escapes a space
-        const std::filesystem::path folder = path_.parent_path();
-        std::vector<std::string_view> names = words_of(buffer_.last_line());
-        names[0] = all;
-        for (const std::string_view name : names) {
-            if (++library_names_ > max_library_names) fail("more than 256 names of material files");
-            std::error_code ignored;  // a name that the file system refuses is not a file
-            if (!std::filesystem::exists(folder / name, ignored)) continue;
-            read_library(folder / name);
-            return true;
-        }
-        note_missing("there is no material file " + in_quotes(all));
-        return true;
-    }
-
   private:
-    [[noreturn]] void fail(const std::string& reason) const { fail_at_line(obj_.file, buffer_.last_line_number(), reason); }
-
-    // tinyobjloader reads anything but a finite number as 0.
-    void check_numbers(size_t count) const {
-        const std::vector<std::string_view> words = words_of(buffer_.last_line());
-        if (words.size() < count + 1) fail(std::string(words[0]) + " needs " + std::to_string(count) + " numbers");
-        for (size_t i = 1; i < words.size(); ++i)
-            if (!to_number(words[i])) fail(in_quotes(words[i]) + " is not a finite number");
-    }
-
-    void check_texture_coordinate(float u, float v) const {
-        constexpr float limit = 8388608;  // 2^23
-        if (std::max(std::abs(u), std::abs(v)) > limit)
-            fail("texture coordinates beyond 2^23 are whole numbers in 32 bits and place nothing");
-    }
-
-    // tinyobjloader reads a missing number as 0, and wraps those of more than 32 bits.
-    void check_indices() const {
-        std::string_view line = buffer_.last_line();
-        line.remove_prefix(line.find('f') + 1);
-        size_t digits = 0;
-        for (const char c : line) {
-            digits = c >= '0' && c <= '9' ? digits + 1 : 0;
-            if (digits > 9) fail("an index has more than 9 digits");
-            if (digits == 0 && c != '-' && c != '/' && c != ' ' && c != '\t') fail("a face must be made of vertex indices");
+    // The first three numbers of the statement, of which `needed` must be there.
+    vec3 numbers(size_t needed) const {
+        const std::vector<std::string_view>& words = statements_.words();
+        if (words.size() < needed)
+            statements_.fail(std::string(statements_.keyword()) + " needs " + (needed == 1 ? "a number" : "3 numbers"));
+        vec3 values(0);
+        for (size_t i = 0; i < words.size(); ++i) {
+            const std::optional<float> number = to_number(words[i]);
+            if (!number) statements_.fail(in_quotes(words[i]) + " is not a finite number");
+            if (i < 3) values[static_cast<int>(i)] = *number;
         }
+        return values;
     }
 
-    // Indices start at 1, negative ones count from the end; tinyobjloader reports 0 for absent ones.
-    uint32_t resolve(int index, size_t count, const char* what) const {
+    // Behind a position some programs write a weight, others red, green and blue.
+    void add_position() {
+        obj_.positions.push_back(numbers(3));
+        const std::vector<std::string_view>& words = statements_.words();
+        has_weights_ |= words.size() == 4 && to_number(words[3]) != 1.0f;
+        has_colours_ |= words.size() > 5;
+    }
+
+    void add_texture_coordinates() {
+        const vec2 coordinates(numbers(1));
+        constexpr float limit = 8388608;  // 2^23
+        if (std::max(std::abs(coordinates.x), std::abs(coordinates.y)) > limit)
+            statements_.fail("texture coordinates beyond 2^23 are whole numbers in 32 bits and place nothing");
+        obj_.texture_coordinates.push_back(coordinates);
+    }
+
+    // Removes an index and the slash behind it from a corner, and returns its place in an array of `count` elements. Indices
+    // start at 1, negative ones count from the end, and 0 stands for none.
+    uint32_t take_index(std::string_view& corner, size_t count, const char* what) const {
+        const size_t length = std::min(corner.find('/'), corner.size());
+        int index = 0;
+        if (length > 0) {
+            const auto [end, error] = std::from_chars(corner.data(), corner.data() + length, index);
+            if (error == std::errc::result_out_of_range) statements_.fail("an index has more than 9 digits");
+            if (end != corner.data() + length) statements_.fail("a face must be made of vertex indices");
+        }
+        corner.remove_prefix(std::min(length + 1, corner.size()));
+        if (index == 0) return ObjCorner::none;
         const int64_t resolved = index > 0 ? int64_t{index} - 1 : static_cast<int64_t>(count) + index;
-        if (index == 0 || resolved < 0 || resolved >= static_cast<int64_t>(count))
-            fail("the face refers to " + std::string(what) + " " + std::to_string(index) + ", but there are " +
-                 std::to_string(count) + " so far (counted from 1)");
+        if (resolved < 0 || resolved >= static_cast<int64_t>(count)) refuse_index(index, count, what);
         return static_cast<uint32_t>(resolved);
     }
 
-    void add_face(std::span<const tinyobj::index_t> indices) {
-        check_indices();
-        if (indices.size() < 3) fail("a face needs at least 3 corners");
-        if (indices.size() > max_polygon_corners) fail("a face may have at most 256 corners: triangulate it");
+    [[noreturn]] void refuse_index(int index, size_t count, const char* what) const {
+        statements_.fail("the face refers to " + std::string(what) + " " + std::to_string(index) + ", but there are " +
+                         std::to_string(count) + " so far (counted from 1)");
+    }
+
+    void add_face() {
+        const std::vector<std::string_view>& words = statements_.words();
+        if (words.size() < 3) statements_.fail("a face needs at least 3 corners");
+        if (words.size() > max_polygon_corners) statements_.fail("a face may have at most 256 corners: triangulate it");
         face_.clear();
-        for (const tinyobj::index_t& index : indices) {
+        for (std::string_view word : words) {
             ObjCorner& corner = face_.emplace_back();
-            corner.position = resolve(index.vertex_index, obj_.positions.size(), "vertex");
-            if (index.texcoord_index != 0)
-                corner.texture_coordinates = resolve(index.texcoord_index, obj_.texture_coordinates.size(), "texture coordinate");
-            if (index.normal_index != 0) corner.normal = resolve(index.normal_index, obj_.normals.size(), "normal");
+            corner.position = take_index(word, obj_.positions.size(), "vertex");
+            if (corner.position == ObjCorner::none) refuse_index(0, obj_.positions.size(), "vertex");
+            corner.texture_coordinates = take_index(word, obj_.texture_coordinates.size(), "texture coordinate");
+            corner.normal = take_index(word, obj_.normals.size(), "normal");
+            if (!word.empty()) statements_.fail("a face must be made of vertex indices");
         }
-        if (!material_) {
-            material_ = static_cast<uint32_t>(obj_.materials.size());
-            obj_.materials.push_back(grey_material());
-            grey_ = material_;
-        }
-        if (material_ == grey_) ++faces_without_material_;
+        ++used_materials_[used_material_].face_count;
         if (face_.size() == 3) {
             add_triangle(0, 1, 2);
         } else {
@@ -174,67 +135,91 @@ class ObjReader : public tinyobj::MaterialReader {
         }
     }
 
-    // tinyobjloader skips them silently.
-    void check_faces_without_corners() const {
-        for (size_t end = text_.find("\nf"); end != std::string::npos; end = text_.find("\nf", end + 1)) {
-            const size_t next = end + 2;
-            if (next == text_.size() || text_[next] == '\n' || text_[next] == '\r')
-                fail_at_line(obj_.file, 2 + std::count(text_.begin(), text_.begin() + end, '\n'),
-                             "a face needs at least three corners");
-        }
-    }
-
     void add_triangle(uint32_t a, uint32_t b, uint32_t c) {
-        if (obj_.triangle_materials.size() == max_triangle_count) fail("there are more than 2^28 - 1 triangles");
+        if (obj_.triangle_materials.size() == max_triangle_count) statements_.fail("there are more than 2^28 - 1 triangles");
         const size_t capacity = obj_.corners.capacity();  // doubles when it is used up
         if (obj_.corners.size() == capacity && 2 * capacity * sizeof(ObjCorner) > memory_limit(text_.size()))
-            fail("its triangles need far more memory than a file of its size should");
+            statements_.fail("its triangles need far more memory than a file of its size should");
         obj_.corners.insert(obj_.corners.end(), {face_[a], face_[b], face_[c]});
-        obj_.triangle_materials.push_back(*material_);
-        obj_.triangle_lines.push_back(static_cast<uint32_t>(buffer_.last_line_number()));
+        obj_.triangle_materials.push_back(used_material_);
+        obj_.triangle_lines.push_back(static_cast<uint32_t>(statements_.line()));
     }
 
-    void read_library(const std::filesystem::path& file) {
-        if (!libraries_.insert(file.lexically_normal()).second) return;  // already read: the first material of a name counts
-        for (MtlMaterial& material : read_mtl(file, path_.parent_path(), files_, warnings_)) {
-            material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));
+    // Exporters do not escape spaces, so all words together are tried before each of them. A folder may have the name of a word.
+    void read_libraries() {
+        std::error_code ignored;
+        bool is_found = read_library(statements_.name());
+        if (!is_found)
+            for (const std::string_view name : statements_.words())
+                if (!std::filesystem::is_directory(path_.parent_path() / to_path(name), ignored)) is_found |= read_library(name);
+        if (!is_found) note_missing(statements_.line(), "there is no material file " + in_quotes(statements_.name()));
+    }
+
+    // Returns false if there is no such file.
+    bool read_library(std::string_view name) {
+        if (++library_names_ > max_library_names) statements_.fail("more than 256 names of material files");
+        const std::filesystem::path folder = path_.parent_path(), file = folder / to_path(name);
+        std::error_code ignored;  // a name that the file system refuses is not a file
+        if (name.empty() || !std::filesystem::exists(file, ignored)) return false;
+        if (!libraries_.insert(file.lexically_normal()).second) return true;  // already read
+        for (MtlMaterial& material : read_mtl(file, folder, files_, warnings_)) {
+            material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));  // the first one counts
             obj_.materials.push_back(std::move(material));
         }
+        return true;
     }
 
     void use_material() {
-        const std::string name(name_in(buffer_.last_line()));
-        const auto found = material_indices_.find(name);
-        if (found == material_indices_.end()) note_missing("there is no material " + in_quotes(name));
-        material_ = found == material_indices_.end() ? grey_ : found->second;
+        const auto [used, is_new] =
+            used_indices_.try_emplace(std::string(statements_.name()), static_cast<uint32_t>(used_materials_.size()));
+        if (is_new) used_materials_.push_back({used->first, statements_.line()});
+        used_material_ = used->second;
     }
 
     // Models from elsewhere often lack their materials: they are rendered grey, and the first missing one is named.
-    void note_missing(const std::string& what) {
-        if (missing_.empty()) missing_ = obj_.file + ":" + std::to_string(buffer_.last_line_number()) + ": " + what;
+    void note_missing(size_t line, const std::string& what) {
+        if (missing_line_ > 0 && missing_line_ <= line) return;
+        missing_line_ = line;
+        missing_ = ":" + std::to_string(line) + ": " + what;
     }
 
-    static MtlMaterial grey_material() {
-        Material material{};
-        material.diffuse_albedo = vec3(0.5f);
-        material.albedo_texture = -1;
-        return {"", material, {}};
+    // At the end, since a material file may be named behind the faces that use it.
+    void resolve_materials() {
+        std::vector<uint32_t> materials;
+        size_t grey_face_count = 0;
+        const auto grey = static_cast<uint32_t>(obj_.materials.size());
+        for (const auto& [name, line, face_count] : used_materials_) {
+            const auto material = material_indices_.find(name);
+            const bool is_missing = material == material_indices_.end();
+            materials.push_back(is_missing ? grey : material->second);
+            if (!is_missing) continue;
+            grey_face_count += face_count;
+            if (line > 0) note_missing(line, name.empty() ? "usemtl needs a name" : "there is no material " + in_quotes(name));
+        }
+        for (uint32_t& material : obj_.triangle_materials) material = materials[material];
+        if (grey_face_count > 0) {
+            obj_.materials.push_back(grey_material());
+            missing_ += ": " + std::to_string(grey_face_count) + " faces without a material are drawn in grey";
+        }
+        if (!missing_.empty()) warnings_.push_back(obj_.file + missing_);
     }
 
     const std::filesystem::path& path_;
     SourceFiles& files_;
     std::vector<std::string>& warnings_;
-    std::string text_;
-    TextBuffer buffer_;
-    ObjFile obj_;
+    const std::string text_;
+    Statements statements_;
+    ObjFile obj_;  // until the end, its triangles refer to used_materials_
     std::vector<ObjCorner> face_;
     std::unordered_map<std::string, uint32_t> material_indices_;
-    std::optional<uint32_t> material_;  // of the next face, if usemtl named one
-    std::optional<uint32_t> grey_;
+    std::vector<UsedMaterial> used_materials_ = {{}};
+    std::unordered_map<std::string, uint32_t> used_indices_;
+    uint32_t used_material_ = 0;                 // of the next face
     std::set<std::filesystem::path> libraries_;  // material files that were read
     size_t library_names_ = 0;                   // tried so far
-    std::string missing_;                        // the first material or material file, with its line
-    size_t faces_without_material_ = 0;
+    size_t missing_line_ = 0;
+    std::string missing_;  // the first material or material file, with its line
+    bool has_weights_ = false, has_colours_ = false;
 };
 
 }  // namespace

@@ -3,105 +3,128 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
-#include <utility>
+#include <set>
 
 #include "error.h"
 
 namespace lab {
+namespace {
+
+constexpr std::string_view blanks = " \t", byte_order_mark = "\xef\xbb\xbf", end_of_text("\0\x1a\r\n \t", 6);
+
+// Statements that contain names. What follows the other keywords are numbers.
+bool has_names(std::string_view keyword) {
+    static const std::set<std::string_view> keywords = {"mtllib", "usemtl", "newmtl", "g",    "o",
+                                                        "bump",   "disp",   "decal",  "refl", "norm"};
+    return keyword.starts_with("map_") || keywords.contains(keyword);
+}
+
+bool is_blank(char c) { return blanks.find(c) != blanks.npos; }
+
+std::string_view trimmed(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
+std::string_view without_quotes(std::string_view name) {
+    const bool is_quoted = name.size() > 1 && name.starts_with('"') && name.ends_with('"');
+    return is_quoted ? name.substr(1, name.size() - 2) : name;
+}
+
+// Names such as "Material #25" contain a #, so a comment behind them has blanks around its #. Elsewhere only the # of 1.#IND and
+// the like does not begin a comment.
+std::string_view without_comment(std::string_view text, bool is_name) {
+    for (size_t i = text.find('#'); i != text.npos; i = text.find('#', i + 1)) {
+        const char before = i == 0 ? ' ' : text[i - 1], behind = i + 1 == text.size() ? ' ' : text[i + 1];
+        if (is_name ? is_blank(before) && is_blank(behind) : before != '.' || behind < 'A' || behind > 'Z')
+            return text.substr(0, i);
+    }
+    return text;
+}
+
+}  // namespace
 
 void fail_at_line(const std::string& file, size_t line, const std::string& reason) {
     throw UserError(file + ":" + std::to_string(line) + ": " + reason);
 }
 
-namespace {
-
-constexpr const char* blanks = " \t";
-
-// Where the comment of a line with numbers starts. Microsoft's run-time library writes 1.#QNAN and -1.#IND for what is no number.
-size_t find_comment(std::string_view line) {
-    size_t at = line.find('#');
-    while (at != std::string_view::npos && at > 0 && line[at - 1] == '.') at = line.find('#', at + 1);
-    return at;
+Statements::Statements(std::string file, std::string_view text) : file_(std::move(file)) {
+    // Up to the end of the last line with a statement. A NUL within it means a binary file.
+    const size_t end = text.find_last_not_of(end_of_text) + 1;
+    text_ = text.substr(0, text.find_first_of("\r\n", end) == text.npos ? end : text.find_first_of("\r\n", end));
+    if (text_.find('\0') != text_.npos) throw UserError(file_ + ": not a text file: it is binary");
 }
 
-// A face's line without its comment, and each corner without the slashes behind its last index, as in 1// and 1/2/.
-std::string cleaned_face(std::string_view line) {
-    std::string cleaned;
-    for (const char c : line.substr(0, find_comment(line))) {
-        if (c == ' ' || c == '\t') cleaned.resize(cleaned.find_last_not_of('/') + 1);
-        cleaned += c;
-    }
-    cleaned.resize(cleaned.find_last_not_of("/ \t") + 1);
-    return cleaned;
-}
+bool Statements::next() {
+    std::string_view line;
+    do {
+        if (text_.empty()) return false;
+        line = trimmed(take_line());
+        keyword_ = line.substr(0, line.find_first_of(" \t#\\"));
+    } while (keyword_.empty());
+    line_ = lines_taken_;
 
-}  // namespace
-
-std::string clean_text(std::string text) {
-    // ZBrush writes NULs behind the last line. A NUL within a line means a binary file, which readers refuse.
-    const size_t end = text.find_last_not_of(std::string_view("\0\r\n", 3)) + 1, line_end = text.find_first_of("\r\n", end);
-    text.resize(line_end == std::string::npos ? end : line_end);
-    std::string_view rest = text;
-    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-    std::string cleaned, joined;
-    cleaned.reserve(rest.size());
-    size_t joined_lines = 0;
-    while (!rest.empty()) {
-        std::string_view line = take_line(rest);
-        if (line.ends_with('\\') && !rest.empty()) {
-            joined += line.substr(0, line.size() - 1);
-            joined += ' ';
-            ++joined_lines;
-            continue;
+    const bool is_name = has_names(keyword_);
+    rest_ = trimmed(without_comment(line.substr(keyword_.size()), is_name));
+    if (rest_.ends_with('\\')) {
+        joined_.clear();
+        while (rest_.ends_with('\\')) {
+            joined_.append(rest_.substr(0, rest_.size() - 1)) += ' ';
+            rest_ = trimmed(without_comment(take_line(), is_name));
         }
-        if (joined_lines > 0) line = joined += line;
-        const size_t start = std::min(line.find_first_not_of(blanks), line.size());
-        if (line.substr(start).starts_with("f ") || line.substr(start).starts_with("f\t"))
-            cleaned += cleaned_face(line);
-        else
-            cleaned += line;
-        if (line.substr(start) == "usemtl") cleaned += ' ';  // tinyobjloader skips a keyword without a blank behind it
-        cleaned.append(1 + std::exchange(joined_lines, 0), '\n');
-        joined.clear();
+        rest_ = trimmed(joined_.append(rest_));
     }
-    return cleaned;
+    split(rest_, is_name);
+    return true;
 }
 
-std::string_view take_line(std::string_view& text) {
-    const size_t length = std::min(text.find_first_of("\r\n"), text.size());
-    const std::string_view line = text.substr(0, length);
-    text.remove_prefix(length);
-    text.remove_prefix(text.starts_with("\r\n") ? 2 : text.empty() ? 0 : 1);
+std::string_view Statements::name() const { return without_quotes(rest_); }
+
+std::string_view Statements::take_line() {
+    const size_t length = std::min(text_.find_first_of("\r\n"), text_.size());
+    std::string_view line = text_.substr(0, length);
+    text_.remove_prefix(length);
+    text_.remove_prefix(text_.starts_with("\r\n") ? 2 : text_.empty() ? 0 : 1);
+    ++lines_taken_;
+    if (line.starts_with(byte_order_mark)) line.remove_prefix(byte_order_mark.size());
     return line;
 }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-    line = line.substr(0, find_comment(line));
-    std::vector<std::string_view> words;
-    words.reserve(8);
-    for (;;) {
-        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-        if (line.empty()) return words;
-        words.push_back(line.substr(0, line.find_first_of(" \t")));
-        line.remove_prefix(words.back().size());
+void Statements::split(std::string_view line, bool is_name) {
+    words_.clear();
+    while (!line.empty()) {
+        const size_t quote = is_name && line.starts_with('"') ? line.find('"', 1) : line.npos;
+        const size_t end = std::min(line.find_first_of(blanks, quote == line.npos ? 0 : quote), line.size());
+        std::string_view word = line.substr(0, end);
+        if (!is_name && word.find('#') != word.npos) fail(in_quotes(word) + " is not a finite number");
+        if (keyword_ == "f") word = word.substr(0, word.find_last_not_of('/') + 1);
+        words_.push_back(word);
+        line = trimmed(line.substr(end));
     }
 }
 
-std::string_view name_in(std::string_view line) {
-    const size_t keyword = line.find_first_not_of(blanks);
-    line.remove_prefix(std::min(line.find_first_of(blanks, keyword), line.size()));
-    line = line.substr(0, std::min(line.find(" # "), line.find("\t# ")));
-    line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-    return line.substr(0, line.find_last_not_of(blanks) + 1);
+std::string to_path(std::string_view name) {
+    std::string path(without_quotes(name));
+    for (size_t i = path.find('\\'); i != path.npos; i = path.find('\\', i + 1)) {
+        if (path[i + 1] == ' ')
+            path.erase(i, 1);
+        else
+            path[i] = '/';
+    }
+    return path;
 }
 
 std::optional<float> to_number(std::string_view word) {
-    if (word.starts_with('+')) word.remove_prefix(1);
+    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (end != word.data() + word.size()) return std::nullopt;
+    // from_chars() tells numbers that are too large or too close to 0, but not which of the two they are.
+    if (error == std::errc::result_out_of_range && std::abs(std::strtod(std::string(word).c_str(), nullptr)) < 1) return 0.0f;
     const bool in_range = std::abs(value) <= std::numeric_limits<float>::max();  // false for NaN
-    if (error != std::errc() || end != word.data() + word.size() || !in_range) return std::nullopt;
+    if (error != std::errc() || !in_range) return std::nullopt;
     return static_cast<float>(value);
 }
 

@@ -4,6 +4,4 @@
 #define TINYEXR_USE_MINIZ 0
 #define TINYEXR_IMPLEMENTATION
 #include <tinyexr.h>
-#define TINYOBJLOADER_IMPLEMENTATION
-#include <tiny_obj_loader.h>
 // NOLINTEND

@@ -146,7 +146,7 @@ TEST_F(MeshFile, MicrofacetsThatContradictThemselvesSaySo) {
     EXPECT_EQ(count_warnings(load_material("Pm 1"), "Pm has no effect without Pr"), 1u);
     EXPECT_EQ(count_warnings(load_material("Pm 0"), "Pm"), 0u);
     const Scene glass = load_material("d 0.5\nNi 1.5\nPr 0.5\nPm 1");
-    EXPECT_EQ(count_warnings(glass, "is transparent (d < 1), so that Pm has no effect"), 1u);
+    EXPECT_EQ(count_warnings(glass, "is transparent (d < 1 or Tr > 0), so that Pm has no effect"), 1u);
     EXPECT_EQ(glass.microfacets.at(0).metalness, 0);
     EXPECT_EQ(count_warnings(load_material("Pr 0.5\nTf 0.5 1 1"), "is opaque (d is 1), so that Tf has no effect"), 1u);
     EXPECT_EQ(count_warnings(load_material("Pr 0.5\nTf 1 1 1"), "Tf"), 0u);
@@ -179,10 +179,10 @@ TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
         {"d 1.5", "d \"1.5\": must be a number in [0,1]"},
         {"d -halo 0.5", "\"-halo\""},
         {"Tr 2", "a.mtl:2: Tr"},
-        {" newmtl# lass", "a.mtl:2: newmtl needs a space"},
+        {" newmtl# lass", "a.mtl:2: newmtl needs a name"},
         {"Tf 1 1 1.5", "a.mtl:2: Tf"},
         {"d 0.5\nNi nan", "a.mtl:3: Ni"},
-        {"d 0.5\nNi 0", "material \"m\": is transparent (d < 1) and needs a refractive index"},
+        {"d 0.5\nNi 0", "material \"m\": is transparent (d < 1 or Tr > 0) and needs a refractive index"},
         {"d 0.5\nNi 1.5\nTf 1 0 1", "material \"m\": Tf 0"},
         {"Pr 1.01", "a.mtl:2: Pr \"1.01\": must be a number in [0,1]"},
         {"Pr nan", "a.mtl:2: Pr \"nan\": must be a number in [0,1]"},
