@@ -29,7 +29,8 @@ class ShaderFiles(ProgramTest):
     def setUp(self):
         super().setUp()
         file = self.write("mine.glsl", "")
-        self.program, self.shader = make_tree(CHAPTER, file, self.folder / "tree")
+        self.program, copies = make_tree(CHAPTER, file, self.folder / "tree")
+        self.shader, = copies
 
     def beside(self, name, contents):
         """Writes a file next to the shader."""

@@ -85,7 +85,7 @@ TEST_F(MeshFile, TextMayHaveMarksCommentsAndJoinedLines) {
     EXPECT_USER_ERROR(load("v 0 0 0\n\n" + square + "f 1 2 \\\n 9\n"), "a.obj:10: the face refers to vertex 9");
     EXPECT_USER_ERROR(load(square + "f \\\n # none\n"), "a.obj:8: a face needs at least 3 corners");
     EXPECT_USER_ERROR(load("v 0 0 -1.#IND\n"), "a.obj:1: \"-1.#IND\" is not a finite number");
-    EXPECT_USER_ERROR(load_material("Kd 1 1 1.#QNAN0"), "a.mtl:2: Kd \"1.#QNAN0\": must be a finite number");
+    EXPECT_USER_ERROR(load_material("Kd 1 1 1.#QNAN0"), "a.mtl:2: \"1.#QNAN0\" is not a finite number");
     folder.write("a.mtl", "\xEF\xBB\xBFnewmtl m # red\nKd 1 \\\n 0 0\n" + std::string("\0", 1));
     const Scene red = load("mtllib a.mtl\nusemtl m # x\n" + corners_of_a_square + "f 1 2 3\nusemtl\nf 1 3 4\n");
     EXPECT_EQ(red.materials.at(0).diffuse_albedo, vec3(1, 0, 0));

@@ -22,7 +22,7 @@ from pathlib import Path
 from check.formats import as_gradescope, as_github
 from check.diagnosis import diagnose, verdict_with
 from check.folder import UNGRADED, grade_all
-from check.grading import MOST_RUNS, RUNS, DESCRIPTIONS, SCENES, first_seed, judge
+from check.grading import DESCRIPTIONS, MOST_RUNS, RUNS, SCENES, first_seed, graded_together, judge
 from check.words import explain, hint_lines, scene_words, tell_early
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable, text_of
 from report.measurement import relative
@@ -53,7 +53,7 @@ def parse():
                        help="print annotations for GitHub's actions as well")
     parser.add_argument("--points", type=number(float, 0), default=POINTS, help=f"for --gradescope; default: {POINTS}")
     options = parser.parse_intermixed_args()
-    options.is_quiet = options.form in ("json", "gradescope")
+    options.is_quiet, options.what = options.form in ("json", "gradescope"), ""
     return options
 
 
@@ -72,11 +72,12 @@ def check(options, file, picture=None):
     `picture` is a file for it."""
     if not file.is_file():
         raise UserError(f"{printable(file)}: no such file")
-    watch = (lambda cases: None) if options.is_quiet else tell_early
+    watch = (lambda cases: None) if options.is_quiet or options.folder else tell_early
     settings = vars(options) | {"first_seed": first_seed(options.seed)}
     result, pictures = judge(options.chapter, file, settings, watch=watch)
     is_correct = result["verdict"] == "correct"
-    result["unfinished_line"] = None if is_correct else find_todo(file)
+    unfinished = None if is_correct else find_todo(graded_together(CHAPTERS[options.chapter], file))
+    result |= {"unfinished_file": unfinished and printable(relative(unfinished[0])), "unfinished_line": unfinished and unfinished[1]}
     if not result["unfinished_line"]:
         result["diagnosis"] = diagnose(options.chapter, file, settings, is_correct=is_correct)
         result["verdict"] = verdict_with(result["verdict"], result["diagnosis"])
@@ -94,16 +95,13 @@ def check(options, file, picture=None):
     return result
 
 
-def own_file(chapter):
-    """The chapter's shader that still has a TODO, or else its estimator."""
-    folder = ROOT / "chapters" / CHAPTERS[chapter]
-    return next(filter(find_todo, sorted(folder.glob("*.glsl"))), folder / "path_trace.glsl")
-
-
-def find_todo(file):
-    """Number of the first line with a TODO, or None."""
-    lines = text_of(file).splitlines()
-    return next((number for number, line in enumerate(lines, 1) if "TODO" in line), None)
+def find_todo(files):
+    """The first line with a TODO, as (file, number), or None."""
+    for file in files:
+        lines = text_of(file).splitlines()
+        if number := next((number for number, line in enumerate(lines, 1) if "TODO" in line), None):
+            return file, number
+    return None
 
 
 def report(options, result):
@@ -120,7 +118,8 @@ def report(options, result):
         print(explain(result))
     if options.form == "github":
         hints = [result["error"]] if "error" in result else [text for _, text in hint_lines(result)]
-        print(as_github(result["verdict"], options.file and printable(options.file), result.get("unfinished_line"), hints), end="")
+        file = result.get("unfinished_file") or options.file and printable(options.file)
+        print(as_github(result["verdict"], file, result.get("unfinished_line"), hints), end="")
 
 
 def main():
@@ -130,7 +129,7 @@ def main():
         refuse(options)
         if options.backend != "native":  # a submission's shader stays in the driver, unless requested otherwise
             os.environ["LAB_WITHOUT_NATIVE"] = "1"
-        file = options.file or own_file(options.chapter)
+        file = options.file or ROOT / "chapters" / CHAPTERS[options.chapter] / "path_trace.glsl"
         options.chapter = original(options.chapter)
         if options.folder:
             sys.exit(grade_all(options, check))

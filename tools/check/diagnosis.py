@@ -158,7 +158,7 @@ def diagnose(chapter, file, settings, shader=None, is_correct=False):
     """What experiments show about a shader, see reason(). If its pictures are correct, only those run that can decide as well."""
     known, started = {"experiments": {}} | read_json(knowledge_file(chapter)), time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        program, _ = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
+        program, copies = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         facts, sights = observe(chapter, program, settings, known["experiments"], is_deciding if is_correct else is_called_for)
     return reason(chapter, facts, sights, known, is_correct) | {"seconds": round(time.monotonic() - started, 1)}
 

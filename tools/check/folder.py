@@ -3,49 +3,84 @@ import csv
 import hashlib
 import html
 import json
-import os
 import sys
 import time
 from collections import Counter
+from functools import cache
 from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
 from check.experiments import experiment_files, experiments_of
-from check.grading import knowledge_file
+from check.grading import graded_together, knowledge_file
 from check.words import explain, hint_lines
 from project import CHAPTERS, ROOT, UserError, printable, read_json, write_json
 from report.measurement import digest_of_sources
 
 UNGRADED = 2  # exit code
+NO_SUBMISSION = (".", "__MACOSX")  # what names begin with in archives of other systems
 MOST_COMMON = 5  # number of facts that sum up a class
 COLUMNS = ["submission", "verdict", "unfinished_line", "facts", "mistakes", "questions", "error", "seconds"]
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
 
-def submissions(folder):
-    """Name -> file of each shader: NAME.glsl, or the one in a folder NAME."""
+def submissions(folder, output):
+    """Name -> path of each submission in a folder: a file NAME.glsl or a folder NAME. `output` is none of them."""
     if not folder.is_dir():
         raise UserError(f"{folder}: no such folder")
-    files = [file for file in (*folder.glob("*.glsl"), *folder.glob("*/*.glsl")) if file.is_file()]
-    found = {printable(file.stem if file.parent == folder else file.parent.name): file for file in files}
-    if len(found) < len(files):
-        raise UserError(f"{folder}: two submissions have the same name: rename one of them")
+    found = {}
+    for path in sorted(folder.iterdir(), key=lambda path: (not path.is_dir(), path)):
+        if not path.name.startswith(NO_SUBMISSION) and path.resolve() != output and (path.is_dir() or path.suffix == ".glsl"):
+            name = printable(path.name if path.is_dir() else path.stem)
+            while name in found:  # of a folder
+                name += ".glsl"
+            found[name] = path
     if not found:
         raise UserError(f"{folder}: has neither files NAME.glsl nor folders NAME with a shader")
     return dict(sorted(found.items()))
 
 
-def digest(options, sources, file):
-    """A digest of a shader and everything it is graded with: results with the same digest are kept. `sources` are digests of what
-    is the same for all."""
-    settings = [sources, options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
-    return hashlib.sha256(json.dumps(settings).encode() + file.read_bytes()).hexdigest()
+def shader_of(submission, chapter):
+    """The file to be graded of a submission. In a folder it is the exercise's shader, or else the only one."""
+    if not submission.is_dir():
+        return submission
+    exercise = ROOT / "chapters" / CHAPTERS[chapter] / "exercise.json"  # not in a student's tree
+    wanted = read_json(exercise)["file"] if exercise.exists() else "path_trace.glsl"
+
+    def distance(file):  # some hand in the whole tree
+        return file.name != wanted, file.parent.name != CHAPTERS[chapter], len(file.parts)
+
+    files = sorted(file for file in submission.rglob("*.glsl") if file.is_file() and not file.name.startswith(NO_SUBMISSION))
+    shaders = sorted(files, key=distance)
+    if not shaders:
+        raise UserError(f"has no shader: {wanted} is missing")
+    if len(shaders) > 1 and distance(shaders[0]) == distance(shaders[1]):
+        names = " and ".join(printable(file.relative_to(submission)) for file in shaders[:2])
+        raise UserError(f"has {len(shaders)} shaders, such as {names}: which one is {wanted}?")
+    return shaders[0]
 
 
-def grade_one(options, check, name, file, folder):
-    started = time.monotonic()
+@cache
+def sources_of(chapter):
+    """Digests of what is the same for all submissions."""
+    return digest_of_sources([]), hashlib.sha256(knowledge_file(chapter).read_bytes()).hexdigest()
+
+
+def digest(options, file):
+    """A digest of a shader and everything it is graded with: results with the same digest are kept."""
+    settings = [sources_of(options.chapter), options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
+    shaders = {printable(each.name): each.read_bytes().hex() for each in graded_together(CHAPTERS[options.chapter], file)}
+    return hashlib.sha256(json.dumps([settings, file.name, shaders]).encode()).hexdigest()
+
+
+def grade_one(options, check, name, submission, folder, known):
+    """The row of a submission, which is the known one if that has the same digest."""
+    started, key = time.monotonic(), None
     try:
+        file = shader_of(submission, options.chapter)
+        key = digest(options, file)
+        if known and known["digest"] == key and known["verdict"] != "not graded":
+            return known
         result = check(options, file, folder / f"{name}.png")
         found = result["diagnosis"] or {}
         row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
@@ -54,7 +89,7 @@ def grade_one(options, check, name, file, folder):
                "error": ""}
     except Exception as error:  # whatever it is, grading continues with the next submission
         row = {"verdict": "not graded", "error": printable(str(error)), "text": printable(str(error))}
-    return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1)}
+    return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1), "digest": key}
 
 
 def in_a_table(value):
@@ -88,12 +123,12 @@ def grade_all(options, check):
     folder.mkdir(parents=True, exist_ok=True)
     record = folder / "results.json"
     known = read_json(record) if record.exists() else {}
-    options.is_quiet, rows, found = True, [], submissions(options.folder)
-    sources = digest_of_sources([]), hashlib.sha256(knowledge_file(options.chapter).read_bytes()).hexdigest()
-    for done, (name, file) in enumerate(found.items(), 1):
-        key = digest(options, sources, file) if os.access(file, os.R_OK) else None
-        if known.get(name, {}).get("digest") != key or known[name]["verdict"] == "not graded":
-            known[name] = grade_one(options, check, name, file, folder) | {"digest": key}
+    rows, found = [], submissions(options.folder, folder)
+    for done, (name, submission) in enumerate(found.items(), 1):
+        options.what = f"{done} of {len(found)}, {name}: "
+        row = grade_one(options, check, name, submission, folder, known.get(name))
+        if row is not known.get(name):
+            known[name] = row
             write_json(record, known)
         rows.append(known[name])
         print(f"{done} of {len(found)}: {name}: {known[name]['verdict']}", flush=True)

@@ -16,7 +16,7 @@ import numpy as np
 from project import BINARIES, CHAPTERS, ROOT, UserError, description, printable, program_file, read_json, show_progress, text_of
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
-from report.measurement import new_case, run_case
+from report.measurement import new_case, relative, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
@@ -55,32 +55,47 @@ def functions_in(shader):
     return set(re.findall(r"^\w+ (\w+)\(", text_of(shader), re.MULTILINE))
 
 
+def graded_together(chapter, file):
+    """The shaders that are graded as one, the file last. Those beside a file belong to it if their folder is a chapter or a copy of
+    one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone."""
+    if not (file.parent / "chapter.json").exists() and not (ROOT / "chapters" / chapter / file.name).exists():
+        return [file]
+    return [*(other for other in sorted(file.parent.glob("*.glsl")) if other.is_file() and other.name != file.name), file]
+
+
 def shader_like(chapter, file):
     """The shader in a chapter's folder that a file is graded as: one whose functions it all defines, preferably the estimator; or
-    else the one with its name, or the estimator."""
+    else the one with its name, which may be a new one beside an estimator, or the estimator."""
     estimator, functions = ROOT / "chapters" / chapter / "path_trace.glsl", functions_in(file)
     for shader in (estimator, *sorted(estimator.parent.glob("*.glsl"))):
         if functions_in(shader) and functions >= functions_in(shader):
             return shader
-    return estimator.with_name(file.name) if estimator.with_name(file.name).exists() else estimator
+    is_one_of_several = estimator.name in {other.name for other in graded_together(chapter, file)}
+    return estimator.with_name(file.name) if is_one_of_several or estimator.with_name(file.name).exists() else estimator
 
 
 def make_tree(chapter, file, tree, shader=None):
-    """Copies what a chapter's program reads, with `file` replacing the included shader that it stands for; returns the program
-    there and the file's copy. A file from a chapter's folder, or a copy of this chapter's, brings everything next to it."""
+    """Copies what a chapter's program reads, with `file`, and what belongs to it, instead of the chapter's own shaders; returns the
+    program there, and for each copy the file that it is a copy of."""
     shutil.copytree(ROOT / "shaders", tree / "shaders")
     for source in (*ROOT.glob("chapters/*/*.glsl"), *ROOT.glob("chapters/*/chapter.json")):
         (tree / source.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(source, tree / source.relative_to(ROOT))
-    if file.parent.parent == ROOT / "chapters":
-        shutil.copytree(file.parent, tree / "chapters" / chapter, ignore=lambda _, names: {n for n in names if not n.endswith(".glsl")},
-                        dirs_exist_ok=True)
-    copy = Path(shutil.copy(file, tree / (shader or shader_like(chapter, file)).relative_to(ROOT)))
+    *others, _ = graded_together(chapter, file)
+    places = {other: ROOT / "chapters" / chapter / other.name for other in others} | {file: shader or shader_like(chapter, file)}
+    copies = {Path(shutil.copy(source, tree / place.relative_to(ROOT))).resolve(): source for source, place in places.items()}
     share(ROOT / "assets", tree / "assets")
     if (libraries := BINARIES.parent / "lib").exists():  # from an archive by ./lab package
         share(libraries, tree / "lib")
     (tree / "bin").mkdir()
-    return shutil.copy(program_file(chapter), tree / "bin"), copy  # a program looks for shaders in parent folders
+    return shutil.copy(program_file(chapter), tree / "bin"), copies  # a program looks for shaders in parent folders
+
+
+def with_names_of(copies, error):
+    """An error with the files' names instead of those of their copies."""
+    for copy, source in copies.items():
+        error = UserError(str(error).replace(str(copy), printable(relative(source))))
+    return error
 
 
 def share(folder, place):
@@ -118,11 +133,12 @@ def reference_regions(file):
 
 def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shader=None):
     """Cases with their runs, each a row with the means of the regions. `settings`: backend, device, time_limit, memory_limit,
-    runs, samples, first_seed and is_quiet; `scenes` are names of references; `watch` is called after the first EARLY_RUNS."""
+    runs, samples, first_seed, is_quiet, and what the progress begins with; `scenes` are names of references; `watch` is called after the
+    first EARLY_RUNS."""
     samples, own_scenes = SCENES[chapter]
     samples, started = settings["samples"] or samples, time.monotonic()
     with tempfile.TemporaryDirectory() as folder, Batch() as batch:
-        program, copy = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
+        program, copies = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         cases = [new_case(*pair, f"chapter {chapter}", program, OPTIONS[chapter])
                  for pair in find_references(scenes or own_scenes)]
         for case in cases:
@@ -154,11 +170,11 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
                 case["invalid_samples"] += report["invalid_samples"]
                 case["picture"] = case["picture"] + image / settings["runs"]
                 if not settings["is_quiet"]:
-                    show_progress(case["scene"], done, len(work), started)
+                    show_progress(settings["what"] + case["scene"], done, len(work), started)
                 if done == EARLY_RUNS * len(cases) < len(work):
                     watch(cases)
         except UserError as error:
-            raise UserError(str(error).replace(str(copy.resolve()), printable(file))) from None
+            raise with_names_of(copies, error) from None
     return cases
 
 
@@ -237,6 +253,6 @@ def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases:
         if not is_doubtful(results):
             break
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
-    return {"chapter": chapter, "file": printable(file), "verdict": verdict, "runs": settings["runs"],
+    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": settings["runs"],
             "samples": settings["samples"] or SCENES[chapter][0], "first_seed": first_seed, "false_alarms": FALSE_ALARMS,
             "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": results}, [case["picture"] for case in cases]

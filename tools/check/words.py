@@ -47,7 +47,7 @@ def scene_words(scene):
 def hint_lines(result):
     """Pairs of a word and a lead to the mistake: what the experiments have shown, and questions if few mistakes can cause it."""
     if result["unfinished_line"]:
-        return [("unfinished", f"line {result['unfinished_line']} says TODO")]
+        return [("unfinished", f"{result['unfinished_file']}:{result['unfinished_line']} says TODO")]
     found = result["diagnosis"]
     if result["verdict"] == "correct" or not found:
         return []

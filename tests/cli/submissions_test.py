@@ -1,0 +1,179 @@
+"""Which shaders ./lab check grades together, and what becomes of a class whose submissions have faults of their own."""
+
+import csv
+import json
+import os
+import shutil
+import unittest
+from pathlib import Path
+from unittest import mock
+
+from program import PROJECT, ProgramTest  # first: it finds the tools
+from check import command, folder, grading
+from project import CHAPTERS, UserError, course, read_json
+
+FEW = (3, "--runs", 5, "--samples", 4, "--backend", "compute")
+TECHNIQUE = "direct_light.glsl"
+# A right solution that moves a line to the estimator, and one with a factor too much: neither shows in path_trace.glsl.
+RIGHT = {"geometry * light.inverse_density": "geometry * get_inverse_density(light)",
+         "// Estimates the direct light": "float get_inverse_density(LightTriangle light) { return light.inverse_density; }\n// Estimates the direct light"}
+WRONG = {"return get_brdf(s, omega) * geometry": "return 2.0 * get_brdf(s, omega) * geometry"}
+
+
+def chapter_folder(chapter):
+    return PROJECT / "chapters" / CHAPTERS[chapter]
+
+
+def changed(chapter, name, changes):
+    text = (chapter_folder(chapter) / name).read_text(encoding="utf-8")
+    for find, replace in changes.items():
+        assert find in text, find
+        text = text.replace(find, replace)
+    return text
+
+
+class SubmissionTest(ProgramTest):
+    def copy_chapter(self, chapter, place, changes=None):
+        """A copy of a chapter's folder in the test's folder, where the program under test also runs."""
+        copy = Path(shutil.copytree(chapter_folder(chapter), self.folder / place))
+        for name, each in (changes or {}).items():
+            (copy / name).write_text(changed(chapter, name, each), encoding="utf-8")
+        return copy
+
+    def tree(self, chapter, file):
+        """Name -> text of the shaders in the chapter's folder of the tree that a check makes."""
+        place = self.folder / "tree"
+        shutil.rmtree(place, ignore_errors=True)
+        grading.make_tree(CHAPTERS[chapter], file, place)
+        return {shader.name: shader.read_text(encoding="utf-8") for shader in (place / "chapters" / CHAPTERS[chapter]).glob("*.glsl")}
+
+
+class GradedTogether(SubmissionTest):
+    def test_a_file_in_a_copy_brings_all_shaders_of_it(self):
+        """In every chapter, by a relative path as well, and a new file that the others include."""
+        for chapter in course():
+            copy = self.copy_chapter(chapter, f"{chapter}_mine")
+            shaders = sorted(path.name for path in copy.glob("*.glsl"))
+            for name in shaders:
+                text = (copy / name).read_text(encoding="utf-8")
+                (copy / name).write_text(f"{text}// mine: {name}\n", encoding="utf-8")
+            (copy / "helper.glsl").write_text("// mine: helper.glsl\n", encoding="utf-8")
+            for file in ("path_trace.glsl", read_json(copy / "exercise.json")["file"], "helper.glsl"):
+                for path in (copy / file, Path(os.path.relpath(copy / file))):
+                    self.assertEqual([name for name, text in self.tree(chapter, path).items() if f"// mine: {name}" not in text], [], path)
+
+    def test_without_chapter_json_the_names_tell(self):
+        """As on platforms that collect files."""
+        for name in ("path_trace.glsl", TECHNIQUE):
+            self.write(Path("submission") / name, f"// mine: {name}")
+        tree = self.tree(3, self.folder / "submission" / TECHNIQUE)
+        self.assertEqual(tree, {name: f"// mine: {name}" for name in tree})
+
+    def test_a_file_with_another_name_stands_alone(self):
+        """In a folder of a class."""
+        own = chapter_folder(3)
+        mine = changed(3, TECHNIQUE, RIGHT)
+        self.write("path_trace.glsl", "somebody else's")
+        tree = self.tree(3, self.write("anna.glsl", mine))
+        self.assertEqual(tree, {"path_trace.glsl": (own / "path_trace.glsl").read_text(encoding="utf-8"), TECHNIQUE: mine})
+
+    def check(self, *arguments):
+        code, out, err = self.run_tool("check", *arguments, "--json")
+        self.assertIn(code, (0, 1), err)
+        return json.loads(out)
+
+    def test_the_verdict_is_that_of_the_copy(self):
+        with self.subTest("right"):
+            self.copy_chapter(3, "21_right", {TECHNIQUE: RIGHT})
+            self.assertEqual(self.check(*FEW, "21_right/path_trace.glsl")["verdict"], "correct")
+        with self.subTest("wrong"):
+            self.copy_chapter(3, "22_wrong", {TECHNIQUE: WRONG})
+            self.assertEqual(self.check(*FEW, "22_wrong/path_trace.glsl")["verdict"], "biased")
+
+    def test_errors_name_the_file_that_they_are_in(self):
+        copy = self.copy_chapter(3, "21_mine")
+        line = (copy / TECHNIQUE).read_text(encoding="utf-8").count("\n") + 1
+        with open(copy / TECHNIQUE, "a", encoding="utf-8") as file:
+            file.write("nothing;\n")
+        code, out, err = self.run_tool("check", *FEW, "21_mine/path_trace.glsl")
+        self.assertEqual((code, out), (2, ""))
+        self.assertRegex(err, rf"\Aerror: [^\n]*(?<!/)21_mine/{TECHNIQUE}:{line}: [^\n]+\n\Z")
+
+    def test_a_todo_beside_the_file_is_named(self):
+        copy = self.copy_chapter(3, "21_mine", {TECHNIQUE: {"return get_brdf(s, omega) * geometry": "return vec3(0.0);  // TODO"}})
+        result = self.check(*FEW, copy / "path_trace.glsl")
+        self.assertEqual((result["unfinished_file"], result["diagnosis"]), (str(copy / TECHNIQUE), None))
+
+
+class ClassTest(SubmissionTest):
+    """Grading itself is replaced: it has its own tests."""
+
+    def grade(self, *arguments):
+        """Submission -> row of the table, and the name of the file that was graded below its folder, if any."""
+        graded = {}
+
+        def check(_, file, picture):
+            graded[picture.stem] = str(file.relative_to(self.folder / "all"))
+            if "unreadable" in file.read_text(encoding="utf-8"):
+                raise UserError("does not compile")
+            return {"chapter": 3, "verdict": "correct", "unfinished_line": None, "diagnosis": None, "scenes": [], "picture": None, "file": str(file)}
+
+        with mock.patch.object(command, "check", check):
+            code, out, err = self.run_here(command.main, *FEW, "--all", self.folder / "all", "--output", self.folder / "graded", *arguments)
+        table = csv.DictReader((self.folder / "graded/results.csv").read_text(encoding="utf-8-sig").splitlines())
+        return code, {row["submission"]: (row["verdict"], graded.get(row["submission"]), row["error"]) for row in table}, out
+
+    def submit(self, name, text="text"):
+        path = self.folder / "all" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+    def test_a_folder_hands_in_the_exercises_shader(self):
+        for name in (TECHNIQUE, "path_trace.glsl"):
+            self.submit(f"anna/{name}")
+        self.submit(f"bob/lab/chapters/{CHAPTERS[3]}/{TECHNIQUE}")
+        self.submit(f"bob/lab/old/{TECHNIQUE}")
+        self.submit("carl/mine.glsl")
+        self.submit(f"carl/__MACOSX/._{TECHNIQUE}")
+        code, rows, _ = self.grade()
+        self.assertEqual((code, rows), (0, {"anna": ("correct", f"anna/{TECHNIQUE}", ""),
+                                            "bob": ("correct", f"bob/lab/chapters/{CHAPTERS[3]}/{TECHNIQUE}", ""),
+                                            "carl": ("correct", "carl/mine.glsl", "")}))
+
+    def test_what_is_wrong_with_one_is_said_at_it_and_the_others_go_on(self):
+        self.submit("anna.glsl")
+        self.submit("anna/direct_light.glsl")
+        self.submit("bob/first.glsl")
+        self.submit("bob/second.glsl")
+        self.submit("carl/readme.txt")
+        self.submit("dora.glsl", "unreadable")
+        (self.folder / "all/emil.glsl").symlink_to("nowhere")
+        code, rows, out = self.grade()
+        self.assertEqual(code, 2)
+        self.assertEqual({name: row[0] for name, row in rows.items()},
+                         {"anna": "correct", "anna.glsl": "correct"} | dict.fromkeys(("bob", "carl", "dora", "emil"), "not graded"))
+        self.assertEqual((rows["anna"][1], rows["anna.glsl"][1]), ("anna/direct_light.glsl", "anna.glsl"))
+        for name, words in (("bob", "2 shaders, such as first.glsl and second.glsl: .*direct_light.glsl"), ("carl", "no shader: direct_light.glsl is missing"),
+                            ("dora", "does not compile"), ("emil", "No such file")):
+            self.assertRegex(rows[name][2], words)
+        self.assertEqual(len(out.splitlines()), 6)
+
+    def test_a_submission_is_graded_anew_if_a_file_beside_it_changes(self):
+        for name in (TECHNIQUE, "path_trace.glsl"):
+            self.submit(f"anna/{name}")
+        self.submit("bob.glsl")
+        self.grade()
+        self.assertEqual([row[1] for row in self.grade()[1].values()], [None, None], "both are known")
+        self.submit("anna/path_trace.glsl", "other text")
+        self.assertEqual([row[1] for row in self.grade()[1].values()], [f"anna/{TECHNIQUE}", None])
+
+    def test_the_output_is_no_submission(self):
+        self.submit("anna.glsl")
+        with mock.patch.object(folder, "ROOT", self.folder):
+            self.assertEqual(list(folder.submissions(self.folder / "all", self.folder / "all/graded")), ["anna"])
+            (self.folder / "all/graded").mkdir()
+            self.assertEqual(list(folder.submissions(self.folder / "all", self.folder / "all/graded")), ["anna"])
+
+
+if __name__ == "__main__":
+    unittest.main()
