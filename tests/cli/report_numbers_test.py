@@ -58,11 +58,11 @@ class ReportNumbersTest(unittest.TestCase):
                 self.assert_covers(noisy[key], exponent)
                 self.assertLess(noisy[key][2] - noisy[key][1], 0.4)
 
-    def test_efficiency_is_relative_to_the_first_case(self):
+    def test_error_times_time_is_relative_to_the_first_case(self):
         first, second = summary(synthetic_case("a", error=4.0, seconds=0.01), synthetic_case("b", error=0.25, seconds=0.02))["cases"]
-        self.assertEqual(first["efficiency"], [1.0, None, None])
-        self.assertAlmostEqual(second["efficiency"][0], 8)
-        self.assertAlmostEqual(second["device_efficiency"][0], 8)
+        self.assertEqual(first["error_time"], [1.0, None, None])
+        self.assertAlmostEqual(second["error_time"][0], 1 / 8)
+        self.assertAlmostEqual(second["error_device_time"][0], 1 / 8)
         self.assertAlmostEqual(second["rays_per_sample"], 3)
         self.assertAlmostEqual(second["rays_per_second"], 3 * PIXELS / 0.02)
         self.assertAlmostEqual(second["rays_per_device_second"], 3 * PIXELS / 0.01)
@@ -99,16 +99,16 @@ class ReportNumbersTest(unittest.TestCase):
         for shared in (0.0, 0.9):
             self.assert_share(*self.covered(numbers.paired_ratio, shared), 0.95)
 
-    def test_efficiencies_pair_the_runs_with_the_same_seed(self):
+    def test_error_times_time_pairs_the_runs_with_the_same_seed(self):
         """For runs that are equal up to a factor the quotient is known exactly, however much they vary."""
         first, second = (synthetic_case(name, error=error, noise=0.5) for name, error in (("a", 4.0), ("b", 2.0)))
         second["runs"].reverse()
-        for end in summary(first, second)["cases"][1]["efficiency"]:
-            self.assertAlmostEqual(end, 2.0)
+        for end in summary(first, second)["cases"][1]["error_time"]:
+            self.assertAlmostEqual(end, 0.5)
 
     def test_intervals_hold_the_noise_of_the_reference(self):
         """Runs that all miss the true value alike, by as much as the reference says that it may contribute."""
-        trials, found = 400, {"error": 0, "efficiency": 0, "gain": 0, "slope": 0}
+        trials, found = 400, {"error": 0, "error_time": 0, "gain": 0, "slope": 0}
         for trial in range(trials):
             shift = 0.001 * random.Random(-trial).gauss(0, 1)
             cases = [synthetic_case(name, error=error, noise=0.01, first_dice=10 * trial + 1) for name, error in (("a", 1.0), ("b", 0.5))]
@@ -120,7 +120,7 @@ class ReportNumbersTest(unittest.TestCase):
             scene = summary(*cases)
             first, second, _ = scene["cases"]
             gain = next(gain["gain"] for gain in scene["gains"] if gain["case"] == "b")
-            for name, (_, low, high), truth in (("error", first["error"], 1 / 64), ("efficiency", second["efficiency"], 2), ("gain", gain, 4),
+            for name, (_, low, high), truth in (("error", first["error"], 1 / 64), ("error_time", second["error_time"], 1 / 2), ("gain", gain, 4),
                                                 ("slope", first["slope_samples"], -1)):
                 found[name] += low < truth < high
         for name in found:
@@ -230,6 +230,6 @@ class ReportNumbersTest(unittest.TestCase):
     def test_an_error_lost_in_the_noise_of_the_reference_has_no_quotients(self):
         first, second = summary(synthetic_case("a"), synthetic_case("b", error=0.0))["cases"]
         self.assertEqual(second["error"], [None] * 3)
-        self.assertEqual(second["efficiency"], [None] * 3)
+        self.assertEqual(second["error_time"], [None] * 3)
         self.assertIsNone(second["slope_samples"])
         self.assertEqual(second["curve"], [])

@@ -112,12 +112,13 @@ class ReportCommandTest(Reports, ProgramTest):
         for address in re.findall(r"""(?:src|href)\s*=\s*["']([^"']*)|url\(([^)]*)\)""", page):
             self.assertRegex("".join(address), r"^['\"]?(#|data:)", "refers to something outside")
         self.assertNotRegex(page, r"@import|<script|<link|<iframe")
-        for word in ("cornell_box_1", "chapter 1", "chapter 3", "would have been found", "Equal time", "Equal error", "<svg"):
+        for word in ("cornell_box_1", "chapter 1", "chapter 3", "would have been found", "below 1 is better", "Equal time", "Equal error", "<svg"):
             self.assertIn(word, page)
         self.assertEqual(page.count("<img"), 2 * (1 + 2 * 2))  # at equal time and error the reference, pictures, differences
         content = json.loads((self.folder / "report/report.json").read_text())
         self.assertEqual([case["case"] for case in content["scenes"][0]["cases"]], ["chapter 1", "chapter 3"])
-        self.assertGreater(content["scenes"][0]["cases"][1]["efficiency"][0], 3)
+        self.assertLess(content["scenes"][0]["cases"][1]["error_time"][0], 1 / 3)
+        self.assertNotRegex(page, "(?i)efficien")
         self.assertIn("device", content["environment"])
 
     def test_scenes_that_a_chapter_refuses_are_listed(self):

@@ -1,4 +1,4 @@
-"""The numbers of a record of measurements: errors, slopes, efficiencies and the test for bias, with their intervals.
+"""The numbers of a record of measurements: errors, slopes, error × time and the test for bias, with their intervals.
 
 A record has cases; a case has runs with different seeds; a run has rows, the chapter's report at 1, 2, 4, … samples. Intervals
 have a confidence of 95 %. They account for the spread of the runs and for the noise of the reference, which shifts the errors of
@@ -239,7 +239,7 @@ def seconds_to_target(case):
 
 
 def summarize_case(case, base, comparisons):
-    """The numbers of a case for the page; efficiencies are relative to the case `base`."""
+    """The numbers of a case for the page; error × time is relative to the case `base`."""
     rows, pixels = last_rows(case["runs"]), case["width"] * case["height"]
     summary = {key: case[key] for key in ("case", "is_peer", "program", "options", "backend", "note", "paths_per_sample")}
     summary |= {"runs": len(rows), "samples": rows[0]["samples"], "seconds": mean_of(rows, "seconds"),
@@ -254,9 +254,9 @@ def summarize_case(case, base, comparisons):
         summary["rays_per_sample"] = summary["rays"] / samples
         summary["rays_per_second"] = summary["rays"] / summary["seconds"]
         summary["rays_per_device_second"] = summary["rays"] / summary["device_seconds"]
-    for key, name in (("seconds", "efficiency"), ("device_seconds", "device_efficiency")):
+    for key, name in (("seconds", "error_time"), ("device_seconds", "error_device_time")):
         if summary[key] and base["runs"]:
-            summary[name] = [1.0, None, None] if case is base else paired_ratio(errors(base, key), errors(case, key))
+            summary[name] = [1.0, None, None] if case is base else paired_ratio(errors(case, key), errors(base, key))
     summary["seconds_to_target"], summary["start_up_seconds"] = seconds_to_target(case)
     summary["bias"] = biases(runs_in_batches(case), case["reference"], comparisons)
     return summary

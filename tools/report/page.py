@@ -41,7 +41,7 @@ def table(head, rows):
 
 
 def overview(scenes):
-    """Efficiency of each chapter in each scene, and where a bias was found."""
+    """Error × time of each chapter in each scene, and where a bias was found."""
     names = list(dict.fromkeys(case["case"] for scene in scenes for case in scene["cases"]))
     rows = []
     for scene in scenes:
@@ -50,9 +50,9 @@ def overview(scenes):
         for name in names:
             case = found.get(name)
             is_biased = case and any(channel["is_biased"] for channel in case["bias"])
-            cells.append("–" if not case else ranged(case.get("efficiency")) + (' <span class="bad">biased</span>' if is_biased else ""))
+            cells.append("–" if not case else ranged(case.get("error_time")) + (' <span class="bad">biased</span>' if is_biased else ""))
         rows.append([f'<a href="#{escape(scene["scene"])}">{escape(scene["scene"])}</a>', *cells])
-    return "<h3>Efficiency in wall time</h3>" + table(["scene", *map(escape, names)], rows)
+    return "<h3>Error × time, relative to the first chapter: below 1 is better</h3>" + table(["scene", *map(escape, names)], rows)
 
 
 def speed_table(scene):
@@ -62,9 +62,9 @@ def speed_table(scene):
         short(case["rays_per_second"] / 1e6) if case["rays"] else "–",
         short(case["rays_per_device_second"] / 1e6) if case["rays"] else "–",
         short(case["seconds"]), short(case["device_seconds"]), ranged(case["slope_samples"]), ranged(case["slope_seconds"]),
-        ranged(case.get("efficiency")), ranged(case.get("device_efficiency"))] for case in scene["cases"]]
+        ranged(case.get("error_time")), ranged(case.get("error_device_time"))] for case in scene["cases"]]
     head = ["", "samples", "error", "its root", "rays per sample", "Msamples/s", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
-            "slope against samples", "against seconds", "efficiency", "in device time"]
+            "slope against samples", "against seconds", "error × time", "error × device time"]
     return table(head, rows)
 
 
