@@ -88,11 +88,12 @@ class Checking:
 
 class CheckTest(Checking, ProgramTest):
     def test_the_process_ends_with_the_verdict(self):
-        for arguments, expected, words in (((), 0, "no picture is wrong.* correct: "),
-                                           ((self.wrong(), "--teacher"), 1, "is too bright.* distance-not-squared: ")):
+        for arguments, expected, early, words in (((), 0, "no picture is wrong", "correct +nothing differs, "),
+                                                  ((self.wrong(), "--teacher"), 1, "is too bright", "biased +distance-not-squared: ")):
             code, out, err = self.run_tool("check", 3, "--runs", 5, "--samples", 1, "--backend", "compute", *arguments)
             self.assertEqual(code, expected, err)
-            self.assertRegex(out, rf"(?s)\Aso far +[^\n]*{words}")
+            self.assertRegex(err, rf"(?m)^so far +[^\n]*{early}")
+            self.assertRegex(out, rf"\A{words}")
 
     def test_the_chapters_own_shader_is_correct(self):
         code, result = self.check_few()
@@ -109,7 +110,7 @@ class CheckTest(Checking, ProgramTest):
         found = result["diagnosis"]
         self.assertIn("twice as far away", found["mistakes"][0]["hint"])
         self.assertNotIn("name", found["mistakes"][0], "only for teachers")
-        self.assertRegex("\n".join(found["facts"]), "light of a lamp after one bounce: [^\n]*follows the distance;")
+        self.assertIn("off by the distance: light of a lamp after one bounce", [fact["text"] for fact in found["facts"]])
         self.assertIn("a lamp that the camera sees", found["right"])
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
 
@@ -117,14 +118,24 @@ class CheckTest(Checking, ProgramTest):
         for options, is_named in (((), False), (("--teacher",), True)):
             code, out, err = self.check(*FEW, *options, self.wrong())
             self.assertEqual(code, 1, err)
-            self.assertRegex(out, r"\Aso far +[^\n]*is too ")
-            self.assertRegex(out, r"ask yourself .*twice as far away\?")
+            self.assertRegex(err, r"(?m)^so far +[^\n]*is too ")
+            self.assertRegex(out, r"\Abiased [^\n]*twice as far away\?\n")
             self.assertRegex(out, r"read again .*Next Event Estimation")
             self.assertEqual("distance-not-squared" in out, is_named, out)
 
     def test_tells_early_what_is_sure(self):
         """For a shader with a mistake, it tells it where a teacher gets the mistake's name."""
-        self.assertRegex(self.check(*FEW)[1], r"\Aso far +[^\n]*no picture is wrong by")
+        self.assertRegex(self.check(*FEW)[2], r"(?m)^so far +[^\n]*no picture is wrong by")
+
+    def test_the_answer_is_short_and_has_details_on_demand(self):
+        (_, short, _), (_, long, _) = self.check(*FEW, self.wrong()), self.check(*FEW, "--details", self.wrong())
+        facts = re.findall(r"(?m)^seen +(.*)", short)
+        self.assertTrue(1 <= len(facts) <= 5 and max(map(len, facts)) <= 100, facts)
+        self.assertNotIn("check_room_2  ", short)
+        for words in ("check_room_2 +biased: mean ", "seen +light of a lamp after one bounce: wrong by a factor that follows the distance;",
+                      "right +a lamp that the camera sees$"):
+            self.assertRegex(long, rf"(?m)^{words}")
+        self.assertTrue(long.startswith(short[:short.index("more  ")]))
 
     def test_the_chapters_own_noise_is_compared_render_by_render(self):
         result = json.loads(self.check(3, "--runs", 2, "--json")[1])
@@ -136,12 +147,12 @@ class CheckTest(Checking, ProgramTest):
         file = self.wrong()
         code, out, _ = self.check(*FEW, "--gradescope", "--points", 12, file)
         result = json.loads(out)
-        self.assertEqual((code, [test["max_score"] for test in result["tests"]]), (1, [4, 4, 4]))
-        self.assertEqual([test["score"] for test in result["tests"]], [0, 0, 4])  # the last scene has no lamps
+        self.assertEqual((code, [test["max_score"] for test in result["tests"]]), (1, [6, 6, 0]))  # the last scene has no lamps
+        self.assertEqual([test["score"] for test in result["tests"]], [0, 0, 0])
         self.assertTrue({test["status"] for test in result["tests"]} <= {"passed", "failed"})
         self.assertIn("twice as far away", result["output"])
         code, out, _ = self.check(*FEW, "--github", file)
-        self.assertRegex(out, rf"(?m)^::error file={file},line=1,title=\S+ \S+::biased%0A")
+        self.assertRegex(out, rf"(?m)^::error file={file},line=1,title=\S+ \S+::biased: [^\n]*twice as far away\?%0Aseen: ")
         broken = self.write("broken.glsl", "// one\nvec3 path_trace(Ray ray, inout uvec2 seed) { return nothing; }\n")
         self.assertIn("file=%25%3A%2C.glsl,line=1,", as_github("biased", "%:,.glsl", None, []))
         self.assertRegex(self.check(*FEW, "--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
@@ -162,11 +173,11 @@ class CheckTest(Checking, ProgramTest):
         (self.folder / "all/gone.glsl").symlink_to("nowhere")
         self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
         grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
-        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "dora": "biased"}
+        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "dora": "biased", "gone": "not graded"}
         expected |= {r"m\xfcller": "correct", r"m\xfdller": "correct"}
         code, out, err = self.check(*grade_all)
         self.assertEqual(code, 2, err)
-        self.assertRegex(out, r"what is wrong most often\n\d of 6: [^\n]*: chapters/[^\n]*/README.md, its exercises\n")
+        self.assertRegex(out, rf"what is wrong most often\n(\d of \d: [^\n]*\n)*1 of 7: [^\n]*twice as far away\? \([^\n]*chapters/{SHADER.parent.name}/README.md\): off by the distance")
         table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
@@ -225,7 +236,7 @@ class CheckTest(Checking, ProgramTest):
         file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))
         with self.in_one_scene():
             code, result = self.check_few(file)
-        self.assertEqual((code, result["unfinished_line"], result["diagnosis"]), (1, line, None))
+        self.assertEqual((code, result["unfinished_file"], result["unfinished_line"], result["diagnosis"]), (1, str(file), line, None))
 
     def test_more_noise_and_rays_than_needed_are_reported(self):
         # One path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
@@ -233,7 +244,7 @@ class CheckTest(Checking, ProgramTest):
             "vec3 path_trace(Ray ray, inout uvec2 seed) {\n"
             "    trace_path(ray, seed);\n"
             "    return get_random_numbers(seed).x < 0.5 ? 2.0 * trace_path(ray, seed) : vec3(0.0);\n}\n")
-        with self.in_one_scene(), mock.patch.object(command, "diagnose", return_value={"mistakes": []}):
+        with self.in_one_scene(), mock.patch.object(command, "diagnose", return_value={"facts": [], "right": [], "mistakes": [], "fits": False, "next": None, "is_beyond_doubt": False}):
             code, result = self.check_few(self.write("mine.glsl", text))
         box = result["scenes"][0]
         self.assertEqual((code, box["verdict"]), (1, "noisy"), box["noise"])
@@ -246,7 +257,7 @@ class CheckTest(Checking, ProgramTest):
             code, out, err = self.check(7, "--runs", 4, "--json", file)
         result = json.loads(out)
         self.assertEqual((code, result["verdict"], result["scenes"][0]["verdict"]), (1, "biased", "correct"), err)
-        self.assertRegex("\n".join(result["diagnosis"]["facts"]), "--strategy light")
+        self.assertRegex(json.dumps(result["diagnosis"]["facts"]), "--strategy light")
 
     def test_a_broken_shader_is_reported_by_file_and_line(self):
         lines = SHADER.read_text(encoding="utf-8").splitlines()

@@ -1,21 +1,24 @@
 """What ./lab check finds out about an incorrect shader: experiments, facts, and the names they leave."""
 
 import json
+import os
 import re
 import tempfile
 import unittest
+from io import StringIO
 from pathlib import Path
 from unittest import mock
 
 from program import PROJECT  # first: it finds the tools
 import learn
 from check import diagnosis, grading
-from check.diagnosis import reason, right_ones, sentences
+from check.diagnosis import reason, right_ones
 from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
 from check.facts import fact
+from check.findings import LONGEST, findings
 from check.grading import MOST_RUNS, RUNS, SEED_STEP, first_seed
 from check.names import names_of, similar_to
-from check.words import hint_lines
+from check.words import MOST_FACTS, headline, hint_lines, laid_out
 from docs.confusion_table import rates
 from planting import CORRECT_CHECKS, catalogue
 from project import course
@@ -70,12 +73,56 @@ class FactsTest(unittest.TestCase):
         self.assertIn("nothing of it is there", seen([0.0] * 3).sentence)
         self.assertRegex(seen([0.0, 1.0]).sentence, "at 20: nothing; right: at 40")
 
+
+class FindingsTest(unittest.TestCase):
+    """Experiments that are wrong in the same way are told together."""
+
+    def told(self, *facts):
+        return [found.told() for found in findings(facts)]
+
     def test_the_same_factor_is_told_once(self):
         facts = {"angle": seen([2.0] * 3), "distance": seen([2.0] * 3, varies="the distance"), "size": seen([1.0] * 3, varies="the size")}
-        told = sentences(facts)
-        self.assertEqual(len(told), 1)
-        self.assertRegex(told[0], r"2\.00 ± 0\.01 times as bright.*\(whatever the angle, the distance\)")
+        told, = self.told(*facts.values())
+        self.assertEqual(told["text"], "2.00 ± 0.01 times as bright as it should be (as by a factor 2): light of a lamp")
+        self.assertEqual(told["evidence"], [facts["angle"].sentence, facts["distance"].sentence])
         self.assertEqual(right_ones(facts), ["light of a lamp, whatever the size"])
+
+    def test_what_is_missing_everywhere_is_told_once(self):
+        subjects = [f"light number {i}" for i in range(14)]
+        told, = self.told(*(seen([0.0] * 3, subject=subject) for subject in subjects), seen([1.0] * 3))
+        self.assertRegex(told["text"], r"\Anothing is there: light number 0; .* and \d+ more\Z")
+        self.assertEqual(len(told["evidence"]), 14)
+
+    def test_a_factor_of_each_bounce_explains_its_powers(self):
+        bounces = seen([0.5, 0.25, 0.125], {"per": "with each bounce"}, (1, 2, 3), subject="light in a ball")
+        told, = self.told(bounces, seen([0.25] * 3, subject="light of a wall"), seen([1.0, 0.5, 0.25], subject="light of the sky"))
+        self.assertRegex(told["text"], "0.50 ± 0.01 times as bright with each bounce .*factor 1/2.*: light")
+        self.assertEqual(len(told["evidence"]), 3)
+        self.assertEqual(len(self.told(bounces, seen([0.4] * 3, subject="light of a wall"))), 2, "no power")
+
+    def test_a_law_comes_first_and_what_has_nothing_in_common_is_told_by_its_side(self):
+        law = seen([1.064, 1.305, 2.0, 3.864], {"cos": "the cosine of this angle"})
+        others = [seen([1.0, value, 2 * value], subject=f"light {i}") for i, value in enumerate((1.1, 1.3, 1.7, 2.3))]
+        told = self.told(*others, law, seen([1.0, 0.7, 0.5], subject="light 5"))
+        self.assertEqual([each["text"] for each in told], ["off by 1 / the cosine of the angle: light of a lamp",
+                                                           "too bright, up to 4.60 times: light 0; light 1; light 2; light 3",
+                                                           "too dark, down to 0.50 times: light 5"])
+
+    def test_light_where_none_should_be_and_what_is_no_number_are_not_forgotten(self):
+        invalid = fact(Experiment("x", "light of a lamp", "", [Point({}, "a")]), [Sight(1.0, 0.1, 1.0, 0.1, 2.0, 1.0, invalid=3)], [sight(1.0)])
+        told = self.told(seen([2.0, 0.3], expected=[0.5, 0.0], subject="light of the sky"), invalid)
+        self.assertEqual(sorted(each["text"].split(":")[0] for each in told),
+                         ["2.00 ± 0.02 times as bright as it should be (as by a factor 2)", "infinite or not a number", "light where none should be"])
+
+    def test_a_text_is_short_whatever_the_experiments_are_called(self):
+        for chapter in experiment_files():
+            for one in experiments_of(chapter).values():
+                values = [3.0 + i for i, _ in enumerate(one.points)]
+                for those in ([0.0] * len(values), values, [1 / value for value in values]):
+                    shown = [sight(value) for value in those]
+                    for told in self.told(fact(one, shown, [sight(1.0)] * len(those))):
+                        self.assertLessEqual(len(told["text"]), LONGEST)
+                        self.assertEqual(told["text"].count("\n"), 0)
 
 
 class SecondLookTest(unittest.TestCase):
@@ -148,11 +195,39 @@ class SimilarNamesTest(unittest.TestCase):
             self.assertEqual((found["fits"], [each["name"] for each in found["mistakes"]]), (fits, names))
 
     def test_a_student_reads_that_they_may_be_wrong(self):
-        found = {"facts": ["f"], "right": [], "next": None, "fits": False, "mistakes": [{"hint": f"{n}?", "slide": "s"} for n in (1, 2)]}
-        heads = [head for head, _ in hint_lines({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found})]
-        self.assertEqual(heads, ["seen", "not sure", "maybe", "read again", "maybe", "read again"])
-        heads = [head for head, _ in hint_lines({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found | {"fits": True}})]
-        self.assertEqual(heads, ["seen", "ask yourself", "read again", "or", "read again", "not sure"])
+        found = {"facts": [{"text": "f", "evidence": ["long"]}], "right": [], "next": None, "mistakes": [{"hint": f"{n}?", "slide": "s"} for n in (1, 2)]}
+        scene = {"scene": "room", "verdict": "biased", "image": [{"value": -0.2, "is_biased": True}], "tiles": []}
+        for fits, heads, first in ((False, ["seen", "not sure", "maybe", "maybe", "read again"], "room is too dark (by up to -20 %)"),
+                                   (True, ["seen", "or", "read again", "not sure"], "1?")):
+            result = {"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found | {"fits": fits}, "scenes": [scene]}
+            self.assertEqual([head for head, _ in hint_lines(result)], heads)
+            self.assertEqual(headline(result), ("biased", first))
+
+    def test_a_few_facts_are_enough(self):
+        facts = [{"text": f"fact {i}", "evidence": []} for i in range(MOST_FACTS + 3)]
+        found = {"facts": facts, "right": [], "next": None, "mistakes": [], "fits": False}
+        lines = hint_lines({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found, "scenes": []})
+        self.assertEqual([text for _, text in lines], [*(f"fact {i}" for i in range(MOST_FACTS)), "and 3 more things"])
+
+
+class TerminalTest(unittest.TestCase):
+    LINES = [("biased", "why? " * 30), ("seen", "short")]
+
+    def test_elsewhere_a_line_stays_a_line_without_colours(self):
+        for stream in (None, StringIO()):
+            self.assertEqual(laid_out(self.LINES, stream), f"biased         {'why? ' * 30}\nseen           short")
+
+    def test_on_a_terminal_lines_are_wrapped_and_coloured(self):
+        terminal = mock.Mock(isatty=lambda: True)
+        with mock.patch("shutil.get_terminal_size", return_value=os.terminal_size((60, 24))):
+            with mock.patch.dict(os.environ, {"NO_COLOR": ""}):
+                del os.environ["NO_COLOR"]
+                text = laid_out(self.LINES, terminal)
+            self.assertIn("\033[31mbiased", text)
+            self.assertLessEqual(max(len(line) for line in re.sub(r"\033\[\d+m", "", text).splitlines()), 60)
+            self.assertGreater(len(text.splitlines()), 3)
+            with mock.patch.dict(os.environ, {"NO_COLOR": "1"}):
+                self.assertNotIn("\033", laid_out(self.LINES, terminal))
 
 
 class ExperimentsTest(unittest.TestCase):

@@ -10,7 +10,9 @@ import unittest
 from pathlib import Path
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
-from project import CHAPTERS
+from check.formats import as_gradescope
+from course.handout import exercise_file, take_out
+from project import CHAPTERS, read_json
 
 GRADING = PROJECT / "docs/grading"
 SUBMITTED = "direct_light.glsl"  # what chapter 3's exercise asks for
@@ -25,14 +27,15 @@ exec '{python}' '{tools}' check "$@" --runs 5 --samples 1 --backend compute
 
 class GradingTest(ProgramTest):
     def autograde(self, shader):
-        """The autograder's result for a submission."""
+        """The autograder's result for a submission, a text or Name -> text."""
         for folder in ("source/lab", "submission"):
             (self.folder / folder).mkdir(parents=True, exist_ok=True)
         script = self.folder / "source/run_autograder"
         shutil.copy(GRADING / "gradescope/run_autograder", script)
         lab = self.write("source/lab/lab", LAB.format(python=sys.executable, tools=PROJECT / "tools"))
         lab.chmod(0o755)
-        self.write(f"submission/{SUBMITTED}", shader)
+        for name, text in (shader if isinstance(shader, dict) else {SUBMITTED: shader}).items():
+            self.write(f"submission/{name}", text)
         environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
         environment |= {"AUTOGRADER": str(self.folder), "LAB_BINARIES": str(BINARIES)}
         subprocess.run([script], env=environment, check=True, capture_output=True, timeout=300)
@@ -41,7 +44,9 @@ class GradingTest(ProgramTest):
     def test_gradescope_gets_points_and_a_question(self):
         chapter = int(re.search(r"^chapter=(\d+)", (GRADING / "gradescope/run_autograder").read_text(), re.MULTILINE)[1])
         shader = (PROJECT / "chapters" / CHAPTERS[chapter] / SUBMITTED).read_text(encoding="utf-8")
-        for text, points in ((shader, 10), (shader.replace("/ (distance * distance)", "/ distance"), 10 / 3), ("nothing", 0)):
+        untouched = take_out(shader, read_json(exercise_file(chapter)))[0]
+        for text, points in ((shader, 10), (shader.replace("/ (distance * distance)", "/ distance"), 0), ("nothing", 0), (untouched, 0),
+                             (untouched.replace("TODO", ""), 0)):
             result = self.autograde(text)
             self.assertAlmostEqual(result["score"], points, delta=0.001)
             self.assertAlmostEqual(sum(test["score"] for test in result["tests"]), points, delta=0.01)
@@ -51,6 +56,28 @@ class GradingTest(ProgramTest):
                 self.assertEqual(set(test), set(TEST_KEYS))
                 self.assertTrue(all(isinstance(test[key], kind) for key, kind in TEST_KEYS.items()), test)
                 self.assertIn(test["status"], ("passed", "failed"))
+
+    def test_all_submitted_shaders_count(self):
+        folder = PROJECT / "chapters" / CHAPTERS[3]
+        shaders = {name: (folder / name).read_text(encoding="utf-8") for name in ("path_trace.glsl", SUBMITTED)}
+        twice = shaders["path_trace.glsl"].replace("sample_direct_light(s, seed)", "2.0 * sample_direct_light(s, seed)")
+        self.assertNotEqual(twice, shaders["path_trace.glsl"])
+        self.assertEqual(self.autograde(shaders | {"path_trace.glsl": twice})["score"], 0)
+
+    def test_a_scene_that_the_placeholder_passes_can_only_lose_points(self):
+        def score(*verdicts, **options):
+            scenes = [(f"scene {i}", verdict, "") for i, verdict in enumerate(verdicts)]
+            result = as_gradescope(scenes, [], 12, ["scene 2"], **options)
+            self.assertAlmostEqual(sum(test["max_score"] for test in result["tests"]), 12, delta=0.01)
+            self.assertAlmostEqual(sum(test["score"] for test in result["tests"]), result["score"], delta=0.01)
+            return result["score"]
+
+        self.assertEqual(score("correct", "correct", "correct"), 12)
+        self.assertEqual(score("correct", "noisy", "correct"), 9)
+        self.assertEqual(score("biased", "biased", "correct"), 0)
+        self.assertEqual(score("correct", "correct", "biased"), 8)
+        self.assertEqual(score("biased", "biased", "biased"), 0)
+        self.assertEqual(score("correct", "biased", "correct", is_unfinished=True), 0)
 
     def test_a_check_that_cannot_run_says_so(self):
         (self.folder / "source/lab").mkdir(parents=True)

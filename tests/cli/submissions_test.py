@@ -32,7 +32,7 @@ def changed(chapter, name, changes):
     return text
 
 
-class SubmissionTest(ProgramTest):
+class Submissions:
     def copy_chapter(self, chapter, place, changes=None):
         """A copy of a chapter's folder in the test's folder, where the program under test also runs."""
         copy = Path(shutil.copytree(chapter_folder(chapter), self.folder / place))
@@ -48,7 +48,7 @@ class SubmissionTest(ProgramTest):
         return {shader.name: shader.read_text(encoding="utf-8") for shader in (place / "chapters" / CHAPTERS[chapter]).glob("*.glsl")}
 
 
-class GradedTogether(SubmissionTest):
+class GradedTogether(Submissions, ProgramTest):
     def test_a_file_in_a_copy_brings_all_shaders_of_it(self):
         """In every chapter, by a relative path as well, and a new file that the others include."""
         for chapter in course():
@@ -105,7 +105,7 @@ class GradedTogether(SubmissionTest):
         self.assertEqual((result["unfinished_file"], result["diagnosis"]), (str(copy / TECHNIQUE), None))
 
 
-class ClassTest(SubmissionTest):
+class WholeClass(Submissions, ProgramTest):
     """Grading itself is replaced: it has its own tests."""
 
     def grade(self, *arguments):

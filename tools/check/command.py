@@ -23,7 +23,7 @@ from check.formats import as_gradescope, as_github
 from check.diagnosis import diagnose, verdict_with
 from check.folder import UNGRADED, grade_all
 from check.grading import DESCRIPTIONS, MOST_RUNS, RUNS, SCENES, first_seed, graded_together, judge
-from check.words import explain, hint_lines, scene_words, tell_early
+from check.words import detail_lines, hints_of, laid_out, scene_words, short_lines, tell_early
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable, text_of
 from report.measurement import relative
 
@@ -37,6 +37,7 @@ def parse():
     parser.add_argument("--all", type=Path, metavar="FOLDER", dest="folder", help="grade all shaders in this folder")
     parser.add_argument("--output", type=Path, metavar="FOLDER", help="for --all; default: output/check_N")
     parser.add_argument("--teacher", action="store_true", help="name the mistake instead of only asking")
+    parser.add_argument("--details", action="store_true", help="print all scenes and experiments as well")
     add_device_options(parser)
     parser.add_argument("--seed", type=number(int, 0, 400000), default=0,
                         help="each chooses other random numbers; default: 0")
@@ -106,18 +107,19 @@ def find_todo(files):
 
 def report(options, result):
     """Prints a result, or {"error": …} if there is none, in the requested form."""
+    hints = [f"not graded: {result['error']}"] if "error" in result else hints_of(result)
     if options.form == "json":
         print(json.dumps(result, indent=1))
     elif options.form == "gradescope":
         scenes = [(scene["scene"], scene["verdict"], ", ".join(scene_words(scene))) for scene in result.get("scenes", [])]
         if result["verdict"] == "biased" and all(verdict == "correct" for _, verdict, _ in scenes):
-            scenes.append(("experiments", "biased", result["diagnosis"]["facts"][0]))
-        hints = [f"{head}: {text}" for head, text in hint_lines(result)] if scenes else [result["error"]]
-        print(json.dumps(as_gradescope(scenes, hints, options.points), indent=1))
+            scenes.append(("experiments", "biased", result["diagnosis"]["facts"][0]["text"]))
+        passed_anyway = DESCRIPTIONS.get(options.chapter, {}).get("check", {}).get("passed_by_placeholder", [])
+        print(json.dumps(as_gradescope(scenes, hints, options.points, passed_anyway, bool(result.get("unfinished_line"))), indent=1))
     elif "error" not in result:
-        print(explain(result))
+        more = detail_lines(result) if options.details else [("more", "every scene and experiment: --details")]
+        print(laid_out([*short_lines(result), *more], sys.stdout))
     if options.form == "github":
-        hints = [result["error"]] if "error" in result else [text for _, text in hint_lines(result)]
         file = result.get("unfinished_file") or options.file and printable(options.file)
         print(as_github(result["verdict"], file, result.get("unfinished_line"), hints), end="")
 

@@ -8,10 +8,11 @@ import time
 from pathlib import Path
 
 from check.experiments import experiments_of, known_sights, pictures, together, write_scene
-from check.facts import Fact, common_value, constant, fact, number, readings
-from check.grading import DESCRIPTIONS, knowledge_file, make_tree
+from check.facts import Fact, fact, readings
+from check.findings import findings, shortened
+from check.grading import DESCRIPTIONS, knowledge_file, make_tree, with_names_of
 from check.names import names_of, ratios_of, similar_to
-from project import CHAPTERS, ROOT, UserError, read_json
+from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from report.batch import Batch
 
 FIRST_SEED, REPEATS = 7001, 3
@@ -55,6 +56,7 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
     facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
     experiments = experiments_of(chapter)
     waiting = [name for name in experiments if name in expected]
+    count, started = len(waiting), time.monotonic()
 
     def look(name):
         try:
@@ -67,8 +69,10 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
             ready = [name for name in waiting if not set(experiments[name].when) & set(waiting)]
             names = from_both_ends([name for name in ready if chosen(experiments[name], facts)])
             waiting = [name for name in waiting if name not in ready]
-            for name, found in zip(names, list(batch.map(look, names))):
+            for left, (name, found) in zip(reversed(range(len(names))), zip(names, batch.map(look, names))):
                 experiment = experiments[name]
+                if not settings["is_quiet"]:
+                    show_progress(f"{settings['what']}experiments", count - len(waiting) - left, count, started)
                 if isinstance(found, UserError):
                     facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {found}")
                 else:
@@ -78,33 +82,6 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
 
 
 # ---------------------------------------------------------------------------------------------- words
-def sentences(facts):
-    """What is wrong, in the order of the experiments. Experiments that are wrong by the same factor at all points are reported
-    together."""
-    groups, others = [], []
-    for name, seen in facts.items():
-        lit = [reading for reading in seen.readings if not reading.is_dark]
-        is_clear = lit and not seen.is_right and not seen.invalid and all(r.is_right for r in seen.readings if r.is_dark)
-        common = common_value(lit) if is_clear else None
-        if not common or any(reading.is_right for reading in lit) or common[0] == 0:
-            others += [] if seen.is_right else [seen.sentence]
-            continue
-        group = next((group for group in groups if common_value([*group["readings"], *lit])), None)
-        if not group:
-            groups.append(group := {"readings": [], "of": []})
-        group["readings"] += lit
-        group["of"].append(seen.experiment)
-    told = []
-    for group in groups:
-        value = common_value(group["readings"])
-        subjects = {}
-        for experiment in group["of"]:
-            subjects.setdefault(experiment.subject, []).append(experiment.varies)
-        words = [f"{subject} (whatever {', '.join(varies)})" for subject, varies in subjects.items()]
-        told.append(f"{number(*value)} times as bright as it should be{constant(*value)}: {'; '.join(words)}")
-    return told + others
-
-
 def right_ones(facts):
     """What is right: subjects, or if a subject is only partly right, what it does not depend on."""
     not_right = {seen.experiment.subject for seen in facts.values() if not seen.is_surely_right}
@@ -112,43 +89,49 @@ def right_ones(facts):
     return list(dict.fromkeys(f"{each.subject}, whatever {each.varies}" if each.subject in not_right else each.subject for each in right))
 
 
-def noise_sentences(facts, sights, expected):
+def noise_findings(facts, sights, expected):
     """Where a shader is noisier than the chapter's own, or traces more rays, or fewer: then its paths end elsewhere."""
-    told = []
-    for kind, words, is_much in (("noise", "noisier than the chapter's own shader: so many times its variance", lambda value, error: value - 1 > 4 * error + 0.2),
-                                 ("rays", "so many times the rays of the chapter's own shader", lambda value, error: abs(value - 1) > 4 * error + 0.05)):
-        for name, seen in ratios_of(sights, expected)[kind].items():
-            experiment = facts[name].experiment
-            much = [f"{point.at}: {value:.2g}" for point, (value, error) in zip(experiment.points, seen) if is_much(value, error)]
-            if much:
-                told.append(f"{experiment.subject}: {words}; {', '.join(much)}")
-    return told
+    found = []
+    for kind, words, is_much in (("noise", "{:.2g} times the variance", lambda value, error: value - 1 > 4 * error + 0.2),
+                                 ("rays", "{:.2g} times the rays", lambda value, error: abs(value - 1) > 4 * error + 0.05)):
+        much = {name: [(point.at, value) for point, (value, error) in zip(facts[name].experiment.points, seen) if is_much(value, error)]
+                for name, seen in ratios_of(sights, expected)[kind].items()}
+        if much := {facts[name].experiment.subject: those for name, those in much.items() if those}:
+            most = max((value for those in much.values() for _, value in those), key=lambda value: abs(value - 1))
+            found.append({"text": shortened(f"up to {words.format(most)} of the chapter's own shader", list(much)),
+                          "evidence": [f"{subject}: {', '.join(f'{at}: {words.format(value)}' for at, value in those)} of the chapter's own shader"
+                                       for subject, those in much.items()]})
+    return found
 
 
-def next_step(chapter, facts):
-    """How the student can see the first wrong thing: writes a scene file and returns it with a command."""
-    seen = next((seen for seen in facts.values() if not seen.is_right and seen.readings), None)
+def next_step(chapter, file, facts, sights, expected):
+    """How the student can see the first wrong thing: writes a scene file and returns it in a command, with the value to expect."""
+    name, seen = next(((name, seen) for name, seen in facts.items() if not seen.is_right and seen.readings), (None, None))
     if not seen:
         return None
     worst = max(range(len(seen.readings)), key=lambda i: abs(seen.readings[i].value - seen.readings[i].expected))
     point, folder = seen.experiment.points[worst], ROOT / f"output/check_{chapter}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        scene = write_scene(point.scene, folder, seen.experiment.name)
+        scene = write_scene(point.scene, folder, name)
     except OSError:  # in a read-only checkout, for instance
         return None
-    return f"./lab run {chapter} {scene.relative_to(ROOT)} {point.options}".rstrip()
+    copy = next((number for number, name in CHAPTERS.items() if file.resolve().parent == ROOT / "chapters" / name), None)
+    where = "" if copy else ", with your shader in the chapter's folder"
+    colour = ("red", "green", "blue")[point.channel] + " " if point.channel is not None else ""
+    values = f"{sights[name][worst].mean:.3g} instead of {known_sights(expected[name])[worst].mean:.3g}"
+    return f"{f'./lab run {copy or chapter} {scene.relative_to(ROOT)} {point.options}'.rstrip()} shows {colour}{values}{where}"
 
 
 def reason(chapter, facts, sights, known, is_correct):
-    """What the facts say: sentences about what is wrong, subjects that are right, mistakes of the catalogue that fit, or if
-    none fits, may fit, and a command that shows the first of the facts."""
-    told = sentences(facts) or ([] if is_correct else noise_sentences(facts, sights, known["experiments"]))
+    """What the facts say: what is wrong, each with a short text and its evidence, subjects that are right, and mistakes of the catalogue
+    that fit or, if none fits, may fit."""
+    told = [found.told() for found in findings(facts.values())]
+    told = told or ([] if is_correct else noise_findings(facts, sights, known["experiments"]))
     wrong = [name for name, seen in facts.items() if not seen.is_right]
     fitting = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
     names = fitting or (similar_to(facts, known["mistakes"]) if wrong else [])
-    return {"facts": told, "right": right_ones(facts), "next": next_step(chapter, facts),
-            "wrong": wrong, "fits": bool(fitting),
+    return {"facts": told, "right": right_ones(facts), "wrong": wrong, "fits": bool(fitting),
             "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
             "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
             "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()}}
@@ -160,7 +143,10 @@ def diagnose(chapter, file, settings, shader=None, is_correct=False):
     with tempfile.TemporaryDirectory() as folder:
         program, copies = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         facts, sights = observe(chapter, program, settings, known["experiments"], is_deciding if is_correct else is_called_for)
-    return reason(chapter, facts, sights, known, is_correct) | {"seconds": round(time.monotonic() - started, 1)}
+    for seen in facts.values():
+        seen.sentence = with_names_of(copies, seen.sentence)
+    return reason(chapter, facts, sights, known, is_correct) | {
+        "next": next_step(chapter, file, facts, sights, known["experiments"]), "seconds": round(time.monotonic() - started, 1)}
 
 
 def verdict_with(verdict, diagnosis):

@@ -11,15 +11,14 @@ from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
-from check.experiments import experiment_files, experiments_of
 from check.grading import graded_together, knowledge_file
-from check.words import explain, hint_lines
-from project import CHAPTERS, ROOT, UserError, printable, read_json, write_json
+from check.words import detail_lines, headline, laid_out, questions, short_lines
+from project import CHAPTERS, ROOT, UserError, course, printable, read_json, write_json
 from report.measurement import digest_of_sources
 
 UNGRADED = 2  # exit code
 NO_SUBMISSION = (".", "__MACOSX")  # what names begin with in archives of other systems
-MOST_COMMON = 5  # number of facts that sum up a class
+MOST_COMMON = 5  # number of causes that sum up a class
 COLUMNS = ["submission", "verdict", "unfinished_line", "facts", "mistakes", "questions", "error", "seconds"]
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
@@ -82,13 +81,15 @@ def grade_one(options, check, name, submission, folder, known):
         if known and known["digest"] == key and known["verdict"] != "not graded":
             return known
         result = check(options, file, folder / f"{name}.png")
-        found = result["diagnosis"] or {}
+        found = result["diagnosis"] or {"facts": [], "mistakes": [], "fits": False}
+        fitting = found["mistakes"] if found["fits"] else []
         row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
-               "text": explain(result), "questions": " ".join(text for head, text in hint_lines(result) if head in ("ask yourself", "or")),
-               "wrong": found.get("wrong", []), "facts": " | ".join(found.get("facts", [])), "mistakes": " ".join(each.get("name", "") for each in found.get("mistakes", []) if found["fits"]),
-               "error": ""}
+               "headline": headline(result), "text": laid_out(short_lines(result)), "details": laid_out(detail_lines(result)),
+               "facts": " | ".join(fact["text"] for fact in found["facts"]), "mistakes": " ".join(each.get("name", "") for each in fitting),
+               "questions": " ".join(questions(result) if fitting else []), "causes": causes(options.chapter, result), "error": ""}
     except Exception as error:  # whatever it is, grading continues with the next submission
-        row = {"verdict": "not graded", "error": printable(str(error)), "text": printable(str(error))}
+        text = printable(str(error))
+        row = {"verdict": "not graded", "headline": ("not graded", text), "error": text, "text": text, "details": "", "causes": []}
     return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1), "digest": key}
 
 
@@ -97,24 +98,46 @@ def in_a_table(value):
     return f"'{value}" if str(value)[:1] in ("=", "+", "-", "@") else value
 
 
+def causes(chapter, result):
+    """What is wrong with a shader, for the summary of a class: the mistakes that fit, each with the fact that speaks for it most and
+    the chapter that teaches what it gets wrong."""
+    found = result["diagnosis"]
+    if result["unfinished_line"]:
+        return ["unfinished: a TODO is left"]
+    if result["verdict"] == "correct" or not found:
+        return []
+    if not (found["fits"] and questions(result)):
+        return ["no single common mistake fits: see what was seen of each"]
+    pages = [f"{mistake['slide']}; chapters/{CHAPTERS[teaching(chapter, mistake)]}/README.md" for mistake in found["mistakes"]]
+    return [f"{question} ({page})" for question, page in zip(questions(result), pages)]
+
+
+def teaching(chapter, mistake):
+    """The first chapter whose shader can have this mistake."""
+    knowledge = {number: read_json(knowledge_file(number))["mistakes"] for number in course() if number < chapter and knowledge_file(number).exists()}
+    return next((number for number, known in knowledge.items() if mistake["hint"] in {each["hint"] for each in known.values()}), chapter)
+
+
+def summary(rows):
+    """What is wrong most often in a class, as lines, each with the first fact about one of these shaders."""
+    counts = Counter(cause for row in rows for cause in row["causes"])
+    facts = {cause: row["facts"].split(" | ")[0] for row in reversed(rows) for cause in row["causes"]}
+    return [f"{count} of {len(rows)}: {cause}{': ' if facts[cause] else ''}{facts[cause]}" for cause, count in counts.most_common(MOST_COMMON)]
+
+
 def write_page(options, rows, path):
-    parts = []
-    for row in rows:
-        picture = f'<img src="{quote(row["picture"])}" alt="pictures and differences">' if row.get("picture") else ""
-        parts.append(f"<h2>{html.escape(row['submission'])}: {row['verdict']}</h2>\n{picture}<pre>{html.escape(row['text'])}</pre>\n")
-    if common := common_facts(options.chapter, rows):
-        parts.insert(0, f"<h2>What is wrong most often</h2>\n<pre>{html.escape(chr(10).join(common))}</pre>\n")
-    path.write_text(PAGE.substitute(title=f"Chapter {options.chapter}: {len(rows)} submissions", body="".join(parts)), encoding="utf-8")
-
-
-def common_facts(chapter, rows):
-    """What most submissions get wrong in a chapter's experiments, as lines: how many, what, and the chapter whose page and
-    exercises cover it."""
-    experiments = experiments_of(chapter)
-    owners = {name: number for number, file in experiment_files().items() for name in file.get("experiments", {})}
-    counts = Counter(name for row in rows for name in row.get("wrong", []) if name in experiments)
-    return [f"{count} of {len(rows)}: {experiments[name].subject}, as far as it depends on {experiments[name].varies}: "
-            f"chapters/{CHAPTERS[owners[name]]}/README.md, its exercises" for name, count in counts.most_common(MOST_COMMON)]
+    """A table of all submissions, and a section about each."""
+    escaped = [{key: html.escape(row[key]) for key in ("submission", "verdict", "text", "details")} for row in rows]
+    lines = [f'<tr><td><a href="#{i}">{row["submission"]}</a></td><td>{row["verdict"]}</td><td>{html.escape(rows[i]["headline"][1])}</td></tr>\n'
+             for i, row in enumerate(escaped)]
+    body = f"<table>\n<tr><th>submission</th><th>verdict</th><th></th></tr>\n{''.join(lines)}</table>\n"
+    if common := summary(rows):
+        body += f"<h2>What is wrong most often</h2>\n<pre>{html.escape(chr(10).join(common))}</pre>\n"
+    for i, row in enumerate(escaped):
+        picture = f'<img src="{quote(rows[i]["picture"])}" alt="pictures and differences">' if rows[i].get("picture") else ""
+        details = f"<details><summary>Details</summary><pre>{row['details']}</pre></details>\n" if row["details"] else ""
+        body += f'<h2 id="{i}">{row["submission"]}: {row["verdict"]}</h2>\n{picture}<pre>{row["text"]}</pre>\n{details}'
+    path.write_text(PAGE.substitute(title=f"Chapter {options.chapter}: {len(rows)} submissions", body=body), encoding="utf-8")
 
 
 def grade_all(options, check):
@@ -137,7 +160,7 @@ def grade_all(options, check):
             writer.writeheader()
             writer.writerows({key: in_a_table(value) for key, value in row.items()} for row in rows)
         write_page(options, rows, folder / "index.html")
-    if common := common_facts(options.chapter, rows):
+    if common := summary(rows):
         print("\n".join(["what is wrong most often", *common]))
     print(f"{folder / 'results.csv'}\n{folder / 'index.html'}", file=sys.stderr)
     return UNGRADED if any(row["verdict"] == "not graded" for row in rows) else 0

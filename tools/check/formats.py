@@ -4,17 +4,29 @@ import re
 PART = {"correct": 1.0, "noisy": 0.5, "expensive": 0.5, "biased": 0.0}  # of a scene's points
 
 
-def as_gradescope(scenes, hints, points):
-    """What Gradescope reads from /autograder/results/results.json: one test with points per scene, with what was found there, and
-    the hints as overall output. `scenes` are triples of name, verdict and words; without scenes, the submission has no points."""
-    each = points / max(len(scenes), 1)
-    tests = [{"name": name, "score": round(each * PART[verdict], 3), "max_score": round(each, 3),
-              "status": "passed" if verdict == "correct" else "failed", "output": f"{verdict}: {words}", "visibility": "visible"}
-             for name, verdict, words in scenes]
-    if not tests:
-        tests = [{"name": "check", "score": 0, "max_score": points, "status": "failed", "output": hints[0], "visibility": "visible"}]
-    score = round(points * sum(PART[verdict] for _, verdict, _ in scenes) / max(len(scenes), 1), 3)
-    return {"score": score, "output": "\n".join(hints), "visibility": "visible", "stdout_visibility": "hidden", "tests": tests}
+def as_gradescope(scenes, hints, points, passed_anyway=(), is_unfinished=False):
+    """What Gradescope reads from /autograder/results/results.json: one test per scene, with what was found there, and the hints as
+    overall output. `scenes` are triples of name, verdict and words; without scenes, the submission has no points. Those in
+    `passed_anyway` say nothing about the exercise, since its placeholder passes them: if they fail, all others lose a part of their points."""
+    if not scenes:
+        return submission(0, hints, [a_test("check", False, 0, points, hints[0])])
+    each = points / max(sum(name not in passed_anyway for name, _, _ in scenes), 1)
+    kept = 0 if is_unfinished else 1 - sum(1 - PART[verdict] for name, verdict, _ in scenes if name in passed_anyway) / len(scenes)
+    tests, score = [], 0
+    for name, verdict, words in scenes:
+        most = 0 if name in passed_anyway else each
+        score += most * PART[verdict] * kept
+        tests.append(a_test(name, verdict == "correct" and not is_unfinished, most * PART[verdict] * kept, most, f"{verdict}: {words}"))
+    return submission(score, hints, tests)
+
+
+def a_test(name, is_passed, score, most, words):
+    return {"name": name, "score": round(score, 3), "max_score": round(most, 3), "status": "passed" if is_passed else "failed",
+            "output": words, "visibility": "visible"}
+
+
+def submission(score, hints, tests):
+    return {"score": round(score, 3), "output": "\n".join(hints), "visibility": "visible", "stdout_visibility": "hidden", "tests": tests}
 
 
 def escaped(text):
@@ -34,4 +46,4 @@ def as_github(verdict, file, line, hints):
     of_compiler = re.search(rf"{re.escape(str(file))}:(\d+):", hints[0]) if hints else None
     line = line or (of_compiler[1] if of_compiler else 1)
     place = f"file={escaped_property(str(file))},line={line}," if file else ""
-    return f"::error {place}title=./lab check::{escaped(verdict + ''.join(f'{chr(10)}{hint}' for hint in hints))}\n"
+    return f"::error {place}title=./lab check::{escaped(chr(10).join(hints))}\n"

@@ -91,11 +91,11 @@ def make_tree(chapter, file, tree, shader=None):
     return shutil.copy(program_file(chapter), tree / "bin"), copies  # a program looks for shaders in parent folders
 
 
-def with_names_of(copies, error):
-    """An error with the files' names instead of those of their copies."""
+def with_names_of(copies, text):
+    """A text with the files' names instead of those of their copies."""
     for copy, source in copies.items():
-        error = UserError(str(error).replace(str(copy), printable(relative(source))))
-    return error
+        text = text.replace(str(copy), printable(relative(source)))
+    return text
 
 
 def share(folder, place):
@@ -174,7 +174,7 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
                 if done == EARLY_RUNS * len(cases) < len(work):
                     watch(cases)
         except UserError as error:
-            raise with_names_of(copies, error) from None
+            raise UserError(with_names_of(copies, str(error))) from None
     return cases
 
 

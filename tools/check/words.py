@@ -1,11 +1,17 @@
-"""What a check reports about a shader, in words."""
+"""What a check reports about a shader, in words: a list of lines, each with a head, and the page that they make."""
+import os
+import shutil
+import sys
+import textwrap
+
 from check.grading import early_bias
 from project import CHAPTERS
 
-MOST_QUESTIONS = 2
-SIMILAR = "no common mistake fits all that was seen, but two are similar: it may be one of them, or neither"
-NOTHING_SEEN = ("none of the experiments finds what is wrong in the pictures, so all that they look at is right: look at the places that the "
-                "picture of the differences frames")
+MOST_QUESTIONS, MOST_FACTS = 2, 5
+MARGIN = 15  # columns of the heads
+COLOURS = {"correct": 32, "biased": 31, "unfinished": 33, "noisy": 33, "expensive": 33}  # of a terminal
+SIMILAR = "no common mistake fits all facts, but two are similar: it may be one of them, or neither"
+NOTHING_SEEN = "no experiment finds what is wrong: look at the frames in the picture of the differences"
 
 
 def percent(value):
@@ -13,13 +19,14 @@ def percent(value):
 
 
 def tell_early(cases):
-    """What is certain after the first runs."""
+    """What is certain after the first runs: a part of the progress."""
     scene, value = early_bias(cases)
     if scene:
         words = f"{scene} is too {'bright' if value > 0 else 'dark'} ({percent(value)})"
     else:
         words = f"no picture is wrong by {100 * value:.2g} % or more in its mean" if value < 1 else "nothing is sure yet"
-    print(f"{'so far':14} {words}; smaller differences take all renders", flush=True)
+    start = "\r\033[K" if sys.stderr.isatty() else ""  # over the bar
+    print(f"{start}{'so far':{MARGIN}}{words}; smaller differences take all renders", file=sys.stderr, flush=True)
 
 
 def scene_words(scene):
@@ -44,32 +51,87 @@ def scene_words(scene):
     return words
 
 
-def hint_lines(result):
-    """Pairs of a word and a lead to the mistake: what the experiments have shown, and questions if few mistakes can cause it."""
+def worst_scene(result):
+    """What is wrong in the scene with the verdict, in a few words; experiments may have found what no scene shows."""
+    scene = next((scene for scene in result["scenes"] if scene["verdict"] == result["verdict"]), None)
+    if not scene:
+        return "the pictures are right, but not what the experiments show"
+    if result["verdict"] == "biased":
+        worst = max((test["value"] for test in [*scene["image"], *(tile for tile in scene["tiles"] if tile["is_biased"])]), key=abs)
+        return f"{scene['scene']} is too {'bright' if worst > 0 else 'dark'} (by up to {percent(worst)})"
+    if result["verdict"] == "noisy":
+        return f"{scene['scene']} has {scene['noise'][0]:.2f} times the noise of the chapter's own shader"
+    if result["verdict"] == "expensive":
+        return f"{scene['scene']} takes {scene['rays']:.2f} times the rays of the chapter's own shader"
+    least = max((test["detectable"] for scene in result["scenes"] for test in scene["image"]), default=0)
+    return f"nothing differs, and a bias from {100 * least:.2g} % would have shown"
+
+
+def questions(result):
+    """The questions that lead to what may be wrong, if few mistakes can cause it."""
+    mistakes = (result["diagnosis"] or {"mistakes": []})["mistakes"] if result["verdict"] != "correct" else []
+    return [": ".join(filter(None, (mistake.get("name"), mistake["hint"]))) for mistake in mistakes] if len(mistakes) <= MOST_QUESTIONS else []
+
+
+def headline(result):
+    """The verdict, and the question that leads to the mistake or else what is wrong most."""
     if result["unfinished_line"]:
-        return [("unfinished", f"{result['unfinished_file']}:{result['unfinished_line']} says TODO")]
-    found = result["diagnosis"]
-    if result["verdict"] == "correct" or not found:
-        return []
-    lines = [("seen", fact) for fact in found["facts"]] or [("seen", NOTHING_SEEN)]
-    lines += [("right", "; ".join(found["right"]))] if found["right"] else []
-    page, mistakes = f"chapters/{CHAPTERS[result['chapter']]}/README.md", found["mistakes"]
+        return "unfinished", f"{result['unfinished_file']}:{result['unfinished_line']} says TODO"
+    is_asked = questions(result) and result["diagnosis"]["fits"]
+    return result["verdict"], questions(result)[0] if is_asked else worst_scene(result)
+
+
+def hint_lines(result):
+    """Pairs of a word and a lead to the mistake: what the experiments have shown, other questions than the headline's, what to read."""
+    lines, found = [], result["diagnosis"]
+    if result["unfinished_line"] or result["verdict"] == "correct" or not found:
+        return lines
+    asked, mistakes = questions(result), found["mistakes"]
+    lines += [("seen", fact["text"]) for fact in found["facts"][:MOST_FACTS]] or [("seen", NOTHING_SEEN)]
+    if len(found["facts"]) > MOST_FACTS:
+        lines.append(("seen", f"and {len(found['facts']) - MOST_FACTS} more things"))
     if mistakes and not found["fits"]:
-        lines.append(("not sure", SIMILAR))
-    if len(mistakes) <= MOST_QUESTIONS:
-        for first, mistake in zip(("ask yourself", "or") if found["fits"] else ("maybe", "maybe"), mistakes):
-            name = f"{mistake['name']}: " if "name" in mistake else ""
-            lines += [(first, name + mistake["hint"]), ("read again", f"{mistake['slide']} (docs/slides.md), {page}")]
+        lines += [("not sure", SIMILAR), *(("maybe", question) for question in asked)]
+    else:
+        lines += [("or", question) for question in asked[1:]]
+    if asked:
+        slides = "; ".join(dict.fromkeys(mistake["slide"] for mistake in mistakes))
+        lines.append(("read again", f"{slides} (docs/slides.md), chapters/{CHAPTERS[result['chapter']]}/README.md"))
     if len(mistakes) > 1 and found["fits"]:
         lines.append(("not sure", f"{len(mistakes)} common mistakes show the same in all experiments"))
     if found["next"] and len(mistakes) != 1:
-        lines.append(("next", f"see it with your shader in the chapter's folder: {found['next']}"))
+        lines.append(("next", found["next"]))
     return lines
 
 
-def explain(result):
-    """The result as text, one line per scene."""
+def hints_of(result):
+    """What a platform shows of a shader that is not correct: texts, the headline first."""
+    return [f"{head}: {text}" for head, text in ([headline(result), *hint_lines(result)] if result["verdict"] != "correct" else [])]
+
+
+def detail_lines(result):
+    """All that was measured."""
     lines = [(scene["scene"], f"{scene['verdict']}: {', '.join(scene_words(scene))}") for scene in result["scenes"]]
-    lines += [("where", result["picture"])] if result["picture"] else []
-    lines += [*hint_lines(result), (f"chapter {result['chapter']}", f"{result['verdict']}: {result['file']}")]
-    return "\n".join(f"{head:14} {text}" for head, text in lines)
+    if found := result["diagnosis"]:
+        lines += [("seen", sentence) for fact in found["facts"] for sentence in fact["evidence"]]
+        lines += [("right", subject) for subject in found["right"]]
+    return lines
+
+
+def laid_out(lines, stream=None):
+    """Lines as text: on a terminal wrapped, with the verdict in colour."""
+    if not stream or not stream.isatty():
+        return "\n".join(f"{head:{MARGIN - 1}} {text}" for head, text in lines)
+    width = max(shutil.get_terminal_size().columns, 2 * MARGIN)
+    shown = []
+    for head, text in lines:
+        text = textwrap.fill(text, width - MARGIN, break_long_words=False, break_on_hyphens=False)
+        start, end = ("", "") if os.environ.get("NO_COLOR") else (f"\033[{COLOURS.get(head, 1)}m", "\033[0m")
+        shown.append(f"{start}{head:{MARGIN - 1}}{end} " + text.replace("\n", "\n" + " " * MARGIN))
+    return "\n".join(shown)
+
+
+def short_lines(result):
+    """The result as a few lines."""
+    lines = [headline(result), *hint_lines(result), ("file", f"{result['file']}, as chapter {result['chapter']}")]
+    return [*lines, *([("where", result["picture"])] if result["picture"] else [])]

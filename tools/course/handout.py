@@ -3,6 +3,7 @@
 It has neither later chapters nor the tests, which name solutions, nor the history. --verify proves for all chapters that
 the tree configures, and that its chapter fails ./lab check before the solution is filled in and passes with it.
 """
+import json
 import os
 import shutil
 import sys
@@ -84,7 +85,10 @@ def verify(chapter, folder):
     run_to_end(["cmake", "-S", tree, "-B", tree / "build", "-G", "Ninja"], f"chapter {chapter}: CMake")
     environment = os.environ | {"LAB_BINARIES": str(BINARIES.resolve())}
     check = [sys.executable, "-B", tree / "tools", "check", chapter, *few(chapter)]
-    run_to_end(check, f"chapter {chapter}: check of the TODO", EXPECTED["biased"], env=environment)
+    result = json.loads(run_to_end([*check, "--json"], f"chapter {chapter}: check of the TODO", EXPECTED["biased"], env=environment))
+    passed = [scene["scene"] for scene in result["scenes"] if scene["verdict"] != "biased"]
+    if passed != description(CHAPTERS[chapter])["check"].get("passed_by_placeholder", []):
+        raise UserError(f"chapter {chapter}: the scenes that the TODO passes are {passed}: write them into chapter.json")
     solution = exercise_file(chapter).with_name(read_json(exercise_file(chapter))["file"])
     run_to_end([*check, solution], f"chapter {chapter}: check of the solution", EXPECTED["correct"], env=environment)
 

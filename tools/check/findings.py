@@ -1,0 +1,121 @@
+"""What the facts of a check have in common: experiments that are wrong in the same way become one finding, since they probably have
+the same cause."""
+import math
+import textwrap
+from dataclasses import dataclass, field
+
+from check.facts import TOLERANCE, common_value, constant, number, power_law
+
+LONGEST = 100  # characters of a finding's text
+SHARE = 0.5  # of what is wrong: a factor that fewer experiments have in common is a coincidence
+BOUNCES = 4  # at most, of an experiment
+
+
+@dataclass
+class Finding:
+    """A way of being wrong, and the facts that are."""
+    way: str
+    facts: list = field(default_factory=list)
+
+    def told(self):
+        subjects = sorted(dict.fromkeys(seen.experiment.subject for seen in self.facts), key=len)
+        return {"text": shortened(self.way, subjects), "evidence": [seen.sentence for seen in self.facts]}
+
+
+def shortened(way, subjects):
+    """A text with as many of the subjects as fit into it."""
+    for count in range(len(subjects), 0, -1):
+        rest = f" and {len(subjects) - count} more" if count < len(subjects) else ""
+        if len(text := f"{way}: {'; '.join(subjects[:count])}{rest}") <= LONGEST:
+            return text
+    return textwrap.shorten(f"{way}: {subjects[0]}", LONGEST, placeholder=f" … and {len(subjects) - 1} more" if len(subjects) > 1 else " …")
+
+
+def wrong_readings(seen):
+    """Those where light is expected."""
+    return [reading for reading in seen.readings if not reading.is_dark and not reading.is_right]
+
+
+def factor_of_bounces(facts):
+    """(factor, its error) with which every bounce multiplies the light, if an experiment that counts bounces shows one; or None."""
+    for seen in facts:
+        counts = {point.at: point.x for point in seen.experiment.points}
+        those = [reading for reading in seen.readings if reading.value > 0]
+        if "bounce" in seen.experiment.quantity.get("per", "") and len(those) == len(counts):
+            roots = [(reading.value**(1 / counts[reading.at]), reading.error / reading.value / counts[reading.at]) for reading in those]
+            factor, error = roots[0][0], roots[0][0] * roots[0][1]
+            if all(abs(root / factor - 1) <= TOLERANCE + 3 * math.hypot(part, error / factor) for root, part in roots):
+                return factor, error
+    return None
+
+
+def is_power(reading, factor, error):
+    """Whether a reading is that of some bounces, each with this factor."""
+    return any(abs(reading.value - factor**k) <= 3 * math.hypot(reading.error, k * factor**(k - 1) * error) + TOLERANCE * factor**k
+               for k in range(1, BOUNCES + 1))
+
+
+def own_way(seen, bounces):
+    """What is wrong in an experiment, in words that do not depend on it, or None if no simple words say it."""
+    wrong = wrong_readings(seen)
+    if not seen.readings:
+        return "cannot be rendered"
+    if not wrong:
+        return None
+    if all(reading.value == 0 for reading in wrong):
+        return "nothing is there"
+    if bounces and all(is_power(reading, *bounces) for reading in wrong):
+        return f"{number(*bounces)} times as bright with each bounce{constant(*bounces)}"
+    lit = [reading for reading in seen.readings if not reading.is_dark]
+    if (law := power_law(seen.experiment, lit)) and not common_value(lit):
+        return f"off by {law[2].replace('this angle', seen.experiment.varies)}"
+    return None
+
+
+def same_factors(facts):
+    """Lists of facts whose wrong readings all agree, with what they agree on: (value, error)."""
+    groups = []
+    for seen in facts:
+        group = next((group for group in groups if common_value([*group[0], *wrong_readings(seen)])), None)
+        if not group:
+            groups.append(group := ([], []))
+        group[0].extend(wrong_readings(seen))
+        group[1].append(seen)
+    return [(common_value(readings), those) for readings, those in groups]
+
+
+def side(those):
+    """What facts that have nothing else in common say together."""
+    values = [reading.value for seen in those for reading in wrong_readings(seen)]
+    if min(values) > 1:
+        return f"too bright, up to {max(values):.2f} times"
+    return f"too dark, down to {min(values):.2f} times" if max(values) < 1 else f"{min(values):.2f} to {max(values):.2f} times as bright"
+
+
+def findings(facts):
+    """The wrong ones of some facts by what they have in common: a list of Finding, those that say most about the cause first."""
+    wrong, found, others = [seen for seen in facts if not seen.is_right], {}, []
+    bounces = factor_of_bounces(wrong)
+
+    def add(way, *those):
+        found.setdefault(way, Finding(way)).facts.extend(those)
+
+    for seen in wrong:
+        if seen.invalid:
+            add("infinite or not a number", seen)
+    for seen in wrong:
+        if way := own_way(seen, bounces):
+            add(way, seen)
+        elif wrong_readings(seen):
+            others.append(seen)
+        if any(reading.is_dark and not reading.is_right for reading in seen.readings):
+            add("light where none should be", seen)
+    factors = [(common, those) for common, those in same_factors(others) if common and len(those) >= SHARE * len(wrong)]
+    for common, those in factors:
+        add(f"{number(*common)} times as bright as it should be{constant(*common)}", *those)
+    rest = [seen for seen in others if not any(seen is each for _, those in factors for each in those)]
+    for is_bright in (True, False):
+        those = [seen for seen in rest if any(reading.value > 1 for reading in wrong_readings(seen)) == is_bright]
+        if those:
+            add(side(those), *those)
+    return list(found.values())
