@@ -2,11 +2,13 @@
 
 import re
 import shutil
+import sys
 import unittest
 from unittest import mock
 
-from program import BINARIES, TOOLS, UNOPTIMISED, ProgramTest  # first: it finds the tools
+from program import BINARIES, PROJECT, TOOLS, UNOPTIMISED, ProgramTest  # first: it finds the tools
 import mistake
+import numpy as np
 from lesson import sample, sample_plots
 
 NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-point", "points"]
@@ -44,6 +46,43 @@ class SampleTest(ProgramTest):
                 for _, half, error in rows:
                     self.assertLess(abs(float(error)), 2.5 * float(half) + 1e-5)
                 self.assertEqual((self.folder / "picture.png").read_bytes()[:4], b"\x89PNG")
+
+    def test_the_chi_square_test_sees_what_one_coordinate_does_not_show(self):
+        random = np.random.default_rng(1)
+        for name in ("numbers", "cosine", "light-point"):
+            playground = sample.PLAYGROUNDS[name]
+            heights, others = random.random(4096), random.random(4096)
+            for is_right in (True, False):
+                second = others if is_right else 0.75 * others  # a quarter of the azimuths is missing, for instance
+                if name == "cosine":
+                    z, phi = np.sqrt(heights), 2 * np.pi * (second - 0.5)
+                    points = np.stack([np.sqrt(1 - z**2) * np.cos(phi), np.sqrt(1 - z**2) * np.sin(phi), z, z], axis=1)
+                elif name == "light-point":
+                    w = 1 - np.sqrt(1 - heights)
+                    points = np.stack([w, (1 - w) * second], axis=1)
+                else:
+                    points = np.stack([heights, second], axis=1)
+                statistic, freedom, chance = sample.chi_square(playground, points)
+                self.assertGreater(freedom, 100)
+                self.assertEqual(chance > 1e-3, is_right, (name, statistic))
+
+    def test_a_copy_shows_its_own_sampler(self):
+        """By its number, in the folder of a student's copy: its points, right or wrong."""
+        tree = self.folder / "lab"
+        for name in ("chapters", "shaders", "tools"):
+            shutil.copytree(PROJECT / name, tree / name)
+        for name in ("assets", "common"):
+            (tree / name).symlink_to(PROJECT / name)
+        (tree / "build/bin").mkdir(parents=True)
+        shutil.copy(BINARIES / "sample_points", tree / "build/bin")
+        for number, replace, chance in ((20, "2.0 * PI * u.x - PI", "which is chance"), (21, "1.5 * PI * u.x - PI", "too large for chance")):
+            copy = shutil.copytree(tree / "chapters/02_cosine_sampling", tree / f"chapters/{number}_mine")
+            shader = copy / "sample_hemisphere.glsl"
+            shader.write_text(shader.read_text(encoding="utf-8").replace("2.0 * PI * u.x - PI", replace), encoding="utf-8")
+            out = self.render("-B", tree / "tools", "sample", number, "--output", self.folder / "picture.png", program=sys.executable,
+                              environment=UNOPTIMISED | {"LAB_BINARIES": None})
+            self.assertIn(f"directions of chapter {number}", out)
+            self.assertRegex(out, rf"chi² of cos θ and φ: .*{chance}")
 
     def test_cosine_sampling_is_exact_for_the_cosine(self):
         out = self.text("cosine")
@@ -89,6 +128,7 @@ class SampleTest(ProgramTest):
 
     def test_other_words_are_refused(self):
         self.refuse(["nothing"], "'nothing'", "cosine")
+        self.refuse(["4"], "'4'", "cosine", "copy")
         self.refuse(["cosine", "--count=0"], "--count", "0")
         self.refuse(["cosine", "--count=1e9"], "--count")
         self.refuse(["kd", "--dimensions=9"], "--dimensions")

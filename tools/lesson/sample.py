@@ -1,5 +1,6 @@
 """A playground without pixels: points from the lab's samplers against their density, and the integrals that they
-estimate, as text and as a picture. The points come from the chapters' shaders, so a change there shows here.
+estimate, as text and as a picture. The points come from the chapters' shaders, so a change there shows here. With the number of a
+chapter, or of a copy of one, instead of a name, it is that folder's own sampler.
 """
 import math
 import sys
@@ -9,13 +10,17 @@ from typing import Callable
 
 import numpy as np
 from lesson import point_sets
-from project import CHAPTERS, ROOT, Parser, UserError, number, program_file, run_program
+from project import CHAPTERS, ROOT, Parser, UserError, number, original, program_file, run_program
 from report.numbers import CONFIDENCE, two_sided
 from report.studies import named
+from scipy.special import chdtrc
 
 PROGRAM = program_file("sample_points")
 BINS = 16
 CHANCE = 4.5  # in standard errors: the largest of BINS deviations rarely exceeds it
+SECTORS = 8  # of the other coordinate, for the chi-square test
+LEAST_EXPECTED = 5  # points in a cell of that test: others are joined
+SIGNIFICANCE, ROUNDING = 1e-4, 1e-3
 
 
 @dataclass
@@ -33,6 +38,8 @@ class Playground:
     coordinate: str  # shown by the histogram
     coordinates: Callable = lambda points: points[:, 0]
     cumulative: Callable = lambda x: x  # distribution function of that coordinate
+    others: Callable = lambda points: points[:, 1]  # another coordinate, uniform from 0 to 1 and independent of the first
+    other: str = "u_y"
     dimensions: int = 2
     kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
     is_pixel: bool = False  # whether the points are samples of one pixel, rather than the first of as many pixels
@@ -55,7 +62,7 @@ COMPARED = {"the quarter disk's area": DARTS, "a smooth integral": MEAN_SQUARE} 
 PLAYGROUNDS = {
     "1d": Playground("1D Monte Carlo integration", "numbers", [
         Integral("∫ sin(π u) du from 0 to 1", lambda k: 2 / math.pi, lambda u: np.sin(np.pi * u[:, 0]))],
-        "u", dimensions=1),
+        "u", other="", dimensions=1),
     "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", dimensions=4),
     "numbers": Playground("pairs of random numbers by PCG2D, shaders/world/random.glsl", "numbers", [DARTS], "u_x"),
     "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"),
@@ -64,9 +71,11 @@ PLAYGROUNDS = {
 # What a chapter's measure.json calls "points": the sampler, and what else its playground needs.
 KINDS = {
     "directions": ("directions", {
-        "integrals": COSINES, "coordinate": "cos θ", "coordinates": lambda p: drop_lost(p)[:, 2], "kind": "disk"}),
+        "integrals": COSINES, "coordinate": "cos θ", "coordinates": lambda p: drop_lost(p)[:, 2], "kind": "disk",
+        "others": lambda p: np.arctan2(drop_lost(p)[:, 1], drop_lost(p)[:, 0]) / (2 * math.pi) + 0.5, "other": "φ"}),
     "light points": ("light points", {
-        "integrals": [Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])], "coordinate": "w_1", "kind": "triangle"}),
+        "integrals": [Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])], "coordinate": "w_1", "kind": "triangle",
+        "others": lambda w: w[:, 1] / np.maximum(1 - w[:, 0], 1e-30), "other": "w_2 / (1 - w_1)"}),
     "pixel": ("numbers", {"integrals": [DARTS, MEAN_SQUARE], "coordinate": "u_x", "is_pixel": True}),
 }
 
@@ -82,6 +91,14 @@ OF_CHAPTERS = {name: playground_of(chapter, **content) for name, (chapter, conte
 PLAYGROUNDS |= OF_CHAPTERS
 
 
+def own_playground(number):
+    """The playground of a chapter's sampler, or of the chapter that it is a copy of, with its own shaders; None if there is none."""
+    if not number.isdecimal() or int(number) not in CHAPTERS:
+        return None
+    chapter, title = CHAPTERS[int(number)], CHAPTERS[original(int(number))]
+    return next((playground_of(chapter, **content) for owner, content in named("samplers").values() if owner == title), None)
+
+
 def draw(playground, count, seed, dimensions, device=None, samples=1):
     """Array [index, column] of points: the first ones of the pixels, or `samples` of each pixel."""
     result = run_program([PROGRAM, playground.sampler, playground.chapter, count, samples, seed, dimensions, device or ""], encoding=None, errors=None)
@@ -90,9 +107,9 @@ def draw(playground, count, seed, dimensions, device=None, samples=1):
     return np.frombuffer(result.stdout, np.float32).reshape(count, -1).astype(float)
 
 
-def draw_sets(seed, device=None):
-    """Name -> points [pixel, index, axis] of many pixels: random ones, Sobol's, and a chapter's scrambled ones."""
-    points = next(playground for playground in PLAYGROUNDS.values() if playground.is_pixel)
+def draw_sets(seed, device=None, points=None):
+    """Name -> points [pixel, index, axis] of many pixels: random ones, Sobol's, and scrambled ones of a chapter or its copy."""
+    points = points or next(playground for playground in PLAYGROUNDS.values() if playground.is_pixel)
     kinds = {"random": PLAYGROUNDS["numbers"], "Sobol": replace(points, sampler="sobol"), "scrambled": points}
     return {name: draw(kind, point_sets.PIXELS * point_sets.SIZE, seed, 2, device, point_sets.SIZE).reshape(point_sets.PIXELS, -1, 2)
             for name, kind in kinds.items()}
@@ -103,6 +120,27 @@ def histogram(playground, points):
     values = playground.coordinates(points)
     counts, edges = np.histogram(values, BINS, (0, 1))
     return edges, counts, np.diff(playground.cumulative(edges)) * len(values)
+
+
+def chi_square(playground, points):
+    """Pearson's test whether points follow their density in both coordinates: statistic, degrees of freedom, and the probability of one
+    as large by chance."""
+    has_other = playground.other and points.shape[1] > 1
+    first = playground.coordinates(points)
+    others, sectors = (playground.others(points), SECTORS) if has_other else (np.zeros(len(first)), 1)
+    rounded = [np.where(abs(values - values.clip(0, 1)) < ROUNDING, values.clip(0, 1), values) for values in (first, others)]
+    counts, edges, _ = np.histogram2d(*rounded, (BINS, sectors), ((0, 1), (0, 1)))
+    expected = np.repeat(np.diff(playground.cumulative(edges)) * len(first) / sectors, sectors)
+    cells = [[len(first) - counts.sum(), 0.0]]  # outside, where none should be
+    for i in np.argsort(expected):
+        if cells[-1][1] >= LEAST_EXPECTED:
+            cells.append([0.0, 0.0])
+        cells[-1] = [cells[-1][0] + counts.ravel()[i], cells[-1][1] + expected[i]]
+    if len(cells) > 1 and cells[-1][1] < LEAST_EXPECTED:
+        last = cells.pop()
+        cells[-1] = [sum(pair) for pair in zip(cells[-1], last)]
+    statistic, freedom = sum((count - mean) ** 2 / mean for count, mean in cells), len(cells) - 1
+    return statistic, freedom, float(chdtrc(freedom, statistic)) if freedom else 1.0
 
 
 def estimates(terms):
@@ -134,6 +172,9 @@ def report(playground, points, dimensions):
     deviation = (np.abs(counts - expected) / np.sqrt(expected * (1 - expected / expected.sum()))).max()
     lines.append(f"largest deviation of a count: {deviation:.1f} standard errors, " +
                  ("too large for chance" if deviation > CHANCE else f"which is chance: below {CHANCE}"))
+    statistic, freedom, chance = chi_square(playground, points)
+    lines.append(f"chi² of {' and '.join(filter(None, (playground.coordinate, playground.other)))}: {statistic:.1f} at {freedom} degrees of "
+                 f"freedom, p = {chance:.2g}, " + ("too large for chance" if chance < SIGNIFICANCE else "which is chance"))
     for integral in playground.integrals:
         exact = integral.value(dimensions)
         lines += ["", f"{integral.formula} = {exact:.6f}", f"{'N':>9}   estimate   95 % interval        error"]
@@ -150,7 +191,7 @@ def report(playground, points, dimensions):
 def parse():
     names = "\n".join(f"  {name:15s} {playground.title}" for name, playground in PLAYGROUNDS.items())
     parser = Parser("./lab sample", __doc__, epilog=f"names:\n{names}")
-    parser.add_argument("name", nargs="?", metavar="NAME", help="what to sample; without, the names are listed")
+    parser.add_argument("name", nargs="?", metavar="NAME|N", help="what to sample, or a chapter or copy; without, the names are listed")
     parser.add_argument("--count", type=number(int, 16, 1 << 22), default=4096, help="number of points; default: 4096")
     parser.add_argument("--seed", type=number(int, 0, 2**32 - 1), default=0, help="chooses the random numbers; default: 0")
     parser.add_argument("--dimensions", type=number(int, 1, 8), help="k of kd; default: 4")
@@ -160,8 +201,9 @@ def parse():
     if options.name is None:
         print(f"Samplers, to be shown by ./lab sample NAME:\n{names}")
         sys.exit()
-    if options.name not in PLAYGROUNDS:
-        parser.error(f"there is no sampler '{options.name}': {', '.join(PLAYGROUNDS)}")
+    options.playground = PLAYGROUNDS.get(options.name) or own_playground(options.name)
+    if not options.playground:
+        parser.error(f"there is no sampler '{options.name}': {', '.join(PLAYGROUNDS)}, or a chapter that has one, or its copy")
     if options.output and options.output.suffix != ".png":
         parser.error(f"--output: '{options.output}' must end in .png")
     if options.dimensions and options.name != "kd":
@@ -171,13 +213,15 @@ def parse():
 
 def main():
     options = parse()
-    playground = PLAYGROUNDS[options.name]
+    playground = options.playground
     dimensions = options.dimensions or playground.dimensions
     samples = options.count if playground.is_pixel else 1
     points = draw(playground, options.count, options.seed, dimensions, options.device, samples)
+    if not np.isfinite(points).all() or not len(playground.coordinates(points)):
+        raise UserError(f"chapters/{playground.chapter}: its sampler returns no direction, or numbers that are infinite or not a number")
     print(report(playground, points, dimensions))
     if playground.is_pixel:
-        sets = draw_sets(options.seed, options.device)
+        sets = draw_sets(options.seed, options.device, playground)
         print("\n".join(point_sets.report(sets, COMPARED)))
     output = options.output or ROOT / f"output/sample_{options.name}.png"
     from lesson import sample_plots  # imported late: Matplotlib takes longer to load than everything else
