@@ -9,6 +9,8 @@ from program import PROJECT, ProgramTest
 
 INSTALLED = "#!/bin/sh\nfor name; do printf '%s:installed ' \"$name\"; done\n"
 NOTING = "#!/bin/sh\necho \"${{0##*/}}${{LAB_TEST_COPY:+, copy $LAB_TEST_COPY:}} $@\" >>'{notes}'\n"
+# A test program that has one test.
+LISTING = NOTING + "[ $1 != --gtest_list_tests ] || echo '  AreThree'\n"
 
 
 class LineEnds(ProgramTest):
@@ -80,7 +82,16 @@ class WhatIsBuilt(ProgramTest):
             self.assertRegex(noted, rf"(?m)^ctest .*tests\.xml{choice}$")
 
     def test_the_tests_of_a_copy_are_those_of_its_originals_exercise(self):
-        noted = self.noted("test", 20, code=1)
+        """Only the files that have them are built, and only their tests run."""
+        self.write("tree/build/bin/shaders_three_test", LISTING.format(notes=self.folder / "notes")).chmod(0o755)
+        noted = self.noted("test", 20)
+        self.assertRegex(noted, r"(?m) --target shaders_three_test$")
+        self.assertRegex(noted, r"(?m)^shaders_three_test, copy 20_mine: --gtest_brief=1 --gtest_filter=ThreeThings\.\*:\*/ThreeThings\.\*:More\.\*:"
+                                r"\*/More\.\*-\*/chapter_12_twelve:\*/chapter_12_twelve_all:\*/chapter_20_mine:\*/chapter_20_mine_all$")
+        self.assertNotIn("ctest", noted)
+
+    def test_other_tests_may_be_chosen_for_a_copy(self):
+        noted = self.noted("test", 20, "-R", "IsOther", code=1)
         self.assertRegex(noted, r"(?m) --target shaders_tests$")
-        self.assertIn(r" -R [./](ThreeThings|More)\. -E /chapter_(12_twelve|20_mine)(_all)?$" + "\n", noted)
+        self.assertIn(r" -R IsOther -E /chapter_(12_twelve|20_mine)(_all)?$" + "\n", noted)
         self.assertIn("\nctest, copy 20_mine: ", "\n" + noted)

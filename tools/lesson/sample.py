@@ -62,8 +62,8 @@ COMPARED = {"the quarter disk's area": DARTS, "a smooth integral": MEAN_SQUARE} 
 PLAYGROUNDS = {
     "1d": Playground("1D Monte Carlo integration", "numbers", [
         Integral("∫ sin(π u) du from 0 to 1", lambda k: 2 / math.pi, lambda u: np.sin(np.pi * u[:, 0]))],
-        "u", other="", dimensions=1),
-    "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", dimensions=4),
+        "u", dimensions=1),
+    "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", other="u_2", dimensions=4),
     "numbers": Playground("pairs of random numbers by PCG2D, shaders/world/random.glsl", "numbers", [DARTS], "u_x"),
     "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"),
 }
@@ -125,7 +125,7 @@ def histogram(playground, points):
 def chi_square(playground, points):
     """Pearson's test whether points follow their density in both coordinates: statistic, degrees of freedom, and the probability of one
     as large by chance."""
-    has_other = playground.other and points.shape[1] > 1
+    has_other = points.shape[1] > 1
     first = playground.coordinates(points)
     others, sectors = (playground.others(points), SECTORS) if has_other else (np.zeros(len(first)), 1)
     rounded = [np.where(abs(values - values.clip(0, 1)) < ROUNDING, values.clip(0, 1), values) for values in (first, others)]
@@ -173,7 +173,8 @@ def report(playground, points, dimensions):
     lines.append(f"largest deviation of a count: {deviation:.1f} standard errors, " +
                  ("too large for chance" if deviation > CHANCE else f"which is chance: below {CHANCE}"))
     statistic, freedom, chance = chi_square(playground, points)
-    lines.append(f"chi² of {' and '.join(filter(None, (playground.coordinate, playground.other)))}: {statistic:.1f} at {freedom} degrees of "
+    names = [playground.coordinate, playground.other][:points.shape[1]]
+    lines.append(f"chi² of {' and '.join(names)}: {statistic:.1f} at {freedom} degrees of "
                  f"freedom, p = {chance:.2g}, " + ("too large for chance" if chance < SIGNIFICANCE else "which is chance"))
     for integral in playground.integrals:
         exact = integral.value(dimensions)
