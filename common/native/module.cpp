@@ -247,16 +247,30 @@ std::string find_embree() {
 // Where the shader has overwritten that, the way back crashes, too, and there is none but out.
 thread_local sigjmp_buf way_back;
 thread_local bool is_in_shader = false;
-thread_local char handler_stack[1 << 14];
-volatile std::sig_atomic_t has_crashed = 0;
+std::atomic<bool> has_crashed = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 const char* advice() {
     return mode == Mode::checked ? "the sanitizer's last line tells where"
                                  : "as it does for an index outside of an array: --sanitize tells where";
 }
+class HandlerStack {
+  public:
+    HandlerStack() {
+        const stack_t own{.ss_sp = memory, .ss_flags = 0, .ss_size = sizeof memory};
+        sigaltstack(&own, &before_);
+    }
+    HandlerStack(const HandlerStack&) = delete;
+    HandlerStack& operator=(const HandlerStack&) = delete;
+    ~HandlerStack() { sigaltstack(&before_, nullptr); }  // a sanitizer's, which it unmaps when the thread ends
+
+  private:
+    static inline thread_local char memory[1 << 14];
+    stack_t before_{};
+};
 void return_from_crash(int signal) {
     if (is_in_shader) {
         is_in_shader = false;
-        has_crashed = 1;
+        has_crashed = true;
         siglongjmp(way_back, signal);
     }
     if (has_crashed) {
@@ -334,8 +348,7 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
         stop = is_interrupted();
     });
     in_parallel(end - first, 1, [&](size_t begin, size_t) {
-        const stack_t stack{.ss_sp = handler_stack, .ss_flags = 0, .ss_size = sizeof handler_stack};
-        sigaltstack(&stack, nullptr);
+        const HandlerStack stack;
         char error[512];
         const int signal = sigsetjmp(way_back, 1);
         is_in_shader = signal == 0;
