@@ -103,7 +103,8 @@ Chapter load_chapter(const std::string& name) {
                           {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics",
                            "microfacets", "low_discrepancy", "options", "choices", "check"});
     // For ./lab check: tools/check/grading.py reads it.
-    if (root.has("check")) root.object("check", {"samples", "references", "other_references", "gains_over", "passed_by_placeholder"});
+    if (root.has("check"))
+        root.object("check", {"samples", "references", "other_references", "gains_over", "passed_by_placeholder"});
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),

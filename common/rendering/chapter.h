@@ -29,7 +29,8 @@ struct ChapterChoice {
 };
 
 // The contents of chapter.json, under the same names. Only the title is mandatory. It may also have "check", for ./lab check: the
-// "samples" of a run, the "references" whose scenes show what the shader can do, and those that the exercise's placeholder passes.
+// "samples" of a run, the "references" whose scenes show what the shader can do, and those that the exercise's placeholder
+// passes.
 struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help
