@@ -36,7 +36,7 @@ class BenchmarkTest(ProgramTest):
         self.assertNotRegex(record["environment"]["system"], rf"\b{re.escape(socket.gethostname())}\b")
 
     def test_wrong_arguments(self):
-        for arguments, *words in ((["no_such_scene"], "no_such_scene", "reference"), (["--seconds=0"], "seconds", "lab benchmark --help")):
+        for arguments, *words in ((["no_such_scene"], "no_such_scene", "cornell_box"), (["--seconds=0"], "seconds", "lab benchmark --help")):
             with self.start_benchmark(*arguments) as process:
                 _, err = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 1)

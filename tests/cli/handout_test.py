@@ -105,13 +105,13 @@ class HandoutTest(ProgramTest):
     def test_sources_may_have_the_encoding_of_windows(self):
         """Handouts, and the other tools that read shaders."""
         project = self.copied_project()
-        with open(project / "chapters/03_next_event_estimation/path_trace.glsl", "a", encoding="cp1252") as shader:
+        with open(project / "chapters/03_next_event_estimation/direct_light.glsl", "a", encoding="cp1252") as shader:
             shader.write("// Prüfen\n")
         for words in (["handout", 3, "lab"], ["diff", 3], ["diff", "all"], ["bug", 3], ["bug", 3, 1, "--answer"]):
             code, out, err = self.run_program("-B", project / "tools", *words, program=sys.executable)
             self.assertEqual((code, err), (0, ""), words)
             self.assertTrue("// Prüfen" in out or words != ["diff", 3])
-        self.assertTrue((self.folder / "lab/chapters/03_next_event_estimation/path_trace.glsl").read_text(encoding="utf-8").endswith("// Prüfen\n"))
+        self.assertTrue((self.folder / "lab/chapters/03_next_event_estimation/direct_light.glsl").read_text(encoding="utf-8").endswith("// Prüfen\n"))
 
     def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
         project = self.copied_project()
