@@ -9,6 +9,7 @@
 #include "files/file.h"
 #include "rendering/settings.h"
 #include "statistics/error_metrics.h"
+#include "tracing/limited_loops.h"
 #include "viewer/inside_drawing.h"
 
 namespace lab {
@@ -238,7 +239,7 @@ bool Inspection::have_tools(const Session& session) {
     const WindowBuild& build = session.build();
     Options options = build.job.options;
     options.image.view = nullptr;
-    const Estimator estimator = make_estimator(session.chapter(), options);
+    const Estimator estimator = with_limited_loops(make_estimator(session.chapter(), options));
     uint64_t hash = hash_text(estimator.file.string(), build.shader_hash);
     for (const auto& define : estimator.defines) hash = hash_text(define + "\n", hash);
     const auto wanted = std::make_shared<Tools>(Tools{.scene = build.job.scene,
@@ -261,7 +262,7 @@ bool Inspection::have_tools(const Session& session) {
     return false;
 }
 
-void Inspection::update(const Session& session, double seconds) {
+void Inspection::update(const Session& session, double seconds) try {
     if (!selection_ || session.reduction() > 1 || !have_tools(session)) {
         path_.reset();
         shown_.reset();
@@ -273,6 +274,7 @@ void Inspection::update(const Session& session, double seconds) {
     parameters_ = parameters;
     selection_->pixel = glm::min(selection_->pixel, parameters.image_size - 1u);
     if (shown_ != selection_) {
+        message_.clear();
         if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample)
             path_ = tools_->recorder->record(parameters, selection_->pixel, parameters.first_sample + selection_->sample);
         has_hemisphere_ = false;
@@ -288,6 +290,11 @@ void Inspection::update(const Session& session, double seconds) {
     constexpr uint32_t enough_samples = 256;
     tools_->hemisphere->set_dispatch_seconds(seconds);
     tools_->hemisphere->advance(enough_samples);
+} catch (const StuckLoop& loop) {
+    message_ = window_message(loop);
+    path_.reset();
+    has_hemisphere_ = false;
+    shown_ = selection_;  // not again
 }
 
 }  // namespace lab

@@ -61,6 +61,8 @@ class Session {
     // Whether another scene is being loaded, although camera and background are already the new ones.
     bool is_loading_scene() const { return reloads_scene_ || options_.scene.file != build_->job.options.scene.file; }
     const std::string& message() const { return message_; }  // the last failure, or empty
+    // Whether rendering has ended because of a loop that does not. It is tried again after any change.
+    bool is_stuck() const { return is_stuck_; }
 
     // --- Progress since the last restart.
     uint32_t target_samples() const;             // per pixel; UINT32_MAX without --samples
@@ -114,6 +116,7 @@ class Session {
     std::string message_;
 
     bool needs_restart_ = true;
+    bool is_stuck_ = false;
     uint32_t reduction_ = 1;
     double paths_per_second_ = 0;  // camera paths, measured
     double seconds_ = 0;

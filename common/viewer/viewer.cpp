@@ -40,7 +40,8 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
       comparison_(device) {}
 
 bool Viewer::frame() {
-    const bool has_work = !session_.is_paused && !session_.is_building() && session_.samples() < session_.target_samples();
+    const bool has_work =
+        !session_.is_paused && !session_.is_stuck() && !session_.is_building() && session_.samples() < session_.target_samples();
     window_.poll_events(has_work ? 0 : 0.02);
     if (window_.should_close() || is_interrupted()) return false;
     const auto start = Clock::now();
