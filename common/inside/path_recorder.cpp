@@ -187,9 +187,8 @@ RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixe
 
     const uint32_t row = pixel.y / BLOCK_HEIGHT;
     const uint32_t block = row * count_blocks({film_.width(), 1}) + pixel.x / BLOCK_WIDTH;
-    device_->submit([&](const vk::raii::CommandBuffer& commands) {
-        tracer_->record(commands, {block, 1, 1, 1, row * BLOCK_HEIGHT * film_.width()}, 1, 0);
-    });
+    const DispatchParameters step{block, 1, 1, 1, row * BLOCK_HEIGHT * film_.width()};
+    tracer_->trace(std::span(&step, 1), 1, 0);
     check_loops(counters, estimator_);
 
     std::vector<std::byte> bytes(events_.size());

@@ -88,19 +88,16 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
                    const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
       estimator_(estimator),
-      is_on_host_(acceleration_structure.is_on_host()),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window) {
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
-    if (are_pixels_shared(parameters.image_size) && !is_on_host_) {
+    if (are_pixels_shared(parameters.image_size) && acceleration_structure.can_share_pixels()) {
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
-        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "engine/add_samples.comp"}, bindings,
-                       sizeof(DispatchParameters));
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
     tracer_ = acceleration_structure.make_tracer(configured, bindings);
@@ -126,21 +123,16 @@ void Renderer::resume(const FilmImage& image) {
     next_block_ = 0;
 }
 
-void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const {
-    if (!adder_) {
-        tracer_->record(commands, {next_block_, 1, 0, pass_samples_, window.first_pixel}, blocks, window.offset());
-        return;
-    }
+std::vector<DispatchParameters> Renderer::steps_of_pass(uint32_t blocks, const FilmWindow& window) const {
+    if (!samples_) return {{next_block_, 1, 0, pass_samples_, window.first_pixel}};
+    std::vector<DispatchParameters> steps;
     const uint32_t groups_per_block = enough_groups / blocks;
     for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
         const uint32_t added = std::min(groups_per_block * samples_per_group, pass_samples_ - samples);
         samples += added;
-        const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples, window.first_pixel};
-        tracer_->record(commands, dispatch, blocks, window.offset());
-        wait_for_writes(commands);
-        adder_->record(commands, &dispatch, blocks, window.offset());
-        wait_for_writes(commands);
+        steps.push_back({next_block_, std::min(groups_per_block, added), added, samples, window.first_pixel});
     }
+    return steps;
 }
 
 bool Renderer::advance(uint32_t target_samples) {
@@ -149,7 +141,8 @@ bool Renderer::advance(uint32_t target_samples) {
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
         // More at once keep lanes busy: one whose pixel is finished waits for its neighbours.
-        const bool has_lanes = tracer_->paths_at_once().count > 1;
+        const auto at_once = tracer_->paths_at_once();
+        const bool has_lanes = at_once && at_once->count > 1;
         const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, has_lanes ? samples_per_group : 1.0));
         pass_samples_ = finished_samples_ + std::min(step, target_samples - finished_samples_);
     }
@@ -164,12 +157,11 @@ bool Renderer::advance(uint32_t target_samples) {
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = Clock::now();
     std::optional<Reminder> reminder(estimator_);
-    const double device_seconds =
-        device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
+    const auto device_seconds = tracer_->trace(steps_of_pass(count, window), count, window.offset());
     const double seconds = seconds_since(start);
     reminder.reset();
-    if (is_on_host_ && is_interrupted()) return true;  // even within blocks; finished samples are in the film
-    device_seconds_ += is_on_host_ ? seconds : device_seconds;
+    if (!device_seconds) return true;  // finished samples are in the film
+    device_seconds_ += *device_seconds;
     check_loops(counters, estimator_);
     for (const uint32_t counter : counters.first(RAY_COUNTER_COUNT)) rays_ += counter;
 

@@ -117,7 +117,7 @@ class PatientFilm {
         : device_(device),
           scene_(load(cases.front())),
           gpu_scene_(device, scene_),
-          acceleration_structure_(build_acceleration_structure(Backend::compute, device, gpu_scene_)),
+          acceleration_structure_(build_acceleration_structure(compute_backend, device, gpu_scene_)),
           renderer_(make_renderer()) {}
 
     void add_sample() { render(renderer_, ++sample_count_); }
@@ -170,7 +170,7 @@ class PrivateCaches {
 int run(double seconds, const std::string& commit, const std::filesystem::path& record_file) {
     if (!record_file.empty()) check_writable(record_file, {".json"});
     const PrivateCaches caches;
-    const Device device({});
+    const Device device({.backends = all_backends});
     Soak soak(device);
     PatientFilm film(device);
     const auto start = std::chrono::steady_clock::now();
