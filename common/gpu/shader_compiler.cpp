@@ -48,6 +48,9 @@ class Includer {
     }
 
     std::string expand(const fs::path& file) {
+        // #line has names in quotes, and compilers disagree about escapes in them.
+        if (file.generic_string().find_first_of("\"\\") != std::string::npos)
+            throw UserError(file.generic_string() + ": the path of a shader must not contain \" or \\: rename the folder");
         std::string contents = read_file(file, max_shader_bytes);
         if (contents.starts_with("\xEF\xBB\xBF")) contents.erase(0, 3);
         std::istringstream stream(std::move(contents));

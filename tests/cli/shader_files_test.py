@@ -98,6 +98,12 @@ class ShaderFiles(ProgramTest):
         (self.shader.parent / "link").symlink_to("helper.glsl")
         self.assert_renders(f'#include "link"\n#include "../{CHAPTER}/helper.glsl"\n{GREY}'.encode())
 
+    def test_paths_that_no_line_directive_can_hold(self):
+        for name in ('a "b"', "a\\b"):
+            program, _ = make_tree(CHAPTER, self.shader, self.folder / name)
+            self.assert_refused(["quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--output=no.exr"],
+                                re.escape(name), 'must not contain " or', program=program)
+
     def test_long_lines(self):
         blanks = b" " * 300000
         self.beside("helper.glsl", HELPER)
