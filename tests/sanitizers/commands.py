@@ -17,7 +17,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 COMPLAINT = re.compile("Sanitizer|runtime error:")
-OPTIONS = {"UBSAN_OPTIONS": "print_stacktrace=1", "TSAN_OPTIONS": f"suppressions={ROOT}/tests/sanitizers/threads.txt",
+OPTIONS = {"ASAN_OPTIONS": "detect_leaks=0",  # the search for leaks itself crashes now and then, at a program's end
+           "UBSAN_OPTIONS": "print_stacktrace=1", "TSAN_OPTIONS": f"suppressions={ROOT}/tests/sanitizers/threads.txt",
            "GALLIVM_PERF": "nopt"}  # Mesa's driver for CPUs takes longer to optimise a shader than to run it
 VIEWS = ("normals", "depth", "albedo", "emission", "texture-coordinates", "triangles", "instances", "bvh-steps")
 RENDERS = """--backend=auto cornell_box
