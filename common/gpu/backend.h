@@ -15,8 +15,8 @@ struct DeviceDescription;
 struct Scene;
 
 struct BackendRow {
-    const char* name;                                    // on the command line and in reports
-    std::span<const char* const> extensions = {};        // of Vulkan that it needs
+    const char* name;                                      // on the command line and in reports
+    std::span<const char* const> extensions = {};          // of Vulkan that it needs
     std::span<const std::string_view> special_views = {};  // views that only backends with this entry can show
     // Whether it may refuse a shader that others accept. It is then chosen by hand, or where the caller is prepared for that.
     bool may_refuse_shaders = false;

@@ -3,8 +3,8 @@
 #include "clock.h"
 #include "files/project_folder.h"
 #include "native/module.h"
-#include "tracing/backends.h"
 #include "platform.h"
+#include "tracing/backends.h"
 #include "tracing/bvh.h"
 
 namespace lab {
@@ -179,8 +179,7 @@ std::unique_ptr<AccelerationStructure> build(const Device&, const GpuScene& scen
 
 std::vector<std::string> find_missing(const DeviceDescription& device) {
     std::vector<std::string> missing = native::missing_tools();
-    if (!device.shares_memory)
-        missing.insert(missing.begin(), "memory that it shares with the CPU (--device llvmpipe has it)");
+    if (!device.shares_memory) missing.insert(missing.begin(), "memory that it shares with the CPU (--device llvmpipe has it)");
     return missing;
 }
 

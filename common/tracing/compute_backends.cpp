@@ -63,11 +63,8 @@ constexpr std::string_view compute_views[] = {"idle-lanes", "bvh-steps"};
 
 }  // namespace
 
-const BackendRow compute_row{
-    .name = "compute", .special_views = compute_views, .suits = has_room, .build = build_compute};
-const BackendRow query_row{.name = "query",
-                           .extensions = query_extensions,
-                           .special_views = std::span(compute_views).first(1),
-                           .build = build_query};
+const BackendRow compute_row{.name = "compute", .special_views = compute_views, .suits = has_room, .build = build_compute};
+const BackendRow query_row{
+    .name = "query", .extensions = query_extensions, .special_views = std::span(compute_views).first(1), .build = build_query};
 
 }  // namespace lab

@@ -39,8 +39,8 @@ uint64_t estimator_hash(const Estimator& estimator);
 class Tracer {
   public:
     virtual ~Tracer() = default;
-    // Renders `block_count` blocks of pixels up to the sample count of each step, one step after the other. `film_offset` in bytes
-    // is that of the film's binding. Returns the seconds on the device, or nothing if an interrupt ended blocks too early.
+    // Renders `block_count` blocks of pixels up to the sample count of each step, one step after the other. `film_offset` in
+    // bytes is that of the film's binding. Returns the seconds on the device, or nothing if an interrupt ended blocks too early.
     virtual std::optional<double> trace(std::span<const DispatchParameters> steps, uint32_t block_count,
                                         uint32_t film_offset) const = 0;
     // How many paths a core of the CPU traces at once, and why not more of them.

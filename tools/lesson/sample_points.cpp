@@ -3,9 +3,9 @@
 #include <iostream>
 #include <map>
 
+#include "app/backends.h"
 #include "error.h"
 #include "files/project_folder.h"
-#include "app/backends.h"
 #include "gpu/compute_kernel.h"
 #include "platform.h"
 #include "rendering/renderer.h"
