@@ -13,6 +13,8 @@
 #include "rendering/render_job.h"
 #include "rendering/settings.h"
 #include "scene/features.h"
+#include "viewer/inside_drawing.h"
+#include "viewer/text.h"
 
 namespace lab {
 namespace {
@@ -65,12 +67,12 @@ void draw_progress(const Session& session, double frames_per_second) {
     ImGui::TextWrapped("%s", session.chapter().title.c_str());
     ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
     ImGui::Separator();
-    if (session.target_samples() < UINT32_MAX - record.first_sample)
-        ImGui::Text("%.6g of %u samples per pixel in %s", samples, session.target_samples(), duration_text(seconds).c_str());
-    else
-        ImGui::Text("%.6g samples per pixel in %s", samples, duration_text(seconds).c_str());
-    ImGui::TextWrapped("per second: %s samples, %s rays, %.0f frames", short_number(samples / seconds).c_str(),
-                       short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
+    const std::string target =
+        session.target_samples() < UINT32_MAX - record.first_sample ? " of " + std::to_string(session.target_samples()) : "";
+    text_in_words(samples_text(samples) + target + " samples per pixel in " + duration_text(seconds));
+    text_in_words("per second: " + short_number(samples / seconds) + " samples, " +
+                  short_number(static_cast<double>(session.rays()) / seconds) + " rays, " +
+                  std::to_string(std::lround(frames_per_second)) + " frames");
     constexpr double wanted = 0.01;
     if (const auto error = session.relative_error(); error && *error > wanted)
         ImGui::TextWrapped("noise %.3g %%, 1 %% in %s", 100 * *error,
@@ -81,7 +83,7 @@ void draw_progress(const Session& session, double frames_per_second) {
         ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves" : "error not known yet");
     if (session.is_building()) ImGui::TextUnformatted("building ...");
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
-    if (!session.message().empty()) ImGui::TextWrapped("%s", session.message().c_str());
+    if (!session.message().empty()) text_in_words(session.message());
     ImGui::PopStyleColor();
 }
 
@@ -122,10 +124,11 @@ void draw_picture(const Session& session, Options& options) {
 
 int Controls::width() const { return static_cast<int>(std::ceil(panel_width() * ImGui::GetIO().DisplayFramebufferScale.x)); }
 
-void Controls::draw(Session& session, CameraControl& camera_control, double frames_per_second,
+void Controls::draw(Session& session, CameraControl& camera_control, const Rectangle& where, double frames_per_second,
                     const std::function<void()>& further) {
-    ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize({panel_width(), ImGui::GetIO().DisplaySize.y});
+    const Placement placement(where);
+    ImGui::SetNextWindowPos(placement.at({0, 0}));
+    ImGui::SetNextWindowSize({placement.size.x, placement.size.y});
     ImGui::Begin("Controls", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "viewer/camera_control.h"
+#include "viewer/screen.h"
 #include "viewer/session.h"
 
 namespace lab {
@@ -12,8 +13,9 @@ namespace lab {
 class Controls {
   public:
     // Call between Screen::begin_frame() and Screen::show(). `further` draws more sections of the panel.
-    void draw(Session& session, CameraControl& camera_control, double frames_per_second, const std::function<void()>& further);
-    int width() const;                               // in framebuffer pixels
+    void draw(Session& session, CameraControl& camera_control, const Rectangle& where, double frames_per_second,
+              const std::function<void()>& further);
+    int width() const;                               // beside the picture, in framebuffer pixels
     vec2 seed_field() const { return seed_field_; }  // for tests
 
   private:
