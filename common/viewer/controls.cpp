@@ -63,13 +63,13 @@ void draw_chapter_option(const ChapterOption& option, const RenderParameters& pa
 
 void draw_progress(const Session& session, double frames_per_second) {
     const FilmRecord& record = session.build().job.record;
-    const double seconds = std::max(session.seconds(), 1e-9), samples = session.samples();
+    const double rendered = session.seconds(), seconds = std::max(rendered, 1e-9), samples = session.samples();
     ImGui::TextWrapped("%s", session.chapter().title.c_str());
     ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
     ImGui::Separator();
     const std::string target =
         session.target_samples() < UINT32_MAX - record.first_sample ? " of " + std::to_string(session.target_samples()) : "";
-    text_in_words(samples_text(samples) + target + " samples per pixel in " + duration_text(seconds));
+    text_in_words(samples_text(samples) + target + " samples per pixel in " + duration_text(rendered));
     text_in_words("per second: " + short_number(samples / seconds) + " samples, " +
                   short_number(static_cast<double>(session.rays()) / seconds) + " rays, " +
                   std::to_string(std::lround(frames_per_second)) + " frames");
@@ -80,7 +80,8 @@ void draw_progress(const Session& session, double frames_per_second) {
     else if (error)
         ImGui::Text("noise %.2g %%", 100 * *error);
     else
-        ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves" : "error not known yet");
+        ImGui::TextUnformatted(session.reduction() > 1 && !session.is_stuck() ? "reduced while the camera moves"
+                                                                              : "error not known yet");
     if (session.is_building()) ImGui::TextUnformatted("building ...");
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
     if (!session.message().empty()) text_in_words(session.message());
@@ -192,6 +193,7 @@ void Controls::draw_scene(Session& session, Options& options) {
     ImGui::BeginDisabled(are_of_file);
     if (ImGui::Checkbox(are_of_file ? "specular lobes (Ks), of the scene" : "specular lobes (Ks)", &has_lobes))
         options.scene.specular = has_lobes;
+    lobes_box_ = {ImGui::GetItemRectMin().x + 8, ImGui::GetItemRectMin().y + 8};
     ImGui::EndDisabled();
 }
 

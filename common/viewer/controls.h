@@ -17,6 +17,7 @@ class Controls {
               const std::function<void()>& further);
     int width() const;                               // beside the picture, in framebuffer pixels
     vec2 seed_field() const { return seed_field_; }  // for tests
+    vec2 lobes_box() const { return lobes_box_; }    // for tests
 
   private:
     void draw_actions(Session& session);
@@ -27,7 +28,7 @@ class Controls {
 
     const std::vector<std::filesystem::path> scenes_ = shipped_scenes();
     std::string notice_;  // the latest action
-    vec2 seed_field_{0};
+    vec2 seed_field_{0}, lobes_box_{0};
 };
 
 }  // namespace lab

@@ -82,9 +82,14 @@ void InsidePanel::draw_panel(const std::string& whose, const Rectangle& panel) {
     if (!is_open) inspection_.deselect();
 }
 
-void InsidePanel::draw_controls(const Session& session) {
+void InsidePanel::draw_controls(Session& session) {
     ImGui::Separator();
     draw_verdict(session);
+    if (const auto& settings = session.settings_for_verdict()) {
+        const std::string label =
+            "Verdict: max path length " + std::to_string(settings->max_path_length) + ", " + size_text(settings->image_size);
+        if (ImGui::Button(label.c_str())) session.change_for_verdict();
+    }
     if (ImGui::CollapsingHeader("look inside")) {
         int overlay = static_cast<int>(overlay_.shown);
         ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));
