@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 
+#include "clock.h"
 #include "error.h"
 #include "files/cache.h"
 #include "files/file.h"
@@ -272,6 +274,17 @@ void Device::create_device() {
     timestamps_ = {device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)};
 }
 
+void Device::wait_for_fence() const {
+    constexpr uint64_t nanoseconds = 50'000'000;  // between two looks for an interrupt
+    constexpr double patience = 3;                // seconds for a dispatch to end by itself
+    std::optional<Clock::time_point> interrupted;
+    while (device_.waitForFences(*fence_, true, nanoseconds) == vk::Result::eTimeout) {
+        if (!interrupted && is_interrupted()) interrupted = Clock::now();
+        if (interrupted && seconds_since(*interrupted) > patience)
+            throw EndlessWork("the shader did not end: does it have a loop without an end?");
+    }
+}
+
 double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
     const auto lock = lock_queue();
     command_buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
@@ -285,8 +298,7 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
                                     vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
     command_buffer_.end();
     queue_.submit(vk::SubmitInfo({}, {}, *command_buffer_), *fence_);
-    if (device_.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
-        throw DeviceFailure("the device did not finish its work");
+    wait_for_fence();
     device_.resetFences(*fence_);
     const auto [result, ticks] = timestamps_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t),
                                                                   vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);

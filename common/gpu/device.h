@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "error.h"
 #include "gpu/vulkan.h"
 
 namespace lab {
@@ -84,7 +85,8 @@ class Device {
     // Hold this lock while using queue(). submit() takes it itself and may be called from any thread.
     std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
 
-    // Records and submits commands, waits for them, and returns the seconds they took on the device.
+    // Records and submits commands, waits for them, and returns the seconds they took on the device. Throws EndlessWork if they
+    // do not end after an interrupt (see platform.h).
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
     // Messages so far from the validation layers and the driver; empty without validation.
@@ -99,6 +101,7 @@ class Device {
     };
     static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
+    void wait_for_fence() const;
     void choose_queue_family();
     void create_device();
     void load_pipeline_cache();
@@ -131,6 +134,11 @@ void wait_for_writes(const vk::raii::CommandBuffer& commands);
 
 // All devices in the order of their indices. Throws DeviceError without a Vulkan driver.
 std::vector<DeviceDescription> list_devices();
+
+// A shader goes on although it was interrupted. Nothing that it uses can be destroyed any more.
+struct EndlessWork : DeviceFailure {
+    using DeviceFailure::DeviceFailure;
+};
 
 // What an exception means to the user of a program or window.
 struct Failure {

@@ -9,6 +9,7 @@
 #include "native/module.h"
 #include "rendering/render_job.h"
 #include "tracing/gpu_bvh.h"
+#include "tracing/limited_loops.h"
 
 namespace lab {
 namespace {
@@ -67,14 +68,16 @@ Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene&
     parameters.max_path_length = job.scene->defaults.max_path_length;  // the choice also serves later renders
     Backend fastest = Backend::compute;
     double highest_speed = 0;
-    for (const Backend backend : all_backends) {
-        if (!is_usable(backend)) continue;
-        const double speed = measure_speed(backend, device, scene, job.estimator, parameters);
-        if (speed > highest_speed) {
-            highest_speed = speed;
-            fastest = backend;
+    for (const Backend backend : all_backends) try {
+            if (!is_usable(backend)) continue;
+            const double speed = measure_speed(backend, device, scene, job.estimator, parameters);
+            if (speed > highest_speed) {
+                highest_speed = speed;
+                fastest = backend;
+            }
+        } catch (const StuckLoop&) {
+            return backend;  // the window tells of it; once the shader is mended, the next build measures
         }
-    }
     write_cache(entry, to_string(fastest));
     return fastest;
 }

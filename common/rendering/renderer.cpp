@@ -1,10 +1,15 @@
 #include "rendering/renderer.h"
 
 #include <algorithm>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <thread>
 
 #include "clock.h"
 #include "files/project_folder.h"
 #include "platform.h"
+#include "tracing/limited_loops.h"
 
 namespace lab {
 namespace {
@@ -15,6 +20,26 @@ constexpr uint32_t enough_groups = 8192;
 // Samples per workgroup and pixel that wait to be added to the film. With more, threads would wait less for others at the end,
 // but all must fit into 128 MiB, the largest binding of some devices.
 constexpr uint32_t samples_per_group = 20;
+
+// Says so if a dispatch takes very long, since its shader may never end.
+class Reminder {
+  public:
+    explicit Reminder(const Estimator& estimator)
+        : thread_([&](const std::stop_token& done) {
+              constexpr std::chrono::seconds patience(10);
+              std::mutex mutex;
+              std::unique_lock lock(mutex);
+              std::condition_variable_any ended;
+              ended.wait_for(lock, done, patience, [] { return false; });
+              if (done.stop_requested()) return;
+              const auto& file = estimator.observed.empty() ? estimator.file : estimator.observed;
+              std::fprintf(stderr, "note: no sample for %d s: if a loop of %s does not end, Ctrl-C stops the program\n",
+                           static_cast<int>(patience.count()), file.string().c_str());
+          }) {}
+
+  private:
+    std::jthread thread_;
+};
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
 
@@ -62,10 +87,10 @@ std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
                    const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
+      estimator_(estimator),
       is_on_host_(acceleration_structure.is_on_host()),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
-      ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
-                    Buffer::Location::host),
+      ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window) {
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
@@ -135,15 +160,18 @@ bool Renderer::advance(uint32_t target_samples) {
     const uint32_t count = static_cast<uint32_t>(
         std::min({fitting, static_cast<double>(group_limit), static_cast<double>(window.end_block - next_block_)}));
 
-    const auto counters = ray_counters_.mapped<uint32_t>();
+    const std::span<uint32_t> counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = Clock::now();
+    std::optional<Reminder> reminder(estimator_);
     const double device_seconds =
         device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
     const double seconds = seconds_since(start);
+    reminder.reset();
     if (is_on_host_ && is_interrupted()) return true;  // even within blocks; finished samples are in the film
     device_seconds_ += is_on_host_ ? seconds : device_seconds;
-    for (const uint32_t counter : counters) rays_ += counter;
+    check_loops(counters, estimator_);
+    for (const uint32_t counter : counters.first(RAY_COUNTER_COUNT)) rays_ += counter;
 
     // Blocks differ in cost, so the rate follows the last dispatch, and grows by a bounded factor.
     const double work = static_cast<double>(count) * step;

@@ -30,7 +30,7 @@ class Renderer {
 
     // Makes one dispatch of about `dispatch_seconds` towards `target_samples` per pixel; returns true while more are needed.
     // Short dispatches keep driver watchdogs quiet and the program responsive: one sample of a large image can take a minute on a
-    // slow device.
+    // slow device. Throws StuckLoop for an estimator with_limited_loops() if one does not end.
     bool advance(uint32_t target_samples);
 
     Film& film() { return film_; }
@@ -53,6 +53,7 @@ class Renderer {
     void record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const;
 
     const Device* device_;
+    Estimator estimator_;
     bool is_on_host_;  // whether the tracer works while it records
     Buffer parameters_;
     std::optional<Buffer> samples_;  // of shared pixels, until added to the film

@@ -12,6 +12,7 @@
 #include "support/gpu_test.h"
 #include "support/render.h"
 #include "support/scenes.h"
+#include "tracing/limited_loops.h"
 
 namespace lab {
 namespace {
@@ -161,6 +162,22 @@ TEST_P(Parity, ChaptersWithTheirOwnPaths) {
     std::vector<std::string> chapters = chapters_that([](const std::string& chapter) { return !repeats_another(chapter); });
     chapters.push_back(all_chapters.back());
     expect_same_on(project_folder() / "assets/scenes/cornell_box.json", with_every_hit(estimators_of(chapters)));
+}
+
+// In the window, loops that do not end are ended. Others are not changed by that.
+TEST_P(Parity, LimitedLoopsFollowTheSamePaths) {
+    for (const bool with_probe : {false, true}) {
+        const Scene scene = load_shipped_scene("cornell_box.json");
+        for (const Backend backend : {Backend::compute, GetParam()}) {
+            const BackendScene traced(backend, scene, with_probe);
+            for (auto [name, settings] : estimators_of({all_chapters.front(), all_chapters.back()})) {
+                if (samples_probe(settings.estimator) != with_probe) continue;
+                const TracedImage expected = traced.render(settings);
+                settings.estimator = with_limited_loops(settings.estimator);
+                expect_parity(name + ", limited", backend, expected, traced.render(settings), {});
+            }
+        }
+    }
 }
 
 class ParityOnScenes : public Parity {};
