@@ -7,7 +7,6 @@
 #include "error.h"
 #include "files/file.h"
 #include "rendering/outputs.h"
-#include "rendering/scene_reference.h"
 #include "rendering/settings.h"
 #include "tracing/limited_loops.h"
 
@@ -161,6 +160,18 @@ void Session::begin(uint32_t reduction) {
     snapshot_ = {};
     snapshot_error_.reset();
     verdict_ = find_verdict();
+    verdict_settings_.reset();
+    const RenderJob& job = build_->job;
+    if (!verdict() && reduction_ == 1 && !job.options.image.view)
+        verdict_settings_ = lab::settings_for_verdict(*job.scene, job.parameters);
+}
+
+void Session::change_for_verdict() {
+    Options options = options_;
+    options.light.max_path_length = verdict_settings_->max_path_length;
+    options.image.width = verdict_settings_->image_size.x;
+    options.image.height = verdict_settings_->image_size.y;
+    change(options);
 }
 
 // Starts a live verdict, or says why there is none.

@@ -5,6 +5,7 @@
 
 #include "clock.h"
 #include "rendering/build.h"
+#include "rendering/scene_reference.h"
 #include "statistics/live_verdict.h"
 #include "viewer/background_work.h"
 #include "viewer/screen.h"
@@ -79,6 +80,9 @@ class Session {
     const Verdict* latest_verdict() const { return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr; }
     VerdictState verdict_state() const;
     std::string verdict_text() const;
+    // Where there is no verdict: the nearest settings that give one, if any, and a change to them.
+    const std::optional<VerdictSettings>& settings_for_verdict() const { return verdict_settings_; }
+    void change_for_verdict();
 
     // Writes the current picture in the formats given by the files' extensions.
     void save(const std::vector<std::filesystem::path>& files);
@@ -123,6 +127,7 @@ class Session {
     FilmImage snapshot_;  // at the last power of two
     FilmRecord snapshot_record_;
     std::variant<LiveVerdict, std::string> verdict_ = "the render goes on from an earlier one";
+    std::optional<VerdictSettings> verdict_settings_;
     std::optional<double> snapshot_error_;
 };
 
