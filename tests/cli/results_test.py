@@ -9,7 +9,7 @@ from unittest import mock
 import tools_path  # noqa: F401  (first: it finds the others)
 from book import code_blocks
 import project
-from docs import ages, best_table, confusion_table, cpu_table, peer_table, result_plots, running, tables
+from docs import ages, best_table, confusion_table, cpu_table, peer_table, result_plots, tables
 from project import UserError
 from report import sources, studies
 
@@ -199,21 +199,6 @@ class AgesTest(unittest.TestCase):
         self.assertRegex(ages.when(record), r"20..-..-.., commit ")
         record["measured"]["renderer"] = record["measured"]["russian_roulette"] = "0"
         self.assertEqual(ages.state(record), "older: renderer, russian_roulette changed since")
-
-
-class RunningTest(unittest.TestCase):
-    def test_what_a_command_costs(self):
-        with tempfile.TemporaryDirectory() as folder:
-            clone = Path(folder) / "lab"
-            clone.mkdir()
-            (clone / "lab").write_text('#!/bin/sh\n[ "$1" = fail ] && echo broken && exit 1\nhead -c 1000000 /dev/urandom >written\n')
-            (clone / "lab").chmod(0o755)
-            found = running.measured("write", clone)
-            self.assertGreater(found["disk_bytes"], 900_000)
-            self.assertGreater(found["largest_process_bytes"], 100_000)
-            self.assertTrue(0 < found["cpu_seconds"] < 60)
-            with self.assertRaisesRegex(UserError, "./lab fail: broken"):
-                running.measured("fail", clone)
 
 
 class Ages_all(unittest.TestCase):

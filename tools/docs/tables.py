@@ -24,7 +24,6 @@ from docs.facet_tables import furnace_table, sampling_table
 from docs.numerics import case_table, device_tables
 from docs.peer_table import peer_table
 from docs.result_plots import PLOTS, is_fresh, write_plot
-from docs.running import running_table
 from docs.shader_table import shader_tables
 from project import RECORDS, ROOT, Parser, UserError, load_records, read_json, scene_of, table
 from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
@@ -157,7 +156,7 @@ DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backend
                  "cpu": ("cpu", cpu_table), "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
-    "running": running_table, "shader": shader_tables, "best chapters": best_table, "submissions": submission_table,
+    "shader": shader_tables, "best chapters": best_table, "submissions": submission_table,
     "facet sampling": sampling_table, "furnace": furnace_table,
     "check": lambda: confusion_table(read_json(RECORDS / "check/confusion.json")),
     **examples(),
