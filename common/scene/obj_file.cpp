@@ -33,8 +33,10 @@ MtlMaterial grey_material() {
 
 class ObjReader {
   public:
-    ObjReader(const std::filesystem::path& path, SourceFiles& files, std::vector<std::string>& warnings)
+    ObjReader(const std::filesystem::path& path, const std::filesystem::path& materials, SourceFiles& files,
+              std::vector<std::string>& warnings)
         : path_(path),
+          materials_(materials),
           files_(files),
           warnings_(warnings),
           text_(files.read(path, max_obj_bytes)),
@@ -43,6 +45,7 @@ class ObjReader {
     }
 
     ObjFile read() {
+        if (!materials_.empty()) read_materials(materials_, materials_.parent_path());
         while (statements_.next()) {
             const std::string_view keyword = statements_.keyword();
             if (keyword == "v") add_position();
@@ -50,7 +53,7 @@ class ObjReader {
             if (keyword == "vt") add_texture_coordinates();
             if (keyword == "f") add_face();
             if (keyword == "usemtl") use_material();
-            if (keyword == "mtllib") read_libraries();
+            if (keyword == "mtllib" && materials_.empty()) read_libraries();
         }
         if (obj_.corners.empty()) throw UserError(obj_.file + ": there are no faces in it");
         if (has_weights_ || has_colours_)
@@ -162,11 +165,15 @@ class ObjReader {
         std::error_code ignored;  // a name that the file system refuses is not a file
         if (name.empty() || !std::filesystem::exists(file, ignored)) return false;
         if (!libraries_.insert(file.lexically_normal()).second) return true;  // already read
-        for (MtlMaterial& material : read_mtl(file, folder, files_, warnings_)) {
+        read_materials(file, folder);
+        return true;
+    }
+
+    void read_materials(const std::filesystem::path& file, const std::filesystem::path& texture_folder) {
+        for (MtlMaterial& material : read_mtl(file, texture_folder, files_, warnings_)) {
             material_indices_.emplace(material.name, static_cast<uint32_t>(obj_.materials.size()));  // the first one counts
             obj_.materials.push_back(std::move(material));
         }
-        return true;
     }
 
     void use_material() {
@@ -185,6 +192,10 @@ class ObjReader {
 
     // At the end, since a material file may be named behind the faces that use it.
     void resolve_materials() {
+        if (!materials_.empty() && obj_.materials.size() == 1) {
+            obj_.triangle_materials.assign(obj_.triangle_materials.size(), 0);
+            return;
+        }
         std::vector<uint32_t> materials;
         size_t grey_face_count = 0;
         const auto grey = static_cast<uint32_t>(obj_.materials.size());
@@ -205,6 +216,7 @@ class ObjReader {
     }
 
     const std::filesystem::path& path_;
+    const std::filesystem::path& materials_;
     SourceFiles& files_;
     std::vector<std::string>& warnings_;
     const std::string text_;
@@ -224,8 +236,9 @@ class ObjReader {
 
 }  // namespace
 
-ObjFile read_obj(const std::filesystem::path& file, SourceFiles& files, std::vector<std::string>& warnings) {
-    return ObjReader(file, files, warnings).read();
+ObjFile read_obj(const std::filesystem::path& file, const std::filesystem::path& materials, SourceFiles& files,
+                 std::vector<std::string>& warnings) {
+    return ObjReader(file, materials, files, warnings).read();
 }
 
 }  // namespace lab

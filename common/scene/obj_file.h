@@ -30,8 +30,10 @@ struct ObjFile {
 
 // Reads an .obj file and its material files. Throws UserError, naming the line, for coordinates that are not finite numbers,
 // indices out of range, and faces of fewer than 3 or more than 256 corners. Faces without a known material become grey (Kd 0.5),
-// with a warning.
-ObjFile read_obj(const std::filesystem::path& file, SourceFiles& files, std::vector<std::string>& warnings);
+// with a warning. If `materials` is not empty, it is read instead of the material files that the mesh names, and if it has a
+// single material, all faces are of it.
+ObjFile read_obj(const std::filesystem::path& file, const std::filesystem::path& materials, SourceFiles& files,
+                 std::vector<std::string>& warnings);
 
 // Fills the scene's vertices, triangles, materials, textures and meshes (one per file), and reads textures. Equal corners become
 // one vertex; triangles without area and materials without triangles are dropped; coincident lights are resolved. Throws

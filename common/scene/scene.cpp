@@ -24,14 +24,14 @@ Instance make_instance(const MeshPlacement& placement) {
     return instance;
 }
 
-// Reads each mesh file once and places its instances.
+// Reads each mesh once with each of its materials, and places its instances.
 void load_meshes(const SceneDescription& description, bool specular, SourceFiles& sources, Scene& scene) {
-    std::map<std::filesystem::path, uint32_t> mesh_of_file;
+    std::map<std::pair<std::filesystem::path, std::filesystem::path>, uint32_t> mesh_of_files;
     std::vector<ObjFile> files;
     for (const MeshPlacement& placement : description.meshes) {
-        const auto [mesh, is_new] =
-            mesh_of_file.try_emplace(placement.file.lexically_normal(), static_cast<uint32_t>(files.size()));
-        if (is_new) files.push_back(read_obj(placement.file, sources, scene.warnings));
+        const auto [mesh, is_new] = mesh_of_files.try_emplace(
+            {placement.file.lexically_normal(), placement.materials.lexically_normal()}, static_cast<uint32_t>(files.size()));
+        if (is_new) files.push_back(read_obj(placement.file, placement.materials, sources, scene.warnings));
         scene.instance_meshes.push_back(mesh->second);
     }
     const std::vector<uint32_t> lines = assemble_meshes(files, specular, sources, scene);

@@ -22,6 +22,7 @@ glm::dmat4 read_rotation(const JsonObject& rotation) {
 MeshPlacement read_placement(const JsonObject& entry, const std::filesystem::path& folder) {
     MeshPlacement placement;
     placement.file = folder / entry.required("file", entry.text("file"));
+    if (const auto materials = entry.text("materials")) placement.materials = folder / *materials;
     glm::dmat4 matrix(1);
     if (const auto translation = entry.vector("translation")) matrix = glm::translate(matrix, glm::dvec3(*translation));
     if (entry.has("rotation")) matrix = matrix * read_rotation(entry.object("rotation", {"axis", "degrees"}));
@@ -78,8 +79,8 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     SceneDescription result;
     result.scene.description = root.text("description").value_or("");
     for (const nlohmann::json& entry : root.array("meshes"))
-        result.meshes.push_back(
-            read_placement({entry, name, "an entry of \"meshes\"", {"file", "scale", "rotation", "translation"}}, folder));
+        result.meshes.push_back(read_placement(
+            {entry, name, "an entry of \"meshes\"", {"file", "materials", "scale", "rotation", "translation"}}, folder));
     result.has_camera = root.has("camera");
     if (result.has_camera) result.scene.camera = read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
     if (root.has("background"))

@@ -8,6 +8,7 @@ namespace lab {
 // One entry of "meshes".
 struct MeshPlacement {
     std::filesystem::path file;
+    std::filesystem::path materials;  // instead of those that the mesh names; empty: those
     glm::dmat4x3 object_to_world{1};  // translation * rotation * scale
 };
 

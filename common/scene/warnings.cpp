@@ -12,7 +12,6 @@
 namespace lab {
 namespace {
 
-using glm::dvec3;
 using Point = std::array<float, 3>;
 
 constexpr size_t max_triangles = 10'000'000, max_pairs = 10'000'000, max_glass_triangles = 1'000'000;
@@ -50,60 +49,6 @@ struct Nesting {
 
 bool is_inside(const Bounds& inner, const Bounds& outer) {
     return glm::all(glm::lessThan(outer.low, inner.low)) && glm::all(glm::lessThan(inner.high, outer.high));
-}
-
-bool overlap(const Bounds& a, const Bounds& b) {
-    return glm::all(glm::lessThan(a.low, b.high)) && glm::all(glm::lessThan(b.low, a.high));
-}
-
-struct WorldTriangle {
-    std::array<dvec3, 3> corners;
-    Bounds bounds;
-};
-
-// Triangles of a part that may touch anything in the box.
-std::vector<WorldTriangle> triangles_near(const Scene& scene, const Part& part, const Bounds& box) {
-    std::vector<WorldTriangle> triangles;
-    const glm::dmat4x3 object_to_world(scene.instances[part.instance].object_to_world);
-    for (const uint32_t index : scene.mesh_of(part.instance).triangles()) {
-        if (scene.triangle_materials[index] != part.material) continue;
-        WorldTriangle triangle;
-        for (int i = 0; i < 3; ++i) {
-            triangle.corners[i] = object_to_world * glm::dvec4(scene.corner(index, i), 1);
-            triangle.bounds.grow(vec3(triangle.corners[i]));
-        }
-        if (overlap(triangle.bounds, box)) triangles.push_back(triangle);
-    }
-    return triangles;
-}
-
-// Whether an edge of `a` passes through `b` and extends further than `depth` on both sides.
-bool pierces(const WorldTriangle& a, const WorldTriangle& b, double depth) {
-    const dvec3 normal = glm::normalize(glm::cross(b.corners[1] - b.corners[0], b.corners[2] - b.corners[0]));
-    for (int i = 0; i < 3; ++i) {
-        const dvec3 from = a.corners[i], to = a.corners[(i + 1) % 3];
-        const double before = glm::dot(normal, from - b.corners[0]), behind = glm::dot(normal, to - b.corners[0]);
-        if (!(std::min(before, behind) < -depth && std::max(before, behind) > depth)) continue;
-        const dvec3 point = from + before / (before - behind) * (to - from);
-        bool is_inside = true;
-        for (int k = 0; k < 3; ++k)
-            is_inside &= glm::dot(normal, glm::cross(b.corners[(k + 1) % 3] - b.corners[k], point - b.corners[k])) > 0;
-        if (is_inside) return true;
-    }
-    return false;
-}
-
-// Whether the surfaces of two parts cross by more than 1/10,000 of the size of the glass.
-bool surfaces_cross(const Scene& scene, const Part& glass, const Part& object, size_t& pair_count) {
-    const double depth = 1e-4 * glm::distance(dvec3(glass.bounds.low), dvec3(glass.bounds.high));
-    const auto glass_triangles = triangles_near(scene, glass, object.bounds);
-    for (const WorldTriangle& a : triangles_near(scene, object, glass.bounds)) {
-        pair_count += glass_triangles.size();
-        if (pair_count > max_pairs) return false;
-        for (const WorldTriangle& b : glass_triangles)
-            if (overlap(a.bounds, b.bounds) && (pierces(a, b, depth) || pierces(b, a, depth))) return true;
-    }
-    return false;
 }
 
 // Counts edges where a mesh's dielectric surface ends, or where a front meets a back.
@@ -167,7 +112,7 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
     const std::vector<Part> parts = parts_of(scene);
     const auto is_dielectric = [&](const Part& part) { return scene.materials[part.material].refractive_index > 0; };
 
-    Nesting nested_dielectric, enclosed_object, reaching_object;  // the first of each kind
+    Nesting nested_dielectric, enclosed_object;  // the first of each kind
     size_t pair_count = 0;
     for (const Part& outer : parts) {
         if (!is_dielectric(outer)) continue;
@@ -175,11 +120,9 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
         if (pair_count > max_pairs) break;
         const bool is_absorbing = scene.materials[outer.material].absorption != vec3(0);
         for (const Part& inner : parts) {
-            const bool is_opaque = !is_dielectric(inner), lies_inside = is_inside(inner.bounds, outer.bounds);
-            if (is_opaque ? !is_absorbing : !lies_inside) continue;
-            Nesting& found = !is_opaque ? nested_dielectric : lies_inside ? enclosed_object : reaching_object;
-            if (found.inner != nullptr) continue;
-            if (lies_inside || (overlap(inner.bounds, outer.bounds) && surfaces_cross(scene, outer, inner, pair_count)))
+            const bool is_opaque = !is_dielectric(inner);
+            Nesting& found = is_opaque ? enclosed_object : nested_dielectric;
+            if (found.inner == nullptr && (!is_opaque || is_absorbing) && is_inside(inner.bounds, outer.bounds))
                 found = {&inner, &outer};
         }
     }
@@ -192,11 +135,8 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
     };
     warn(nested_dielectric, "a dielectric may lie inside the dielectric",
          "each is computed as if air surrounded it, so light bends by Ni against 1 between them, too");
-    const std::string no_fading =
-        "Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its "
-        "way to the object";
-    warn(enclosed_object, "an opaque object may lie inside the absorbing glass", no_fading);
-    warn(reaching_object, "an opaque object reaches into the absorbing glass", no_fading);
+    warn(enclosed_object, "an opaque object may lie inside the absorbing glass",
+         "Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its way to the object");
     for (const Mesh& mesh : scene.meshes) {
         const size_t count = open_edge_count(scene, mesh);
         if (count == 0) continue;

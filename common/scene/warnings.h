@@ -5,8 +5,8 @@
 namespace lab {
 
 // One line per kind: a dielectric that may lie inside another, an opaque object that may lie inside absorbing glass (both judged
-// by bounding boxes) or reaches into it, and glass whose surface is not closed. Examines the first ten million triangles and
-// pairs only; glass of more than a million triangles counts as closed.
+// by bounding boxes), and glass whose surface is not closed. Examines the first ten million triangles and pairs only; glass of
+// more than a million triangles counts as closed.
 std::vector<std::string> dielectric_warnings(const Scene& scene);
 
 // One line each where 32-bit numbers are too coarse:

@@ -14,10 +14,8 @@ from PIL import Image
 from project import ROOT, Parser, UserError, write_bytes
 
 MESHES = {  # name -> parts
-    "torus": lambda: [torus("porcelain")], "clear_torus": lambda: [torus("clear")], "lacquer_torus": lambda: [torus("lacquer")],
-    "frosted_torus": lambda: [torus("frosted")],
-    "sphere": lambda: [sphere("white")], "clear_ball": lambda: [sphere("clear")], "teal_ball": lambda: [sphere("teal")],
-    "gold_ball": lambda: [sphere("gold")], "numbered_ball": lambda: [sphere("numbered_squares", times_around=2)],
+    "torus": lambda: [torus("porcelain")], "sphere": lambda: [sphere("white")],
+    "numbered_ball": lambda: [sphere("numbered_squares", times_around=2)],
     "rough_balls": lambda: (row_of_balls([f"metal_{i}" for i in range(5)], 0.3, 0.66, -0.35)
                             + row_of_balls([f"plastic_{i}" for i in range(5)], 0.22, 0.56, 0.45)),
     "heart": heart, "orange_pumpkin": lambda: pumpkin(10, 0.74), "green_pumpkin": lambda: pumpkin(14, 0.6),

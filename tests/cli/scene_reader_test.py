@@ -39,6 +39,15 @@ class SceneReaderTest(ProgramTest):
             value = (value ^ byte) * 0x100000001B3 % 2**64
         self.assertEqual(read_scene(model).hash, f"{value:x}")
 
+    def test_other_materials_than_those_of_the_mesh(self):
+        """By name, or a single one for all of it."""
+        self.write("model.obj", QUAD_OBJ)
+        for mtl, diffuse in (("newmtl red\nKd 0.5 0 0\n", [0.5, 0, 0]), ("newmtl red\nnewmtl white\nKd 0.25 0.25 0\n", [0.25, 0.25, 0])):
+            self.write("more/other.mtl", mtl)
+            scene = self.write("scene.json", json.dumps({"meshes": [{"file": "model.obj", "materials": "more/other.mtl"}]}))
+            (surface,) = read_scene(scene).surfaces
+            self.assertEqual(surface.material.diffuse.tolist(), diffuse)
+
 
 # What the chapters read: for each key of a scene a path to it and another value, for each keyword of a material the lines before
 # it and its own.
@@ -52,6 +61,7 @@ KEYS = {
     "background": ("background", {"radiance": 0.5}), "specular": ("specular", True),
     "multiple_scattering": ("multiple_scattering", True), "width": ("width", 300), "height": ("height", 300),
     "samples": ("samples", 3), "max_path_length": ("max_path_length", 3), "file": ("meshes/0/file", "other.obj"),
+    "materials": ("meshes/0/materials", "other.mtl"),
     "scale": ("meshes/0/scale", 2), "rotation": ("meshes/0/rotation", {"axis": [1, 0, 0], "degrees": 30}),
     "translation": ("meshes/0/translation", [1, 0, 0]), "axis": ("meshes/0/rotation/axis", [1, 0, 0]),
     "degrees": ("meshes/0/rotation/degrees", 40), "position": ("camera/position", [0, 1, 3]),
@@ -85,6 +95,7 @@ class WhatChaptersReadTest(ProgramTest):
     def read(self, scene=None, material=""):
         self.write("other.obj", QUAD_OBJ.replace("v 1 1 0", "v 2 1 0"))
         self.write("quad.obj", QUAD_OBJ + "usemtl rough\nf 1 2 3\n")
+        self.write("other.mtl", "newmtl red\nKd 0.5 0 0\n")
         self.write("quad.mtl", QUAD_MTL + material + "\nnewmtl glossy\nKs 0.1 0.1 0.1\nnewmtl rough\nPr 0.5\n")
         return plain(read_scene(self.write("scene.json", json.dumps(scene or SCENE))))
 

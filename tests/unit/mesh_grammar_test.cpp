@@ -323,7 +323,7 @@ TEST(MeshGrammar, IsReadAlikeByASecondReader_all) {
 
         SourceFiles sources;
         std::vector<std::string> warnings;
-        const ObjFile read = read_obj(file, sources, warnings);
+        const ObjFile read = read_obj(file, {}, sources, warnings);
         const SecondMesh second = second_read_obj(file);
         EXPECT_EQ(read.positions, second.positions);
         EXPECT_EQ(read.normals, second.normals);

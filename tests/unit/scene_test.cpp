@@ -140,10 +140,30 @@ TEST_F(SceneFile, WorldBounds) {
     EXPECT_EQ(world_bounds(scene).high, vec3(1, 1, 7));
 }
 
+TEST_F(SceneFile, MaterialsMayReplaceThoseOfAMesh) {
+    folder.write("two.obj", "mtllib own.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 2\n");
+    folder.write("own.mtl", "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n");
+    folder.write("more/gold.mtl", "newmtl gold\nKd 0 0 1\nmap_Kd a.png\n");
+    write_png(folder / "more/a.png", {1, 1, {255, 255, 255, 255}});
+    folder.write("swapped.mtl", "newmtl b\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n");
+    const Scene scene = load(R"({"meshes": [{"file": "two.obj"}, {"file": "two.obj", "materials": "more/gold.mtl"},
+                                            {"file": "two.obj", "materials": "swapped.mtl"},
+                                            {"file": "two.obj", "materials": "more/../more/gold.mtl"}]})");
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.instance_meshes, (std::vector<uint32_t>{0, 1, 2, 1}));
+    std::vector<vec3> albedos;
+    for (const uint32_t material : scene.triangle_materials) albedos.push_back(scene.materials.at(material).diffuse_albedo);
+    const vec3 red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1);
+    EXPECT_EQ(albedos, (std::vector<vec3>{red, green, blue, blue, green, red}));
+    EXPECT_EQ(scene.textures.size(), 1u);
+    EXPECT_USER_ERROR(load(R"({"meshes": [{"file": "two.obj", "materials": "none.mtl"}]})"), "none.mtl");
+    EXPECT_USER_ERROR(load(R"({"meshes": [{"file": "two.obj", "materials": 3}]})"), "\"materials\"");
+}
+
 TEST_F(SceneFile, UnknownKeysAreNamedWithTheKnownOnes) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"meshes": [], "sample": 4})", "known keys are description, meshes, camera"},
-        {R"({"meshes": [{"file": "a.obj", "scaling": 1}]})", "known keys are file, scale, rotation, translation"},
+        {R"({"meshes": [{"file": "a.obj", "scaling": 1}]})", "known keys are file, materials, scale, rotation, translation"},
         {R"({"meshes": [{"file": "a.obj", "rotation": {"angle": 1}}]})", "known keys are axis, degrees"},
         {R"({"meshes": [], "camera": {"fov": 1}})", "known keys are position, target, up, vertical_fov"},
         {R"({"meshes": [], "background": {"color": 1}})", "known keys are radiance, light_probe, intensity"},

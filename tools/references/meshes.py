@@ -91,15 +91,20 @@ def triangulate(polygon):
 class ObjFile:
     """The triangles of an OBJ file in object space: arrays [triangle, corner], normals NaN where there are none.
 
+    `materials` is an MTL file that stands for those that the mesh names; a single material in it is that of all faces.
     Triangles without area are dropped, and corners ordered counter-clockwise seen from the front."""
 
-    def __init__(self, path, files):
+    def __init__(self, path, files, materials=None):
         self.path, self.files = path, files
         self.materials = []  # of the triangles
         self._available, self._libraries, self._is_noted = {}, set(), False
         positions, texture_coordinates, normals, corners = [], [], [], []
         material = grey = None
-        for number, line in enumerate(files.read_text(path).splitlines(), 1):
+        text = files.read_text(path)
+        if materials:
+            self._available = read_mtl(materials, materials.parent, files)
+        only = next(iter(self._available.values())) if len(self._available) == 1 else None
+        for number, line in enumerate(text.splitlines(), 1):
             words = line.split("#")[0].split()
             keyword, where = words[0] if words else "", f"{path}:{number}"
             if keyword == "v":
@@ -108,9 +113,9 @@ class ObjFile:
                 normals.append(to_floats(words[1:], 3))
             elif keyword == "vt":
                 texture_coordinates.append(to_floats([*words[1:], "0"], 2))
-            elif keyword == "mtllib":
+            elif keyword == "mtllib" and not materials:
                 self._read_materials(name_after_keyword(line), where)
-            elif keyword == "usemtl":
+            elif keyword == "usemtl" and not only:
                 name = name_after_keyword(line)
                 material = self._available.get(name)
                 if material is None:
@@ -119,7 +124,7 @@ class ObjFile:
                 counts = (len(positions), len(texture_coordinates), len(normals))
                 face = [self._corner(word, counts) for word in words[1:]]
                 if material is None and grey is None:
-                    grey = Material("", diffuse=np.full(3, 0.5))
+                    grey = only or Material("", diffuse=np.full(3, 0.5))
                 for triangle in triangulate(np.array([positions[corner[0]] for corner in face])):
                     corners.append([face[i] for i in triangle])
                     self.materials.append(material or grey)

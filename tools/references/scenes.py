@@ -111,7 +111,7 @@ def triple(value):
 
 def placement_matrix(path, entry):
     """Scale, then rotation, then translation."""
-    only(path, entry, "file", "scale", "rotation", "translation")
+    only(path, entry, "file", "materials", "scale", "rotation", "translation")
     matrix = np.eye(4)
     matrix[:3, :3] = np.diag(triple(entry.get("scale", 1)))
     if "rotation" in entry:
@@ -154,11 +154,12 @@ def read_scene(path):
                     "multiple_scattering", "width", "height", "samples", "max_path_length")
         meshes, indices, placements = [], {}, []
         for entry in root["meshes"]:
-            file = path.parent / entry["file"]
-            if file.resolve() not in indices:
-                indices[file.resolve()] = len(meshes)
-                meshes.append(ObjFile(file, files))
-            placements.append((indices[file.resolve()], placement_matrix(path, entry)))
+            file, materials = path.parent / entry["file"], "materials" in entry and path.parent / entry["materials"]
+            key = file.resolve(), materials and materials.resolve()
+            if key not in indices:
+                indices[key] = len(meshes)
+                meshes.append(ObjFile(file, files, materials))
+            placements.append((indices[key], placement_matrix(path, entry)))
 
         textures = set()
         for mesh in meshes:
