@@ -43,8 +43,9 @@ def level_digest(chapter):
 
 
 def experiment_digest(chapter, name):
-    """Digest of what an experiment depends on."""
-    return digest(repr(experiments_of(chapter)[name]), own_text(chapter))
+    """Digest of what an experiment measures: its words may change."""
+    points = experiments_of(chapter)[name].points
+    return digest([[point.scene, point.options, point.samples, point.channel] for point in points], own_text(chapter))
 
 
 def own_text(chapter):
@@ -86,19 +87,19 @@ class Workshop:
             sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, batch, repeats=OWN_PICTURES)
         return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
 
-    def shown(self, bug, expected):
+    def shown(self, bug, expected, before):
         """What a mistake shows in experiments, as text with a number per point: brightness where it differs from the chapter's
-        own, or if that is right everywhere, noise and rays."""
+        own, or if that is right everywhere, noise and rays. `before` has what earlier experiments have shown."""
         with grading.program_with(CHAPTERS[bug.chapter], bug.text, bug.file) as program:
             facts, sights = observe(bug.chapter, program, self.settings(LEVELS), expected, lambda *_: True, MISTAKE_SEED)
-        shows = {name: to_digits(reading.value for reading in seen.readings) for name, seen in facts.items() if not seen.is_right}
+        shows = before["shows"] | {name: to_digits(reading.value for reading in seen.readings) for name, seen in facts.items() if not seen.is_right}
         if shows:
             return {"shows": shows}
         ratios = ratios_of(sights, expected)
-        return {"shows": {}, "noise": {name: to_digits((v for v, _ in those), 2) for name, those in ratios["noise"].items()
-                                       if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)},
-                "rays": {name: to_digits((v for v, _ in those), 3) for name, those in ratios["rays"].items()
-                         if any(abs(v - 1) > 0.05 for v, _ in those)}}
+        noise = {name: to_digits((v for v, _ in those), 2) for name, those in ratios["noise"].items()
+                 if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)}
+        rays = {name: to_digits((v for v, _ in those), 3) for name, those in ratios["rays"].items() if any(abs(v - 1) > 0.05 for v, _ in those)}
+        return {"shows": {}, "noise": before.get("noise", {}) | noise, "rays": before.get("rays", {}) | rays}
 
 
 def to_digits(values, digits=4):
@@ -114,7 +115,7 @@ def read_knowledge(chapters):
 
 def planned_knowledge(chapters, before):
     """What should be known about chapters: levels and experiments of their own shader, and what their mistakes show. Filled in as
-    far as `before` has it, measured alike; the rest is empty."""
+    far as `before` has it, measured alike; the rest is empty, and `unseen` lists experiments in which a mistake is not measured yet."""
     knowledge = {}
     for chapter in chapters:
         known = before.get(chapter, {})
@@ -126,10 +127,13 @@ def planned_knowledge(chapters, before):
             old = known.get("experiments", {}).get(name, {})
             entry["experiments"][name] = old if old.get("measured") == now else {"measured": now}
         for bug in (bug for bug in catalogue() if bug.chapter == chapter):
-            now = digest(sorted(digests.values()), code(bug.text))
-            old = known.get("mistakes", {}).get(bug.mistake["name"], {})
-            seen = {key: old[key] for key in ("shows", "noise", "rays") if key in old} if old.get("measured") == now else {}
-            entry["mistakes"][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")} | {"measured": now} | seen
+            now, old = digest(code(bug.text)), known.get("mistakes", {}).get(bug.mistake["name"], {})
+            old = old if old.get("measured") == now else {"unseen": list(digests)}
+            unseen = [name for name in digests if name in old.get("unseen", []) or "mean" not in entry["experiments"][name]]
+            seen = {kind: {name: text for name, text in old[kind].items() if name in digests and name not in unseen}
+                    for kind in ("shows", "noise", "rays") if kind in old}
+            entry["mistakes"][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")} | {
+                "measured": now, "shows": {}} | seen | ({"unseen": unseen} if unseen else {})
         knowledge[chapter] = entry
     return knowledge
 
@@ -139,7 +143,7 @@ def unmeasured(knowledge):
     planned = planned_knowledge(project.course(), knowledge)
     missing = [(chapter, "levels") for chapter, entry in planned.items() if not entry["levels"]]
     missing += [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["experiments"].items() if "mean" not in seen]
-    return missing + [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["mistakes"].items() if "shows" not in seen]
+    return missing + [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["mistakes"].items() if "unseen" in seen]
 
 
 def learn(workshop, chapters, is_anew, jobs):
@@ -162,14 +166,16 @@ def learn(workshop, chapters, is_anew, jobs):
         write(chapter)
 
     def learn_mistake(bug):
-        knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] |= workshop.shown(bug, knowledge[bug.chapter]["experiments"])
+        entry, experiments = knowledge[bug.chapter]["mistakes"][bug.mistake["name"]], knowledge[bug.chapter]["experiments"]
+        shown = workshop.shown(bug, {name: experiments[name] for name in entry["unseen"]}, entry)
+        knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] = {key: entry[key] for key in ("hint", "slide", "measured")} | shown
         write(bug.chapter)
 
     run_all("levels", learn_levels, [chapter for chapter in chapters if not knowledge[chapter]["levels"]], jobs)
     run_all("experiments", learn_experiment, [(chapter, name) for chapter in chapters
                                               for name, seen in knowledge[chapter]["experiments"].items() if "mean" not in seen], jobs)
     run_all("mistakes", learn_mistake, [bug for bug in catalogue() if bug.chapter in chapters
-                                        and "shows" not in knowledge[bug.chapter]["mistakes"][bug.mistake["name"]]], jobs)
+                                        and "unseen" in knowledge[bug.chapter]["mistakes"][bug.mistake["name"]]], jobs)
     for chapter in chapters:
         write(chapter)
 

@@ -3,8 +3,11 @@
 import json
 import re
 import unittest
+from dataclasses import replace
+from unittest import mock
 
 from paths import PROJECT  # first: it finds the others
+from check.experiments import experiments_of
 from check.grading import MOST_RUNS, RUNS, SEED_STEP
 from course.mistakes import catalogue
 from learning import learn
@@ -45,6 +48,26 @@ class KnowledgeTest(unittest.TestCase):
         for entries in KNOWN.values():
             for name, entry in entries.items():
                 self.assertIn(entry["slide"], titles, name)
+
+
+class LearningTest(unittest.TestCase):
+    def planned_with(self, change):
+        """What is kept of chapter 1 after a change of one of its experiments and an interruption."""
+        experiments = experiments_of(1) | {"angle": change(experiments_of(1)["angle"])}
+        with mock.patch.object(learn, "experiments_of", lambda chapter: experiments if chapter == 1 else experiments_of(chapter)):
+            return learn.planned_knowledge([1], learn.planned_knowledge([1], KNOWLEDGE_OF))[1]
+
+    def test_an_experiment_with_other_words_need_not_be_measured_again(self):
+        planned = self.planned_with(lambda angle: replace(angle, subject="other words", decides=not angle.decides))
+        self.assertEqual(planned["experiments"]["angle"], KNOWLEDGE_OF[1]["experiments"]["angle"])
+        self.assertEqual(planned["mistakes"], KNOWLEDGE_OF[1]["mistakes"])
+
+    def test_of_a_mistake_only_what_a_changed_experiment_shows_is_measured_again(self):
+        planned = self.planned_with(lambda angle: replace(angle, points=[replace(point, samples=1) for point in angle.points]))
+        self.assertNotIn("mean", planned["experiments"]["angle"])
+        for name, known in KNOWLEDGE_OF[1]["mistakes"].items():
+            self.assertEqual(planned["mistakes"][name]["unseen"], ["angle"])
+            self.assertEqual(planned["mistakes"][name]["shows"], {key: text for key, text in known["shows"].items() if key != "angle"})
 
 
 class ConfusionTest(unittest.TestCase):
