@@ -17,7 +17,7 @@ from tables.facet_tables import furnace_table, sampling_table
 from tables.numerics import case_table, device_tables
 from tables.peer_table import peer_table
 from tables.records import NOTEBOOK, RECORDS, load_records
-from tables.result_plots import PLOTS, is_fresh, write_plot
+from tables.result_plots import PLOTS, is_fresh, short_device, write_plot
 
 RESULTS = NOTEBOOK / "results"
 COMMAND = "./lab notebook export"
@@ -54,7 +54,7 @@ def measured_table(name, page):
         return device_table(name, page.stem)
     results = os.path.relpath(DOCS / "results.md", page.parent)
     first = load_records("chapters")[0]
-    return (f"Measured on {first['environment']['device']}, {when(first)}; [what the columns mean]({results}#what-the-numbers-mean), "
+    return (f"Measured on {short_device(first['environment']['device'])}, {when(first)}; [what the columns mean]({results}#what-the-numbers-mean), "
             f"[other devices]({results}#all-numbers).\n\n{page_table(name, first)}\n")
 
 
