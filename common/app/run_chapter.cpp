@@ -54,6 +54,18 @@ void check_outputs(const RunOptions& options) {
     if (!options.report.empty()) check_writable(options.report, {".json", ".csv"});
 }
 
+// Throws UserError if a result would replace a file that the picture is made from. The one that --resume names may be replaced.
+void check_inputs(const RunOptions& options, const Scene& scene) {
+    auto inputs = scene.sources, outputs = options.outputs;
+    inputs.push_back(options.reference);
+    outputs.push_back(options.report);
+    std::error_code none;  // where one of them does not exist
+    for (const auto& input : inputs)
+        for (const auto& output : outputs)
+            if (std::filesystem::equivalent(input, output, none))
+                throw UserError(output.string() + ": would replace a file that this picture is made from: choose another name");
+}
+
 // Throws UserError if the validation layers reported anything.
 void check_validation(const Device& device, const RunOptions& options) {
     if (!options.validation) return;
@@ -179,6 +191,7 @@ class Commands {
         const auto scene = build_ && build_->job.options.scene == options.scene
                                ? build_->job.scene
                                : std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
+        check_inputs(options.run, *scene);
         RenderJob job = make_job(chapter_, options, scene);
         print_warnings(chapter_, job);
         if (const auto window = open_window(chapter_, options, job.parameters.image_size);

@@ -94,6 +94,10 @@ FilmFile read_film(const std::filesystem::path& file) {
     film.record.first_sample = number<uint32_t>(exr, "first_sample", file);
     film.record.rays = number<uint64_t>(exr, "rays", file);
     film.record.seconds = number<double>(exr, "seconds", file);
+    const auto require = [&](bool condition, const char* what) {
+        if (!condition) throw UserError(file.string() + ": " + what + ": render again");
+    };
+    require(film.record.seconds >= 0 && std::isfinite(film.record.seconds), "its seconds are negative or not finite");
     const size_t count = size_t{exr.image.width} * exr.image.height;
     const auto samples = number<uint32_t>(exr, "samples", file);
     const auto further_samples = counts(exr, "further_samples", count, file);
@@ -110,14 +114,18 @@ FilmFile read_film(const std::filesystem::path& file) {
     in_parallel(count, 1 << 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             FilmPixel& pixel = film.image.pixels[i];
-            pixel.sample_count = samples + further_samples[i];
+            const uint64_t samples_of_pixel = uint64_t{samples} + further_samples[i];
+            require(samples_of_pixel <= UINT32_MAX && film.record.first_sample + samples_of_pixel <= uint64_t{1} << 32,
+                    "has more samples than there are random numbers");
+            pixel.sample_count = static_cast<uint32_t>(samples_of_pixel);
             pixel.invalid_count = invalid[i];
+            require(pixel.invalid_count <= pixel.sample_count, "has more invalid samples than samples");
             const float* rgb = &exr.image.pixels[3 * i];
-            if (!std::all_of(rgb, rgb + 3, [](float value) { return std::isfinite(value); }))
-                throw UserError(file.string() + ": has infinite pixels: render again");
             set_sum(pixel, glm::dvec3(rgb[0], rgb[1], rgb[2]) * static_cast<double>(pixel.sample_count));
             const vec3 mean_difference((*difference[0])[i], (*difference[1])[i], (*difference[2])[i]);
             pixel.difference = mean_difference * static_cast<float>(pixel.sample_count);
+            for (int channel = 0; channel < 3; ++channel)
+                require(std::isfinite(pixel.sum[channel]) && std::isfinite(pixel.difference[channel]), "has infinite pixels");
         }
     });
     return film;

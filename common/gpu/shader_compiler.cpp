@@ -48,6 +48,9 @@ class Includer {
     }
 
     std::string expand(const fs::path& file) {
+        // #line has names in quotes, and compilers disagree about escapes in them.
+        if (file.generic_string().find_first_of("\"\\") != std::string::npos)
+            throw UserError(file.generic_string() + ": the path of a shader must not contain \" or \\: rename the folder");
         std::string contents = read_file(file, max_shader_bytes);
         if (contents.starts_with("\xEF\xBB\xBF")) contents.erase(0, 3);
         std::istringstream stream(std::move(contents));
@@ -129,6 +132,16 @@ std::string with_advice(const std::string& line) {
     return line;
 }
 
+// "caller(parameters calling callee(parameters" as a message.
+std::string recursion_text(const std::string& line) {
+    constexpr std::string_view calling = " calling ";
+    const size_t middle = std::min(line.find(calling), line.size()), callee = std::min(middle + calling.size(), line.size());
+    const size_t caller = std::min(line.find_first_not_of(' '), middle);
+    const auto name = [&](size_t begin, size_t end) { return line.substr(begin, std::min(line.find('(', begin), end) - begin); };
+    return name(caller, middle) + "() calls " + name(callee, line.size()) +
+           "(), and so itself: GLSL has no recursion, write a loop";
+}
+
 // The errors in glslang's log as lines "file:line: text": only the first of each source line, since the others follow from it.
 // The most common ones say what to do.
 std::string readable_errors(const std::string& log) {
@@ -139,6 +152,10 @@ std::string readable_errors(const std::string& log) {
         if (!line.starts_with(start) || line.find("compilation errors") != std::string::npos ||
             line.find("compilation terminated") != std::string::npos)
             continue;
+        if (line.find("Recursion detected") != std::string::npos) {  // the next line tells where
+            std::getline(lines, line);
+            return recursion_text(line);
+        }
         line = line.substr(start.size(), line.find_last_not_of(' ') + 1 - start.size());
         const std::string before = std::exchange(place, line.substr(0, line.find(": ")));
         if (place != before) text += (text.empty() ? "" : "\n") + with_advice(line);

@@ -162,7 +162,7 @@ struct Builtins : native::Builtins {
     LAB_INLINE static V<T> atomicAdd(const Mask& active, const Ref<T>& target, const V<T>& operand) {
         V<T> before;
         for_each_lane(active,
-                      [&](int lane) { before.set(lane, Plain::atomicAdd(target.base[target.offset[lane]], operand[lane])); });
+                      [&](int lane) { before.set(lane, Plain::atomicAdd(target.base[target.word(lane)], operand[lane])); });
         return before;
     }
     LAB_INLINE static V<vec4> texelFetch(const Mask& active, const Texture& texture, const V<ivec2>& position, int level) {
@@ -172,7 +172,7 @@ struct Builtins : native::Builtins {
     LAB_INLINE static V<vec4> texelFetch(const Mask& active, const Ref<T>& texture, const V<ivec2>& position, int level) {
         V<vec4> result;
         for_each_lane(active, [&](int lane) {
-            const Texture& chosen = texture.base[texture.offset[lane] / word_count<Texture>];
+            const Texture& chosen = texture.base[texture.word(lane) / word_count<Texture>];
             const vec4 texel = Plain::texelFetch(chosen, ivec2(position.x[lane], position.y[lane]), level);
             for (int i = 0; i < 4; ++i) result[i].set(lane, texel[i]);
         });

@@ -14,11 +14,12 @@ LAB_INLINE void for_each_part(T& target, const F& f);
 template <typename A, typename B>
 LAB_INLINE auto select(const Mask& mask, const A& a, const B& b);
 
-// Memory at an address for each lane, of which `offset` counts words of four bytes.
+// Memory at an address for each lane, of which `offset` counts words of four bytes: up to 2^32, as in an unsigned number.
 template <typename T>
 struct Ref {
     T* base;
     Lanes<int> offset;
+    uint32_t word(int lane) const { return static_cast<uint32_t>(offset[lane]); }
 };
 template <typename T>
 inline constexpr bool is_ref = false;
@@ -173,14 +174,17 @@ template <int count>
 LAB_INLINE void load_words(const Mask& mask, const void* base, const Lanes<int>& offset, Lanes<int>* words) {
     using Raw = Lanes<int>::Raw;
     if constexpr (count == 1) {
+        // It takes signed numbers: those from the middle of the words.
+        const int* const middle = static_cast<const int*>(base) + (size_t{1} << 31);
+        const Raw from_middle = offset.raw ^ INT32_MIN;
 #ifdef __clang__
-        words[0].raw = __builtin_ia32_gatherd_d256(Raw{}, static_cast<const int*>(base), offset.raw, mask.raw, 4);
+        words[0].raw = __builtin_ia32_gatherd_d256(Raw{}, middle, from_middle, mask.raw, 4);
 #else
-        words[0].raw = __builtin_ia32_gathersiv8si(Raw{}, static_cast<const int*>(base), offset.raw, mask.raw, 4);
+        words[0].raw = __builtin_ia32_gathersiv8si(Raw{}, middle, from_middle, mask.raw, 4);
 #endif
         return;
     }
-    int32_t offsets[lane_count];
+    uint32_t offsets[lane_count];
     const auto first = offset.raw & mask.raw;  // idle lanes read the first element
     std::memcpy(offsets, &first, sizeof offsets);
     const auto row = [&](int lane, int word) { return static_cast<const int*>(base) + offsets[lane] + word; };
@@ -243,7 +247,7 @@ LAB_INLINE void store(const Mask& mask, const Ref<T>& ref, const U& value) {
     Lanes<int> words[word_count<T>], *next = words;
     for_each_part(all, [&](const auto& x) { std::memcpy(next++, &x.raw, sizeof x.raw); });
     for_each_lane(mask, [&](int lane) {
-        int32_t* word = reinterpret_cast<int32_t*>(ref.base) + ref.offset[lane];
+        int32_t* word = reinterpret_cast<int32_t*>(ref.base) + ref.word(lane);
         for (const Lanes<int>& x : words) *word++ = x[lane];
     });
 }

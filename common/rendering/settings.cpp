@@ -30,11 +30,14 @@ double value_of(const Chapter& chapter, size_t i, const Options& options) {
     return options.samples.chapter_values[i].value_or(chapter.options[i].default_value);
 }
 
-// An upper bound on the albedo of all materials, in any direction.
+// An upper bound on the albedo of all materials, in any direction. Microfacets reflect nearly everything at grazing angles.
 double largest_albedo(const Scene& scene) {
     float largest = 0;
-    for (const Material& material : scene.materials) {
-        const vec3 albedo = material.refractive_index > 0 ? vec3(1) : material.diffuse_albedo + material.specular_albedo;
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        const bool has_microfacets = !scene.microfacets.empty() && scene.microfacets[i].roughness > 0;
+        const vec3 albedo =
+            material.refractive_index > 0 || has_microfacets ? vec3(1) : material.diffuse_albedo + material.specular_albedo;
         largest = std::max({largest, albedo.r, albedo.g, albedo.b});
     }
     return largest;
@@ -139,7 +142,8 @@ std::string safety_limit_text(const Scene& scene) {
         std::snprintf(text, sizeof text, "up to %u bounces; all light of more is below %.0e of the brightest emission",
                       safety_limit, std::max(std::pow(albedo, safety_limit + 1) / (1 - albedo), 1e-300));
     else
-        std::snprintf(text, sizeof text, "up to %u bounces; a surface absorbs nothing, so light of more bounces may be missing",
+        std::snprintf(text, sizeof text,
+                      "up to %u bounces; a surface reflects everything at some angle, so light of more may be missing",
                       safety_limit);
     return text;
 }

@@ -115,6 +115,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     for (const auto& find_warnings : {dielectric_warnings, precision_warnings})
         for (std::string& warning : find_warnings(scene)) scene.warnings.push_back(std::move(warning));
     scene.hash = sources.hash();
+    scene.sources = sources.names();
     return std::move(scene);
 }
 

@@ -79,8 +79,9 @@ struct Scene {
     RenderDefaults defaults;
     bool has_added_lobes = false;  // Phong lobes come from --specular, not from the file
 
-    std::vector<std::string> warnings;  // for the user, one line each
-    uint64_t hash = 0;                  // FNV-1a of all files that the scene was read from
+    std::vector<std::string> warnings;           // for the user, one line each
+    std::vector<std::filesystem::path> sources;  // all files that the scene was read from
+    uint64_t hash = 0;                           // FNV-1a of them
 
     const Mesh& mesh_of(uint32_t instance) const { return meshes[instance_meshes[instance]]; }
     const Material& material_of(uint32_t triangle) const { return materials[triangle_materials[triangle]]; }

@@ -9,19 +9,22 @@
 
 namespace lab {
 
-// Reads files and hashes their contents in reading order, to recognise changed scenes.
+// Reads files, remembers which, and hashes their contents in reading order, to recognise changed scenes.
 class SourceFiles {
   public:
     // Like read_file().
     std::string read(const std::filesystem::path& file, uint64_t max_bytes) {
         std::string bytes = read_file(file, max_bytes);
         hash_ = hash_text(bytes, hash_);
+        names_.push_back(file);
         return bytes;
     }
 
     uint64_t hash() const { return hash_; }
+    const std::vector<std::filesystem::path>& names() const { return names_; }
 
   private:
+    std::vector<std::filesystem::path> names_;
     uint64_t hash_ = hash_text("");
 };
 

@@ -4,7 +4,7 @@ import json
 import re
 
 from image_files import Exr
-from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest, RenderTest
+from program import BINARIES, PROJECT, QUAD_MTL, UNOPTIMISED, ProgramTest, RenderTest
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").iterdir() if path.is_dir())
 TINY = ["--width=16", "--height=16", "--samples=2", "--backend=compute"]
@@ -119,6 +119,9 @@ class ChapterOptions(ProgramTest):
         program = BINARIES / CHAPTERS[4]
         self.assertRegex(self.render("quad.json", *TINY, program=program), r"up to 10000 bounces; .* below \de-\d+")
         self.assertNotIn("bounces", self.render("quad.json", *TINY, "--max-path-length=3", program=program))
+        for material in ("d 0", "Pr 0.5", "Pr 0.5\nPm 1"):  # what reflects everything at grazing angles
+            self.write("quad.mtl", QUAD_MTL + material + "\n")
+            self.assertRegex(self.render("quad.json", *TINY, program=BINARIES / CHAPTERS[10]), r"up to 10000 bounces; .* may be missing")
 
 
 class ChapterRenders(RenderTest):

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from program import MERGE, ProgramTest
+from program import MERGE, QUAD_JSON, QUAD_MTL, ProgramTest
 
 OPTIONS = """--width --height --samples --seed --first-sample --max-path-length --only-path-length --backend --device
     --list-devices --headless --window --output --reference --report --target-error --time-limit --view --camera-position
@@ -132,6 +132,17 @@ class WrongOutputs(ProgramTest):
             self.refuse(name)
         for name in ("quad.obj/report.json", "folder.json", "/proc/report.json"):
             self.refuse(name, option="--report")
+
+    def test_files_that_the_picture_is_made_from(self):
+        self.render("quad.json", "--width=8", "--height=4", "--samples=1", "--output=sky.exr", "--output=map.png")
+        self.write("quad.mtl", QUAD_MTL + "map_Kd map.png\n")
+        self.write("quad.json", QUAD_JSON.replace('"radiance": [1, 1, 1]', '"light_probe": "sky.exr"'))
+        (self.folder / "link.exr").symlink_to("sky.exr")
+        for option, name in (("--report", "quad.json"), ("--output", "map.png"), ("--output", "./sky.exr"), ("--output", "link.exr")):
+            self.refuse(name, re.escape(name), "choose another name", option=option)
+        (self.folder / "reference.exr").write_bytes((self.folder / "sky.exr").read_bytes())
+        self.assert_refused(["quad.json", "--width=8", "--height=4", "--samples=4000000000", "--reference=reference.exr",
+                             "--output=reference.exr"], r"reference\.exr", "choose another name")
 
     def test_one_bad_output_of_two(self):
         self.assert_refused(

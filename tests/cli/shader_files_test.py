@@ -70,6 +70,12 @@ class ShaderFiles(ProgramTest):
                 place = rf"path_trace\.glsl:{line[right] + below}: " if below is not None else r"sample_loop\.glsl:\d+: "
                 self.assert_shader_refused(own.replace(right, wrong), place + word + r".* \(" + advice)
 
+    def test_recursion_names_its_functions(self):
+        for helpers, names in (("vec3 one(int n) { return n == 0 ? vec3(0) : one(n - 1); }\n", r"one\(\) calls one\(\)"),
+                               ("vec3 two(int n);\nvec3 one(int n) { return two(n); }\nvec3 two(int n) { return one(n - 1); }\n",
+                                r"(one\(\) calls two|two\(\) calls one)\(\)")):
+            self.assert_shader_refused(helpers + GREY.replace("get_grey()", "one(3)"), names + ".* write a loop")
+
     def test_includes_are_small_files_below_the_tree(self):
         outside = self.write("outside.glsl", HELPER)
         folder = self.shader.parent
@@ -91,6 +97,12 @@ class ShaderFiles(ProgramTest):
         self.beside("helper.glsl", HELPER)
         (self.shader.parent / "link").symlink_to("helper.glsl")
         self.assert_renders(f'#include "link"\n#include "../{CHAPTER}/helper.glsl"\n{GREY}'.encode())
+
+    def test_paths_that_no_line_directive_can_hold(self):
+        for name in ('a "b"', "a\\b"):
+            program, _ = make_tree(CHAPTER, self.shader, self.folder / name)
+            self.assert_refused(["quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--output=no.exr"],
+                                re.escape(name), 'must not contain " or', program=program)
 
     def test_long_lines(self):
         blanks = b" " * 300000

@@ -52,6 +52,31 @@ TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
     EXPECT_USER_ERROR(merge_films({first, write(half - 1, 7)}), "without overlap or gap");
 }
 
+TEST(FilmFile, NumbersThatNoRenderWritesAreRefused) {
+    const TestFolder folder;
+    const auto file = folder / "film.exr";
+    const auto refuse = [&](const std::string& part, const std::function<void(ExrFile&)>& change) {
+        write_film(file, {1, 1, {{vec3(1), vec3(0), vec3(0), 5, 1}}}, {});
+        ExrFile exr = read_exr(file);
+        change(exr);
+        write_exr(file, exr);
+        EXPECT_USER_ERROR(read_film(file), part);
+    };
+    constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    for (const char* seconds : {"nan", "inf", "-1"})
+        refuse("seconds are negative or not finite", [&](ExrFile& exr) { exr.attributes["seconds"] = seconds; });
+    for (const float number : {infinity, nan, 3e38f}) {  // the last one overflows, five times
+        refuse("infinite pixels", [&](ExrFile& exr) { exr.image.pixels[1] = number; });
+        refuse("infinite pixels", [&](ExrFile& exr) { exr.channels["difference.B"] = {number}; });
+    }
+    refuse("more samples than there are", [&](ExrFile& exr) {
+        exr.attributes["samples"] = "4294967295";
+        exr.channels["further_samples"] = {1};
+    });
+    refuse("more samples than there are", [&](ExrFile& exr) { exr.attributes["first_sample"] = "4294967292"; });
+    refuse("more invalid samples than samples", [&](ExrFile& exr) { exr.channels["invalid_samples"] = {6}; });
+}
+
 // An invalid sample adds nothing but is counted, and its pixel is magenta.
 TEST(FilmFile, KeepsAndShowsInvalidSamples) {
     const TestFolder folder;

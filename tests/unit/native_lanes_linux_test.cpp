@@ -1,9 +1,11 @@
 // Shaders in lanes give what they give one invocation at a time: random programs of everything that may divide lanes.
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <cstdlib>
 #include <numeric>
 #include <random>
+#include <span>
 
 #include "native/module.h"
 #include "parallel.h"
@@ -71,6 +73,34 @@ TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
                                 "faceforward(n, vec2(float(i), 1.0), n).y - refract(vec2(float(i), -1.0), n, 1.0).y + "
                                 "determinant(mat2(1.0)) - 1.0);"),
               std::pair(5u, std::string()));
+}
+
+// More than 2^31 words: from 2^27 triangles on, of 64 bytes each.
+TEST(NativeLanes, ReachTheEndOfLargeArrays) {
+    struct Element {
+        uint32_t words[16];
+    };
+    constexpr size_t count = (size_t{1} << 28) - 1;
+    void* const memory =
+        mmap(nullptr, count * sizeof(Element), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) GTEST_SKIP() << "no room for addresses";
+    const std::span elements(static_cast<Element*>(memory), count);
+    const native::Code code = native::load(R"(
+struct Element { uvec3 a; uint b; uvec4 c, d; uint e[4]; };
+layout(scalar, set = 0, binding = 1) buffer Elements { Element elements[]; };
+layout(local_size_x = 8) in;
+void main() {
+    uint last = 268435454u - gl_GlobalInvocationID.x;
+    elements[last].b = elements[last].a.y + elements[last].c.w + elements[last].e[3] + elements[last].d.x;
+})");
+    EXPECT_EQ(code.why_one_by_one, "");
+    for (uint32_t i = 0; i < native::lane_count; ++i)
+        elements[count - 1 - i] = {{0, 10 + i, 0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 0, 2}};
+    native::Bindings bindings{};
+    bindings.ranges[1] = {reinterpret_cast<std::byte*>(memory), elements.size_bytes()};
+    native::run_groups(code.run, bindings, 0, 1);
+    for (uint32_t i = 0; i < native::lane_count; ++i) EXPECT_EQ(elements[count - 1 - i].words[3], 15 + i);
+    munmap(memory, elements.size_bytes());
 }
 
 // Each body gives 5, in lanes and one by one.
