@@ -9,10 +9,9 @@ from importlib import import_module
 import project
 
 TOOLS = {  # name: module
-    "ages": "docs.ages", "assets": "assets.make", "benchmark": "docs.benchmark", "book": "book.build", "bug": "course.bug", "check": "check.command",
+    "book": "book.build", "bug": "course.bug", "check": "check.command",
     "debug": "debug.command", "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout", "package": "package.make",
-    "peer": "references.peer", "reference": "references.make", "report": "report.make", "rooms": "docs.rooms", "running": "docs.running",
-    "sample": "lesson.sample", "tables": "docs.tables",
+    "reference": "references.make", "report": "report.make", "rooms": "docs.rooms", "sample": "lesson.sample", "tables": "docs.tables",
     "windows": "package.windows_programs",
 }
 

@@ -14,12 +14,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build/bin"))
-RECORDS = ROOT / "docs/records"
+KNOWLEDGE = ROOT / "notebook/knowledge"  # the only path from here into the notebook: what ./lab check knows about mistakes, if it is there
 CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9][0-9]_*"))}  # number -> folder
 VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba, the slowest first
-GPU_VARIANT = "cuda_ad_rgb"
-CPU_VARIANTS = [variant for variant in VARIANTS if variant != GPU_VARIANT]
-SAMPLERS = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]  # of Mitsuba
 BAR_WIDTH = 24
 INSTALL = "./lab install" if os.name == "posix" else "python -m pip install numpy scipy matplotlib pillow"
 
@@ -194,7 +191,7 @@ def show_progress(name, done, count, started):
         print(f"{100 * done // count} %, {left} left: {name}", file=sys.stderr, flush=True)
 
 
-# ---------------------------------------------------------------------------------------------- records and tables
+# ---------------------------------------------------------------------------------------------- files and tables
 def read_json(file):
     return json.loads(file.read_text(encoding="utf-8"))
 
@@ -224,11 +221,6 @@ def json_lines(content, depth, indent="\n"):
     if isinstance(content, dict):
         lines = [f"{json.dumps(key, ensure_ascii=False)}: {line}" for key, line in zip(content, lines)]
     return "[{"[isinstance(content, dict)] + ",".join(indent + line for line in lines) + indent[:-1] + "]}"[isinstance(content, dict)]
-
-
-def load_records(folder):
-    """The records in docs/records/FOLDER, one for each device."""
-    return [read_json(path) for path in sorted((RECORDS / folder).glob("*.json"))]
 
 
 def scene_of(name):

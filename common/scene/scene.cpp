@@ -82,7 +82,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     SourceFiles sources;
     SceneDescription description;
     if (is_bare_mesh)
-        description.meshes.push_back({file});
+        description.meshes.emplace_back().file = file;
     else
         description = read_scene_file(file, sources);
 

@@ -165,14 +165,6 @@ class BookInBrowser_all(Site, unittest.TestCase):
             right = self.browser.evaluate(f"(image => image.x + {place} * image.width)(document.querySelector('img[src$=\"results_{name}.svg\"]'))")
             self.assertLess(right, NARROW - 20, name)
 
-    def test_slider(self):
-        self.browser.visit((self.site / "chapters/02_cosine_sampling/index.html").as_uri())
-        cut = "getComputedStyle(document.querySelectorAll('.compare img')[1]).clipPath"
-        self.assertIn("50%", self.browser.evaluate(cut))
-        self.browser.evaluate("const input = document.querySelector('.compare input'); input.value = 30; "
-                              "input.dispatchEvent(new Event('input'));")
-        self.assertIn("30%", self.browser.evaluate(cut))
-
     def test_broken_pages_are_found(self):
         text = (self.site / "index.html").read_text(encoding="utf-8")
         page = self.site / "broken.html"

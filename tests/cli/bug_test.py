@@ -5,7 +5,6 @@ import unittest
 from unittest import mock
 
 from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
-import cpp_mistake
 import mistake
 import project
 from PIL import Image
@@ -29,12 +28,6 @@ class PlantedMistakesTest(unittest.TestCase):
     def test_shaders_have_the_places_of_all_mistakes(self):
         for planted in mistake.load().values():
             mistakes.plant((PROJECT / planted["file"]).read_text(encoding="utf-8"), planted["find"], planted["replace"], planted["name"])
-
-    def test_sources_have_the_places_of_all_mistakes(self):
-        with mock.patch.object(cpp_mistake, "TREE", PROJECT):
-            for planted in cpp_mistake.load().values():
-                source, text = cpp_mistake.find_source(planted)
-                mistakes.plant(text, planted["find"], planted["replace"], source.name)
 
 
 class Bugs:

@@ -17,6 +17,8 @@ from check.formats import as_github
 from course.mistakes import planted
 from report import batch
 
+# The notebook knows the names of mistakes; the tests that ask for one need it.
+NAMES = unittest.skipUnless(project.KNOWLEDGE.exists(), "names of mistakes are in the notebook")
 SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
 TECHNIQUE = SHADER.with_name("direct_light.glsl")
 ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
@@ -87,6 +89,7 @@ class Checking:
 
 
 class CheckTest(Checking, ProgramTest):
+    @NAMES
     def test_the_process_ends_with_the_verdict(self):
         for arguments, expected, early, words in (((), 0, "no picture is wrong", "correct +nothing differs, "),
                                                   ((self.wrong(), "--teacher"), 1, "is too bright", "biased +distance-not-squared: ")):
@@ -102,6 +105,7 @@ class CheckTest(Checking, ProgramTest):
             self.assertAlmostEqual(scene["rays"], 1, delta=0.02)
             self.assertLess(max(test["detectable"] for test in scene["image"]), 0.2, "too weak")
 
+    @NAMES
     def test_a_mistake_is_biased_to_its_side(self):
         code, result = self.check_few(self.wrong())
         box = result["scenes"][0]
@@ -114,6 +118,7 @@ class CheckTest(Checking, ProgramTest):
         self.assertIn("a lamp that the camera sees", found["right"])
         self.assertTrue((PROJECT / result["picture"]).read_bytes().startswith(b"\x89PNG"))
 
+    @NAMES
     def test_a_teacher_gets_the_name_and_a_student_a_question(self):
         for options, is_named in (((), False), (("--teacher",), True)):
             code, out, err = self.check(*FEW, *options, self.wrong())
@@ -143,6 +148,7 @@ class CheckTest(Checking, ProgramTest):
             self.assertAlmostEqual(scene["noise"][1], 1, delta=0.05, msg="the same random numbers")
             self.assertAlmostEqual(scene["noise"][2], 1, delta=0.05)
 
+    @NAMES
     def test_for_gradescope_and_github(self):
         file = self.wrong()
         code, out, _ = self.check(*FEW, "--gradescope", "--points", 12, file)
@@ -162,6 +168,7 @@ class CheckTest(Checking, ProgramTest):
     def graded(self):
         return list(csv.DictReader((self.folder / "graded/results.csv").read_text(encoding="utf-8-sig").splitlines()))
 
+    @NAMES
     def test_a_folder_is_graded_into_a_table_and_goes_on(self):
         text = SHADER.read_text(encoding="utf-8")
         (self.folder / "all/dora").mkdir(parents=True)

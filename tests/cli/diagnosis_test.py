@@ -9,23 +9,16 @@ from io import StringIO
 from pathlib import Path
 from unittest import mock
 
-from program import PROJECT  # first: it finds the tools
-import learn
+import tools_path  # noqa: F401  (first: it finds the others)
 from check import diagnosis, grading
 from check.diagnosis import reason, right_ones
 from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
 from check.facts import fact
 from check.findings import LONGEST, findings
-from check.grading import MOST_RUNS, RUNS, SEED_STEP, first_seed
+from check.grading import RUNS, expected_file, first_seed
 from check.names import names_of, similar_to
 from check.words import MOST_FACTS, headline, hint_lines, laid_out
-from docs.confusion_table import rates
-from planting import CORRECT_CHECKS, catalogue
-from project import course
-
-KNOWLEDGE_OF = learn.read_knowledge(course())
-KNOWN = {chapter: entry["mistakes"] for chapter, entry in KNOWLEDGE_OF.items()}
-LEAST = 8  # known mistakes of each chapter
+from project import course, read_json
 
 
 def sight(mean, error=0.001):
@@ -289,73 +282,32 @@ class ExperimentsTest(unittest.TestCase):
         self.assertNotRegex(materials[1], r"P[mr]|Ks")
 
 
-class KnowledgeTest(unittest.TestCase):
-    def test_every_mistake_of_the_catalogue_is_known(self):
-        expected = {chapter: {} for chapter in KNOWN}  # others are not measured yet
-        for bug in (bug for bug in catalogue() if bug.chapter in KNOWN):
-            expected[bug.chapter][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")}
-        known = {chapter: {name: {key: entry[key] for key in ("hint", "slide")} for name, entry in entries.items()}
-                 for chapter, entries in KNOWN.items()}
-        self.assertEqual(known, expected, "tests/mistakes/learn.py learn")
-        for chapter, entries in known.items():
-            self.assertGreaterEqual(len(entries), LEAST, f"chapter {chapter}")
 
-    def test_all_experiments_are_known_and_every_mistake_that_was_measured_shows_in_one(self):
-        """FreshKnowledge_all tells which ones are not measured yet."""
-        for chapter, entry in KNOWLEDGE_OF.items():
-            self.assertEqual(list(entry["experiments"]), list(experiments_of(chapter)), f"chapter {chapter}: tests/mistakes/learn.py learn")
-            for name, mistake in entry["mistakes"].items():
-                shown = any(mistake.get(kind, True) for kind in ("shows", "noise", "rays"))
-                self.assertTrue(shown, f"chapter {chapter}: {name} shows in no experiment")
+class ExpectedTest(unittest.TestCase):
+    """What is recorded of the chapters' own shaders."""
 
-    def test_nothing_was_learnt_from_the_seeds_of_a_check(self):
-        plan = learn.TRYING
-        seeds = list(range(plan["first_seed"], plan["first_seed"] + CORRECT_CHECKS * RUNS))
-        self.assertTrue(all(2 * MOST_RUNS < seed <= SEED_STEP for seed in seeds), seeds)
+    def known(self):
+        return {chapter: read_json(expected_file(chapter)) for chapter in course() if expected_file(chapter).exists()}
+
+    def test_all_experiments_are_known(self):
+        self.assertTrue(self.known())
+        for chapter, entry in self.known().items():
+            self.assertEqual(list(entry["experiments"]), list(experiments_of(chapter)), f"chapter {chapter}: ./lab notebook learn")
 
     def test_levels_have_the_seeds_of_a_check_so_that_renders_are_compared_one_by_one(self):
         seeds = [str(first_seed(0) + run) for run in range(RUNS)]
-        for chapter, entry in KNOWLEDGE_OF.items():
+        for chapter, entry in self.known().items():
             for scene, level in entry["levels"].items():
                 self.assertEqual(list(level["rel_mse"]), seeds, (chapter, scene))
 
-    def test_every_slide_to_read_again_is_in_the_slide_map(self):
-        titles = re.findall(r"^### (.*)$", (PROJECT / "docs/slides.md").read_text(encoding="utf-8"), re.MULTILINE)
-        for entries in KNOWN.values():
-            for name, entry in entries.items():
-                self.assertIn(entry["slide"], titles, name)
-
-
-class FreshKnowledge_all(unittest.TestCase):
-    """The measurements are no older than the shaders. Measuring takes an hour on a CPU."""
-
-    def test_knowledge_was_measured_with_the_shaders_and_settings_of_the_code(self):
-        self.assertEqual(learn.unmeasured(KNOWLEDGE_OF), [], "stale: tests/mistakes/learn.py learn, then confusion")
-
-    def record(self):
-        return json.loads((PROJECT / "docs/records/check/confusion.json").read_text(encoding="utf-8"))
-
-    def test_the_confusion_matrix_has_every_trial_of_the_code(self):
-        expected = {key: measured for key, (_, measured) in learn.planned_trials(course()).items()}
-        self.assertEqual({key: trial["measured"] for key, trial in self.record()["trials"].items()}, expected,
-                         "stale: measure anew with tests/mistakes/learn.py confusion")
-
-    def test_what_matters_is_found_and_named_and_nothing_correct_is_refused(self):
-        for condition, rate in rates(self.record()).items():
-            if condition == "correct":
-                self.assertGreaterEqual(rate.tried, 200)
-                self.assertEqual(rate.found, 0, "correct shaders")
-            else:
-                self.assertEqual(rate.found_of_large, rate.large, condition)
-                self.assertEqual(rate.told, rate.found, f"{condition}: never silent")
-                self.assertGreaterEqual(rate.right / rate.alone, 0.98, f"{condition}: no wrong name alone")
-                self.assertGreaterEqual(rate.among / rate.found, 0.9 if condition == "new seeds" else 0.8, condition)
-        own = rates(self.record())["new seeds"]
-        self.assertGreaterEqual(own.fitting / own.found, 0.9, "in all numbers, if the shader is the one that was measured")
-
-    def test_a_name_that_may_fit_is_never_told_alone(self):
-        for key, trial in self.record()["trials"].items():
-            self.assertTrue(trial["fits"] or len(trial["named"]) != 1, key)
+    def test_without_the_notebook_facts_have_no_names(self):
+        facts = {"angle": seen([2.0] * 3)}
+        with mock.patch.object(grading, "KNOWLEDGE", Path("/nowhere")):
+            known = {"experiments": {}, "mistakes": grading.known_mistakes(3)}
+        with mock.patch.object(diagnosis, "next_step"):
+            found = reason(3, facts, {}, known, False)
+        self.assertEqual((found["mistakes"], found["fits"]), ([], False))
+        self.assertRegex(found["facts"][0]["text"], "2.00 ± 0.01 times as bright")
 
 
 if __name__ == "__main__":

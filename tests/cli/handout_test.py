@@ -34,7 +34,7 @@ float later = 1.0;
 ```
 <!-- end of code -->
 """
-TEACHERS = ["exercise.json", "mistakes.json", "solutions", "tests.json", "variants"]  # in a chapter's folder
+TEACHERS = ["exercise.json", "mistakes.json", "solutions", "tests.json"]  # in a chapter's folder
 FOR_TEACHERS = ["chapters/03_next_event_estimation/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
 
 
@@ -63,13 +63,13 @@ class HandoutTest(ProgramTest):
             self.assertFalse((tree / "tests").exists() or (tree / ".git").exists())
             self.assertIn("TODO", (tree / "chapters" / name / exercise["file"]).read_text(encoding="utf-8"))
             self.assertEqual([path for path in tree.glob("chapters/*/*") if path.name in TEACHERS], [])
-            for path in (path for name in ("chapters", "shaders", "tools", "docs") for path in (tree / name).rglob("*")):
+            for path in (path for name in ("chapters", "shaders", "tools", "docs", "notebook") for path in (tree / name).rglob("*")):
                 if path.suffix in (".glsl", ".md", ".py", ".json"):
                     text = path.read_text(encoding="utf-8")
                     self.assertNotIn(exercise["last"], text, path)
                     self.assertEqual([mistake for mistake in MISTAKES if f'"{mistake}"' in text], [], path)
-            knowledge = json.loads((tree / "chapters" / name / "knowledge.json").read_text(encoding="utf-8"))
-            self.assertEqual(next(iter(knowledge["mistakes"])), "1")
+            knowledge = json.loads((tree / "notebook/knowledge" / f"{name}.json").read_text(encoding="utf-8"))
+            self.assertEqual(list(knowledge), [str(i) for i, _ in enumerate(knowledge, 1)])
 
             page = (tree / "chapters" / name / "README.md").read_text(encoding="utf-8")
             self.assertNotIn("the solution of exercise 1", page)

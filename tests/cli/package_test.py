@@ -12,7 +12,7 @@ class ArchiveFilesTest(ProgramTest):
     def test_files_for_teachers_stay_out(self):
         kept = ["LICENSE", "README.md", "chapters/01_a/chapter.json", "chapters/01_a/path_trace.glsl", "tools/check/grading.py"]
         for name in [*kept, "chapters/01_a/exercise.json", "chapters/01_a/mistakes.json", "chapters/01_a/solutions/1.glsl",
-                     "chapters/01_a/variants/other.glsl", "chapters/01_a/solutions/README.md", "tools/course/bug.py", "tools/check/__pycache__/grading.pyc"]:
+                     "notebook/variants/01_a/other.glsl", "chapters/01_a/solutions/README.md", "tools/course/bug.py", "tools/check/__pycache__/grading.pyc"]:
             (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
             self.write(name, "")
         self.assertEqual(sorted(make.tree_files(self.folder)), kept)

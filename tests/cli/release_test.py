@@ -5,9 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
 import yaml
 from program import BINARIES, PROJECT  # first: it finds the tools
@@ -15,10 +13,6 @@ from package import make, windows_programs
 from project import CHAPTERS
 
 WORKFLOWS = sorted((PROJECT / ".github/workflows").glob("*.yml"))
-# https://docs.github.com/actions/reference/workflow-syntax: the part that our files use.
-STEP = {"run", "uses", "with", "env", "id", "name"}
-JOB = {"runs-on", "container", "timeout-minutes", "steps", "strategy", "environment", "needs", "permissions"}
-WORKFLOW = {"name", True, "jobs", "permissions", "concurrency"}  # YAML parses "on" as true
 
 
 class VersionTest(unittest.TestCase):
@@ -31,22 +25,14 @@ class VersionTest(unittest.TestCase):
         self.assertEqual(re.findall("^## (.*)", (PROJECT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)[0], number)
 
     def test_stands_in_one_place(self):
-        for name in ("vcpkg.json", "CITATION.cff"):
-            self.assertNotIn('"version"', (PROJECT / name).read_text(encoding="utf-8"), name)
+        self.assertNotIn("version:", (PROJECT / "CITATION.cff").read_text(encoding="utf-8").replace("cff-version:", ""))
 
 
 class WorkflowsTest(unittest.TestCase):
     def steps(self):
         for file in WORKFLOWS:
-            workflow = yaml.safe_load(file.read_text(encoding="utf-8"))
-            self.assertLessEqual(set(workflow), WORKFLOW, file)
-            for name, job in workflow["jobs"].items():
-                self.assertLessEqual(set(job), JOB, f"{file}: {name}")
-                self.assertLessEqual({"runs-on", "timeout-minutes", "steps"}, set(job), f"{file}: {name}")
-                for step in job["steps"]:
-                    self.assertLessEqual(set(step), STEP, f"{file}: {step}")
-                    self.assertEqual(len({"run", "uses"} & set(step)), 1, f"{file}: {step}")
-                    yield file.name, step
+            for job in yaml.safe_load(file.read_text(encoding="utf-8"))["jobs"].values():
+                yield from ((file.name, step) for step in job["steps"])
 
     def test_commands_are_valid_and_exist(self):
         lab = (PROJECT / "lab").read_text(encoding="utf-8")
@@ -72,26 +58,6 @@ class WorkflowsTest(unittest.TestCase):
         self.assertTrue(place.samefile(PROJECT / "Containerfile"))
         self.assertTrue((place.parent / settings["build"]["context"] / ".devcontainer").exists() or
                         (PROJECT / ".devcontainer" / settings["build"]["context"]).samefile(PROJECT))
-
-
-class WorkflowSchema_all(unittest.TestCase):
-    def test_files_follow_the_schema_of_github(self):
-        program = shutil.which("check-jsonschema")
-        if not program:
-            folder = tempfile.TemporaryDirectory()
-            self.addCleanup(folder.cleanup)
-            installed = subprocess.run([sys.executable, "-m", "venv", folder.name], capture_output=True, text=True)
-            program = Path(folder.name) / "bin/check-jsonschema"
-            if installed.returncode == 0:
-                installed = subprocess.run([program.parent / "pip", "install", "--quiet", "check-jsonschema"], capture_output=True, text=True)
-            if installed.returncode != 0:
-                self.skipTest(f"needs check-jsonschema from PyPI: {(installed.stderr or installed.stdout).strip().splitlines()[-1]}")
-        result = subprocess.run([program, "--builtin-schema", "vendor.github-workflows", *WORKFLOWS], capture_output=True, text=True)
-        self.assertEqual(result.returncode, 0, result.stdout)
-        with tempfile.TemporaryDirectory() as folder:
-            broken = Path(folder) / "broken.yml"
-            broken.write_text(WORKFLOWS[0].read_text(encoding="utf-8").replace("runs-on:", "runs-at:"), encoding="utf-8")
-            self.assertNotEqual(subprocess.run([program, "--builtin-schema", "vendor.github-workflows", broken], capture_output=True).returncode, 0)
 
 
 class Release_all(unittest.TestCase):

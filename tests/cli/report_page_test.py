@@ -7,7 +7,6 @@ import time
 import unittest
 
 from program import BINARIES, PROJECT, TOOLS, ProgramTest  # first: it finds the tools
-from docs import tables
 from project import CHAPTERS, UserError
 from report import measurement, plots
 
@@ -21,31 +20,10 @@ from references import images
 images.FOLDERS.append(Path(sys.argv.pop(1)))
 from report import make
 project.run_tool(make)"""
-# --record with only the last two cases, which have no reference; with --peer with one scene.
-RECORD = """import sys
-sys.path.insert(0, sys.argv.pop(1))
-import project
-from report import make, studies
-make.study_cases = lambda: [case for case in studies.study_cases() if case["case"].startswith("splitting factor") and case["scene"] == "cornell_box_6"]
-studies.CPU_SCENES = ["cornell_box_1"]
-project.run_tool(make)"""
 # A chapter that loses its device at seed 2 as long as the file `broken` exists.
 LOSES_DEVICE = """#!/bin/sh
 case " $* " in *" --seed 2 "*) if [ -e '{broken}' ]; then echo 'error: the device is gone' >&2; exit 3; fi ;; esac
 exec '{program}' "$@"
-"""
-# Replaces Mitsuba on a CPU: takes its arguments, and renders by chapter 3.
-MITSUBA = """#!{python}
-import subprocess, sys
-variant, scene, arguments = sys.argv[4], sys.argv[5], sys.argv[6:]
-if variant == "cuda_ad_rgb":
-    sys.exit("error: no such device")
-if "--sampler" in arguments:
-    place = arguments.index("--sampler")
-    del arguments[place : place + 2]
-if "--samples" not in arguments:
-    arguments += ["--samples", "1000000"]
-sys.exit(subprocess.call(["{program}", "--quiet", scene, *arguments]))
 """
 SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
 
@@ -144,21 +122,12 @@ class ReportCommandTest(Reports, ProgramTest):
         self.assert_report_refused(["missing.json"], "missing.json", "no such file")
         self.assert_report_refused(["cornell_box", "99"], "no chapter 99")
         self.assert_report_refused(["--seconds=0"], "seconds", "--help")
-        self.assert_report_refused(["--record=record.json", "torus"], "record", "no scenes")
-        self.assert_report_refused(["--record=record.json", "--peer=mitsuba", "torus"], "record", "no scenes")
-        self.assert_report_refused(["torus", "--peer-sampler=multijitter"], "--peer mitsuba")
 
     def test_a_case_sets_its_variables(self):
         (case,) = measurement.report_cases([(PROJECT / "assets/scenes/cornell_box.json", REFERENCE)], [1])
         case["variables"] = ["VK_DRIVER_FILES=/nowhere", "VK_ICD_FILENAMES=/nowhere"]
         with self.assertRaisesRegex(UserError, "cornell_box_1, chapter 1: .*Vulkan"):
             measurement.run_case(case, {"backend": "compute", "device": None}, ["--samples", 1, "--seed", 1])
-
-    def test_without_mitsuba_it_says_how_to_get_it(self):
-        (self.folder / "bin").mkdir()
-        self.write("bin/python3", f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n').chmod(0o755)
-        environment = {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
-        self.assert_report_refused(["cornell_box", "--peer=mitsuba"], "Mitsuba 3", "pip install mitsuba", environment=environment)
 
 
 class LongReports_all(Reports, ProgramTest):
@@ -192,55 +161,6 @@ class LongReports_all(Reports, ProgramTest):
             self.assertIsNone(process.poll(), "ended too early")
             self.assertLess(time.monotonic(), end, "took too long")
             time.sleep(0.01)
-
-    def test_a_record_can_be_shown_in_the_results(self):
-        arguments = ["--record=record.json", "--backend=compute", "--seconds=0.2", "--repetitions=2"]
-        self.render("-B", "-c", RECORD, TOOLS, *arguments, program=sys.executable)
-        record = json.loads((self.folder / "record.json").read_text())
-        self.assertTrue(record["is_complete"])
-        self.assertNotIn(str(PROJECT), json.dumps(record))
-        show = "import json, sys; sys.path.insert(0, sys.argv[1]); from docs import tables; print(tables.chapter_tables(json.load(open('record.json'))))"
-        table = self.render("-B", "-c", show, TOOLS, program=sys.executable)
-        self.assertRegex(table, r"\| splitting factor 2 \| `--samples \d+ --splitting-factor 2` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(")
-
-    def with_mitsuba(self):
-        """An environment in which chapter 3 replaces Mitsuba."""
-        (self.folder / "bin").mkdir()
-        fake = MITSUBA.format(python=sys.executable, program=BINARIES / "03_next_event_estimation")
-        self.write("bin/python3", fake).chmod(0o755)
-        return {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
-
-    def test_a_peer_is_compared_with_as_each_sampler(self):
-        arguments = ["cornell_box_1", "1", "4", "--peer=mitsuba", "--peer-sampler=multijitter", "--repetitions=2", *SMALL]
-        self.report(*arguments, environment=self.with_mitsuba())
-        scene, *others = json.loads((self.folder / "report/report.json").read_text())["scenes"]
-        self.assertEqual(len(others), 0 if "CPU" in self.record()["environment"]["driver"] else 1)  # large pictures
-        cases = {case["case"]: case for case in scene["cases"]}
-        self.assertEqual({name: case["options"] for name, case in cases.items()}, {
-            "chapter 1": "", "chapter 4": "", "Mitsuba scalar": "--sampler independent",
-            "Mitsuba LLVM": "--sampler independent", "Mitsuba LLVM, multijitter": "--sampler multijitter"})
-        self.assertEqual([case["paths_per_sample"] for case in cases.values()], [1, 4, 1, 1, 1])
-        gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
-        self.assertEqual(len(gains), 5 * 3 - 3)
-        self.assertLess(gains["chapter 1", "Mitsuba LLVM"][0], 0.5)
-        page = (self.folder / "report/index.html").read_text()
-        for text in ("Mitsuba LLVM, multijitter", "What differs", "docs/results.md"):
-            self.assertIn(text, page)
-        self.assertEqual(len(list((self.folder / "report/pictures").iterdir())), 2 * 5)
-
-    def test_a_record_of_the_backends_of_a_cpu(self):
-        path = self.with_mitsuba()
-        arguments = ["--record=record.json", "--peer=mitsuba", "--device=llvmpipe", "--seconds=0.2", "--repetitions=2"]
-        self.render("-B", "-c", RECORD, TOOLS, *arguments, program=sys.executable, environment=path)
-        record = json.loads((self.folder / "record.json").read_text())
-        self.assertTrue(record["is_complete"])
-        cases = {case["case"]: case for case in record["cases"]}
-        self.assertEqual({name: case["backend"] for name, case in cases.items() if not case["is_peer"]},
-                         {"compute": "compute", "native, one by one": "native", "native, lanes": "native"})
-        self.assertEqual([name for name, case in cases.items() if case["is_peer"]], ["Mitsuba scalar", "Mitsuba LLVM", "Mitsuba LLVM, multijitter"])
-        rows = tables.cpu_table(record).splitlines()
-        self.assertRegex(rows[0], r", \d+ cores, llvmpipe.*, and ")
-        self.assertEqual(len(rows), 4 + len(cases))
 
     def test_large_pictures_are_compared_with_small_references(self):
         """As far from the reference as small ones with the same total number of samples."""

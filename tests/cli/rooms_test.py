@@ -36,6 +36,18 @@ class RoomsTest(unittest.TestCase):
         self.assertEqual(self.upward({"chapters/01_a/path_trace.glsl": '#include "../02_b/path_trace.glsl"\n'}),
                          ["chapters/01_a/path_trace.glsl includes chapters/02_b/path_trace.glsl"])
 
+    def test_nothing_outside_uses_the_notebook(self):
+        self.assertEqual(rooms.into_the_notebook(), [])
+        notebook = {"notebook/measure/rates.h": "", "notebook/peers/report.py": ""}
+        for file, text, name in (("common/lower/room.h", '#include "measure/rates.h"\n', "measure/rates.h"),
+                                 ("tests/cli/a_test.py", "from peers import report\n", "peers"),
+                                 ("tools/upper/a.py", 'open("notebook/records/a.json")\n', "notebook/records/a.json")):
+            with tempfile.TemporaryDirectory() as folder, mock.patch.object(rooms, "ROOT", Path(folder)):
+                for path, content in {**FILES, **notebook, file: text}.items():
+                    (Path(folder) / path).parent.mkdir(parents=True, exist_ok=True)
+                    (Path(folder) / path).write_text(content, encoding="utf-8")
+                self.assertEqual(rooms.into_the_notebook(), [f"{file} uses {name}"])
+
     def test_every_folder_is_a_room(self):
         listed = set(rooms.read_rooms())
         for parent in ("common", "tools"):

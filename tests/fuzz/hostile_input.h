@@ -18,6 +18,6 @@ void use_scene(const Scene& scene);
 
 }  // namespace lab
 
-// The entry point that libFuzzer and mutation_driver.cpp call with each input. Aborts on anything but success or a UserError of
+// The entry point that libFuzzer calls with each input. Aborts on anything but success or a UserError of
 // one printable line, and on a single allocation above memory_limit().
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);

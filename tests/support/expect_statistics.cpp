@@ -9,7 +9,7 @@
 
 namespace lab {
 
-// Appends a p-value to the file named by LAB_TEST_P_VALUES, for tests/measure/false_alarms.py.
+// Appends a p-value to the file named by LAB_TEST_P_VALUES, for ./lab notebook false_alarms.
 static void record_p_value(const std::string& what, double p_value) {
     const char* file = std::getenv("LAB_TEST_P_VALUES");
     if (!file) return;

@@ -1,9 +1,9 @@
-"""Converts the repository's pages for MkDocs: links, lists and comparisons of pictures."""
+"""Converts the repository's pages for MkDocs: links and lists."""
 import os
 import re
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, description
+from project import ROOT
 
 PICTURES = {".jpg", ".png", ".svg", ".gif", ".webp"}
 LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".glsl": "glsl", ".comp": "glsl", ".rgen": "glsl", ".rchit": "glsl", ".rmiss": "glsl",
@@ -27,7 +27,7 @@ class Page:
         text = text.replace("<details>", '<details markdown="1">')  # or MkDocs would leave its text unformatted
         self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
         self.functions = {}  # of its tables: name and explanation
-        self.text = self.with_comparison(with_lists(FUNCTION_ROW.sub(self.function, LINK.sub(self.link, text))))
+        self.text = with_lists(FUNCTION_ROW.sub(self.function, LINK.sub(self.link, text)))
 
     def resolve(self, target):
         return Path(os.path.normpath(self.path.parent / target))
@@ -56,22 +56,6 @@ class Page:
             return match[0]
         self.functions[name] = explanation
         return f'| <span id="{name}">{code}</span> | {explanation} |'
-
-    def with_comparison(self, text):
-        """If the previous chapter renders the same scene, replaces the chapter's picture by a slider that compares both."""
-        names = list(CHAPTERS.values())
-        index = names.index(self.path.parent.name) if self.path.parent.name in names else 0
-        before, now = (Path(f"docs/pictures/{names[i]}.png") for i in (max(index - 1, 0), index))
-        scenes = {description(name.stem).get("default_scene", "") for name in (before, now)}
-        shown = re.search(rf"!\[([^\[\]]*)\]\(([^()\s]*){now.name}\)", text)
-        if index == 0 or len(scenes) > 1 or not shown or not (ROOT / before).is_file():
-            return text
-        self.pictures.append(before)
-        return text.replace(shown[0], f"""<div class="compare">
-<img src="{shown[2]}{before.name}" alt="the chapter before"><img src="{shown[2]}{now.name}" alt="{shown[1]}">
-<input type="range" value="50" aria-label="where the pictures meet" oninput="parentNode.style.setProperty('--place', value + '%')">
-<small><span>the chapter before</span><span>about as many rays</span><span>this chapter</span></small>
-</div>""")
 
 
 def is_source(path):

@@ -1,7 +1,7 @@
 """The differential diagnosis of an incorrect shader: facts first, and a name only if they leave a single one.
 
 The chapter's experiments run in order, those with a condition (`when`) only if other experiments have met it.
-knowledge.json in the chapter's folder records what its own shader shows in each, and what the catalogue's mistakes do to it.
+assets/expected records what the chapter's own shader shows in each, and the notebook what the catalogue's mistakes do to it.
 """
 import tempfile
 import time
@@ -10,7 +10,7 @@ from pathlib import Path
 from check.experiments import experiments_of, known_sights, pictures, together, write_scene
 from check.facts import Fact, fact, readings
 from check.findings import findings, shortened
-from check.grading import DESCRIPTIONS, knowledge_file, make_tree, with_names_of
+from check.grading import DESCRIPTIONS, expected_file, known_mistakes, make_tree, with_names_of
 from check.names import names_of, ratios_of, similar_to
 from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from report.batch import Batch
@@ -139,7 +139,7 @@ def reason(chapter, facts, sights, known, is_correct):
 
 def diagnose(chapter, file, settings, shader=None, is_correct=False):
     """What experiments show about a shader, see reason(). If its pictures are correct, only those run that can decide as well."""
-    known, started = {"experiments": {}} | read_json(knowledge_file(chapter)), time.monotonic()
+    known, started = read_json(expected_file(chapter)) | {"mistakes": known_mistakes(chapter)}, time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         program, copies = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         facts, sights = observe(chapter, program, settings, known["experiments"], is_deciding if is_correct else is_called_for)

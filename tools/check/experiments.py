@@ -2,7 +2,7 @@
 
 An experiment has points: tiny scenes of a few plates, lamps or pieces of glass that differ in a single thing. The camera looks at one
 small spot, so that all pixels show the same and a picture is one number: its mean, with an error from the spread of the pixels. It
-is compared with what the chapter's own shader finds there, as recorded in knowledge.json.
+is compared with what the chapter's own shader finds there, as recorded in assets/expected.
 """
 import json
 import math
@@ -57,7 +57,7 @@ class Sight:
 
 
 def known_sights(entry):
-    """What the chapter's own shader shows, as a list of Sight, from lists in knowledge.json."""
+    """What the chapter's own shader shows, as a list of Sight, from lists in its file of assets/expected."""
     return [Sight(*values, typical=values[0]) for values in zip(*(entry[key] for key in ("mean", "error", "noise", "noise_error", "rays")))]
 
 

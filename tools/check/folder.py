@@ -11,7 +11,7 @@ from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
-from check.grading import graded_together, knowledge_file
+from check.grading import graded_together, known_mistakes
 from check.words import detail_lines, headline, laid_out, questions, short_lines
 from project import CHAPTERS, ROOT, UserError, course, printable, read_json, write_json
 from report.measurement import digest_of_sources
@@ -62,7 +62,7 @@ def shader_of(submission, chapter):
 @cache
 def sources_of(chapter):
     """Digests of what is the same for all submissions."""
-    return digest_of_sources([]), hashlib.sha256(knowledge_file(chapter).read_bytes()).hexdigest()
+    return digest_of_sources([]), hashlib.sha256(json.dumps(known_mistakes(chapter)).encode()).hexdigest()
 
 
 def digest(options, file):
@@ -114,7 +114,7 @@ def causes(chapter, result):
 
 def teaching(chapter, mistake):
     """The first chapter whose shader can have this mistake."""
-    knowledge = {number: read_json(knowledge_file(number))["mistakes"] for number in course() if number < chapter and knowledge_file(number).exists()}
+    knowledge = {number: known_mistakes(number) for number in course() if number < chapter}
     return next((number for number, known in knowledge.items() if mistake["hint"] in {each["hint"] for each in known.values()}), chapter)
 
 

@@ -1,7 +1,7 @@
 """Grades a shader of a chapter: renders scenes that have a reference image and judges bias, noise and cost.
 
 Means of the whole image and of its tiles are tested against the reference. Error and rays are compared with those of the
-chapter's own shader, which are recorded in knowledge.json in its folder.
+chapter's own shader, which are recorded in assets/expected.
 """
 import os
 import re
@@ -13,14 +13,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import BINARIES, CHAPTERS, ROOT, UserError, description, printable, program_file, read_json, show_progress, text_of
+from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, program_file, read_json, show_progress, text_of
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
 from report.measurement import new_case, relative, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
-KNOWLEDGE = "knowledge.json"  # in the chapters' folders
 DESCRIPTIONS = {number: description(folder) for number, folder in CHAPTERS.items()}
 # Per chapter: samples of a run, and references that show what its shader can do.
 SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in DESCRIPTIONS.items() if "check" in says}
@@ -47,8 +46,15 @@ def first_seed(seed):
     return seed * SEED_STEP + 1
 
 
-def knowledge_file(chapter, name=KNOWLEDGE):
-    return ROOT / "chapters" / CHAPTERS[chapter] / name
+def expected_file(chapter):
+    """What the chapter's own shader shows, or that of the chapter that this one copies: levels and experiments."""
+    return ROOT / "assets/expected" / f"{CHAPTERS[original(chapter)]}.json"
+
+
+def known_mistakes(chapter):
+    """What each mistake of the catalogue shows in the experiments. The notebook learns it; without the notebook mistakes have no names."""
+    file = KNOWLEDGE / expected_file(chapter).name
+    return read_json(file) if file.exists() else {}
 
 
 def functions_in(shader):
@@ -216,12 +222,10 @@ def grade(case, recorded, comparisons):
 
 def read_levels(chapter):
     """Scene -> level of the chapter's own shader."""
-    file = knowledge_file(chapter)
-    known = read_json(file) if file.exists() else {}
-    if known.get("title") != DESCRIPTIONS[chapter]["title"]:
+    if not expected_file(chapter).exists():
         raise UserError(f"chapter {chapter} has a title of its own and is not measured yet: ./lab check N FILE grades a file as chapter N's, "
-                        "tests/mistakes/learn.py learn measures a new chapter")
-    return known["levels"]
+                        "./lab notebook learn measures a new chapter")
+    return read_json(expected_file(chapter))["levels"]
 
 
 def early_bias(cases):

@@ -55,7 +55,7 @@ def ratios_of(sights, expected):
 def names_of(facts, sights, known, expected):
     """The names of the catalogue's mistakes that the facts leave: those that fit and those not far enough away to be excluded,
     nearest first; empty if none fits."""
-    far = {name: distance(entry["shows"], facts) for name, entry in known.items() if "shows" in entry}
+    far = {name: distance(entry["shows"], facts) for name, entry in known.items() if "unseen" not in entry}
     if all(seen.is_right for seen in facts.values()):
         ratios = ratios_of(sights, expected)
         far = {name: max(value, noise_distance(known[name], ratios)) for name, value in far.items()}
@@ -78,6 +78,6 @@ def likeness(shown, facts):
 def similar_to(facts, known):
     """The names that may fit if none does, nearest first: a shader written in another way shows a mistake at the same points, but
     not always with the same numbers. As that proves nothing, never a single one, and none if even the nearest explains less than half."""
-    alike = {name: likeness(entry["shows"], facts) for name, entry in known.items() if "shows" in entry}
+    alike = {name: likeness(entry["shows"], facts) for name, entry in known.items() if "unseen" not in entry}
     nearest = sorted(alike, key=alike.get, reverse=True)[:MOST_NAMES]
     return nearest if len(nearest) > 1 and alike[nearest[0]] > HALF else []

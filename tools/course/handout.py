@@ -11,17 +11,18 @@ import tempfile
 import time
 from pathlib import Path
 
+from check.grading import known_mistakes
 from course.pages import clean_pages
 from package.make import pack
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress, text_of, write_json
+from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress, text_of, write_json
 
 HERE = Path(__file__).parent
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # For teachers only: these contain or name solutions, or belong to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/debugging.md", "docs/extending.md", "docs/results/check.md", "docs/numerics.md", "docs/measuring.md", "docs/bugs*", "docs/pictures/bug*",
-            "docs/records/check", "docs/grading", "chapters/*/exercise.json", "chapters/*/mistakes.json",
-            "chapters/*/tests.json", "chapters/*/solutions", "chapters/*/variants", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
+TEACHERS = ["docs/teaching.md", "docs/debugging.md", "docs/extending.md", "docs/numerics.md", "docs/measuring.md", "docs/bugs*", "docs/pictures/bug*",
+            "docs/grading", "chapters/*/exercise.json", "chapters/*/mistakes.json",
+            "chapters/*/tests.json", "chapters/*/solutions", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -60,10 +61,9 @@ def write_handout(chapter, folder):
         shutil.copy(ROOT / name, folder / name)
     for path in [path for pattern in TEACHERS for path in folder.glob(pattern)]:
         shutil.rmtree(path) if path.is_dir() else path.unlink()
-    for file in folder.glob("chapters/*/knowledge.json"):  # the names of mistakes give them away
-        knowledge = read_json(file)
-        numbered = {str(i): seen for i, seen in enumerate(knowledge["mistakes"].values(), 1)}
-        write_json(file, knowledge | {"mistakes": numbered}, 2)
+    for name in kept:  # the names of mistakes give them away
+        numbered = {str(i): seen for i, seen in enumerate(known_mistakes(int(name[:2])).values(), 1)}
+        write_json(folder / KNOWLEDGE.relative_to(ROOT) / f"{name}.json", numbered, 1)
     exercise = read_json(exercise_file(chapter))
     shader = folder / "chapters" / CHAPTERS[chapter] / exercise["file"]
     text, solution = take_out(text_of(shader), exercise)

@@ -7,14 +7,13 @@ import matplotlib
 
 matplotlib.use("agg")
 import numpy as np
-from docs.result_plots import STYLE, finish_axis, lines, new_figure, plain, with_name
+from docs.page_plots import STYLE, finish_axis, lines, new_figure, plain, with_name
 from lesson import sample
 from lesson.sample_plots import save_point_sets, scatter
-from matplotlib import font_manager, image, pyplot
-from PIL import Image, ImageDraw, ImageFont
+from matplotlib import image, pyplot
 from project import BINARIES, ROOT, UserError, run_program, write_bytes
 from report.numbers import Series
-from report.plots import COLOURS, LABEL, QUALITY, encode_srgb, right_and_wrong, save_figure, sheet, style_axis, svg_text
+from report.plots import COLOURS, QUALITY, encode_srgb, right_and_wrong, save_figure, sheet, style_axis, svg_text
 
 
 def plot(path, size, draw, **labels):
@@ -78,20 +77,6 @@ def path_lengths(folder, renders):
 
 def bytes_of(radiance):
     return (255 * encode_srgb(radiance)).round().astype(np.uint8)
-
-
-def noise(folder, renders):
-    """The chapters at equal time: an animation with a second and a half for each."""
-    frames = []
-    for render in renders:
-        height, width, _ = render.image.shape
-        frame = Image.new("RGB", (2 * width, 2 * height + 2 * LABEL), "white")
-        frame.paste(Image.fromarray(bytes_of(render.image)).resize((2 * width, 2 * height), Image.NEAREST), (0, 2 * LABEL))
-        font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), 22)
-        title = f"chapter {int(render.chapter[:2])}: {render.chapter[3:].replace('_', ' ')}"
-        ImageDraw.Draw(frame).text((LABEL // 2, LABEL // 2), title, "black", font)
-        frames.append(frame)
-    frames[0].save(folder / "noise.webp", save_all=True, append_images=frames[1:], duration=1500, loop=0, quality=80)
 
 
 def bugs(folder, renders):

@@ -1,5 +1,5 @@
-"""Renders and plots all pictures of the pages into docs/pictures, then fills the tables of the pages from the records. Ctrl-C
-keeps finished renders; the same command then continues.
+"""Renders and plots the pictures of the pages into docs/pictures, then fills their tables. Ctrl-C keeps finished renders; the same command
+then continues.
 """
 import hashlib
 import os
@@ -13,17 +13,15 @@ from check.grading import OPTIONS, SCENES, program_with
 from course.bug import new_render
 from docs import figure_plots, first_steps, tables
 from docs.bug_blocks import GALLERY, find_bug
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, failure_text, load_records, read_json, run_program, show_progress
+from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, failure_text, read_json, run_program, show_progress
 from references.images import read_rgb
 from report.measurement import digest_of_sources
-from report.numbers import per_sample
 from report.studies import measures, named
 
 GOES_ON = True
 PICTURES = ROOT / "docs/pictures"
 CACHE = ROOT / "output/figures"  # renders, one folder per state of the sources
 RAYS_PER_PIXEL = 400  # for the chapters' pictures
-SECONDS = 2  # for renders compared at equal time
 MEASURES = measures()
 
 
@@ -111,18 +109,6 @@ def renders_of_noise_and_bias():
             for row, (which, text) in enumerate((("right", ""), ("wrong", bug.text))) for samples in (16, 2048)]
 
 
-def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
-    """As many samples as fit into SECONDS according to the first record in docs/records/chapters, whatever the current load."""
-    renders = []
-    for case in load_records("chapters")[0]["cases"]:
-        if tables.kind_of(case) == "chapter" and case["scene"].startswith(scenes):
-            scene = Path(case["scene_file"]).stem
-            options = ("--samples", round(SECONDS / (per_sample(case, "device_seconds") * size**2)), "--max-path-length", case["max_path_length"])
-            renders.append(Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options, row=scenes.index(scene),
-                                  label="chapter {number}: {samples:,} samples"))
-    return renders
-
-
 def renders_of_convergence():
     """Four runs of each chapter whose error differs in the Cornell box, to be averaged."""
     reference = ("--reference", "assets/references/cornell_box_6.exr", "--max-path-length", 6)
@@ -152,8 +138,7 @@ FIGURES = {
     "chapters": (lambda: renders_of_pictures("picture", 320, str), figure_plots.chapters),
     "thumbnails": (lambda: renders_of_pictures("thumbnail", 120, lambda folder: folder[:2]), figure_plots.thumbnails),
     "bugs": (renders_of_bugs, figure_plots.bugs), "noise_and_bias": (renders_of_noise_and_bias, figure_plots.sheet_of("noise_and_bias")),
-    "noise": (lambda: renders_at_equal_time(("cornell_box",), 256), figure_plots.noise),
-    "equal_time": (renders_at_equal_time, figure_plots.sheet_of("equal_time")), "convergence": (renders_of_convergence, figure_plots.convergence),
+    "convergence": (renders_of_convergence, figure_plots.convergence),
     "first_steps": (renders_of_first_steps, figure_plots.first_steps),
 } | {name: (list, getattr(figure_plots, name)) for name in (
     "sampler_points", "point_sets", "one_over_root_n", "grid_and_random", "random_numbers", "window")
@@ -194,4 +179,4 @@ def main():
     options = parse()
     make(options.names or [name for name in FIGURES if name not in ON_REQUEST], options.output)
     if not options.names:
-        tables.write_pages()
+        tables.write_all()

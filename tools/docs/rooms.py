@@ -1,6 +1,7 @@
 """Draws which rooms include which, as docs/diagrams/rooms.svg, from the lines with #include and import.
 
-The rooms and their order are those of the table in common/README.md: a room may include only rooms below it.
+The rooms and their order are those of the table in common/README.md: a room may include only rooms below it. The notebook includes
+rooms, and nothing outside includes the notebook.
 """
 import re
 from html import escape
@@ -61,6 +62,23 @@ def upward():
         wrong += [f"{path.relative_to(ROOT)} includes {target.relative_to(ROOT)}" for target in included_files(path)
                   if target.is_relative_to(ROOT / "chapters") and target.parent.name > path.parent.name]
     return wrong
+
+
+def into_the_notebook():
+    """Sources outside the notebook that include or import something of it, and those of no test that name a path into it. The tools know
+    one: project.KNOWLEDGE."""
+    def modules(folder):
+        return {path.stem for path in (ROOT / folder).rglob("*.py")} | {path.name for path in (ROOT / folder).glob("*/")}
+
+    found, own = [], modules("notebook") - modules("tools") - modules("tests")
+    for folder in ("common", "shaders", "chapters", "tools", "tests"):
+        for path in sorted(path for path in (ROOT / folder).rglob("*") if path.suffix in SUFFIXES):
+            text = path.read_text(encoding="utf-8")
+            names = [name for name in INCLUDE.findall(text) if (ROOT / "notebook" / name).is_file()] + [name for name in IMPORT.findall(text) if name in own]
+            if folder != "tests" and path != ROOT / "tools/project.py":
+                names += re.findall(r"""["'/](notebook/[^"']*)""", text)
+            found += [f"{path.relative_to(ROOT)} uses {name}" for name in names]
+    return found
 
 
 def picture():

@@ -1,227 +1,49 @@
-"""Fills the tables of the pages from the records in docs/records. The text between the lines <!-- table: NAME --> and
-<!-- end of table --> is replaced by that table, and blocks of code are filled from their sources (book/code_blocks.py).
-
-Records come from `./lab report --record docs/records/chapters/DEVICE.json`, `build/bin/hardware_record --output
-docs/records/backends/DEVICE.json`, `build/bin/cost_record --output docs/records/cost/DEVICE.json`, `./lab report --peer mitsuba
---peer-sampler multijitter --peer-sampler ldsampler cornell_box heart_light glass clear_glass microfacets 5 7 9 10 11`, whose report.json
-belongs into docs/records/peers, `./lab report --record docs/records/cpu/DEVICE.json --peer mitsuba --device llvmpipe`,
-`tests/mistakes/learn.py confusion`, `tests/measure/hard_cases.py`, `build/bin/facet_record --output docs/records/facets/DEVICE.json` and
-`./lab device --output docs/records/devices/DEVICE.json`.
+"""Fills in pages what follows from the sources: tables, and blocks of code (book/code_blocks.py). The text between the lines
+<!-- table: NAME --> and <!-- end of table --> is replaced by that table. What was measured comes from the notebook.
 """
-import math
-import os
 import re
-from pathlib import Path
 
 from book.code_blocks import fill
-from docs.ages import age_table
-from docs.best_table import among_chapters, best_table
 from docs.bug_blocks import bug_block
-from docs.confusion_table import confusion_table, submission_table
-from docs.cost_tables import feature_table, growth_tables, seconds_text
-from docs.cpu_table import cpu_table
-from docs.facet_tables import furnace_table, sampling_table
-from docs.numerics import case_table, device_tables
-from docs.peer_table import peer_table
-from docs.result_plots import PLOTS, is_fresh, write_plot
-from docs.running import running_table
 from docs.shader_table import shader_tables
-from project import RECORDS, ROOT, Parser, UserError, load_records, read_json, scene_of, table
-from report.numbers import errors, paired_ratio, per_sample, with_interval, with_range
+from project import ROOT, Parser, UserError
 from report.studies import examples
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("chapters/**/README.md"))]
-TABLE = re.compile(r"(<!-- table: ([^\n]+?) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 
-def kind_of(case):
-    """Cases of the same kind and scene share a table: their names differ in the last word."""
-    return case["case"].rpartition(" ")[0]
+def filled(text, kind, table_named):
+    """A page's text with the tables of this kind that table_named() gives."""
+    return re.sub(rf"(<!-- {kind}: ([^\n]+?) -->\n).*?(<!-- end of table -->)", lambda match: match[1] + table_named(match[2]) + match[3], text,
+                  flags=re.DOTALL)
 
 
-def kind_tables(record):
-    """{(kind, scene): rows} for one device. A row starts with the name of its case."""
-    tables, bases = {}, {}
-    for case in record["cases"]:
-        key = kind_of(case), case["scene"]
-        rows = tables.setdefault(key, [])
-        options = f"--samples {case['samples']} {case['options']}".strip()
-        cost = [errors(case, key) for key in ("rays", "device_seconds")]
-        rows.append([
-            case["case"],
-            f"`{options}`",
-            f"{per_sample(case, 'rays'):.3g}",
-            seconds_text(per_sample(case, "device_seconds")),
-            f"{case['samples'] * errors(case).mean:.3g}",
-            *(with_interval(paired_ratio(*both)) if rows else "1" for both in zip(cost, bases.get(key, cost))),
-        ])
-        if len(rows) == 1 or key[0] == "chapter":
-            bases[key] = cost
-    return tables
+def write_pages(pages, text_of, is_check, command):
+    """Writes the text of each page, which text_of(page, what is there) gives, or only checks that it is there."""
+    for page in pages:
+        before = page.read_text(encoding="utf-8")
+        text = text_of(page, before)
+        if text != before and is_check:
+            raise UserError(f"{page.relative_to(ROOT)} is not up to date: run `{command}`")
+        if text != before:
+            page.write_text(text, encoding="utf-8")
 
 
-ALL_COLUMNS = " with all columns"  # suffix of a page's table; others have only the essential columns
-COLUMNS = ["rays per sample", "time per sample", "error of one sample", "error × rays", "error × time"]
-
-
-def chapter_tables(record):
-    """The Markdown tables of one device."""
-    environment = record["environment"]
-    text = f"{environment['device']}, {environment['driver']}, backend `{record['cases'][0]['backend']}`.\n"
-    sizes = {case["scene"]: case for case in record["cases"]}
-    for (_, scene), rows in kind_tables(record).items():
-        case = sizes[scene]
-        text += f"\nScene `{Path(case['scene_file']).stem}`, {case['width']} x {case['height']} pixels:\n\n"
-        text += table(["", "options", *COLUMNS], rows, left=2)
-    return text
-
-
-def page_table(name, record):
-    """A page's table for one device: all cases of a kind, or for "chapter N" that chapter and the row before it."""
-    name, is_wide = name.removesuffix(ALL_COLUMNS), name.endswith(ALL_COLUMNS)
-    kind, _, number = name.partition(" ") if name.startswith("chapter ") else (name, "", "")
-    tables, rows = kind_tables(record), []
-    if kind not in {other for other, _ in tables}:
-        raise UserError(f"there is no table '{name}': {', '.join(dict.fromkeys(other for other, _ in tables))}")
-    for (other, scene), cases in tables.items():
-        if other == kind:
-            chosen = cases
-            if number:
-                # Only the very first case is shown without the row before it.
-                places = [i for i, row in enumerate(cases) if row[0] == name and (i > 0 or name == record["cases"][0]["case"])]
-                chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
-            if number and chosen:  # the other is compared with the first row
-                chosen[0] = chosen[0][:-2] + ["1", "1"]
-            rows += [[f"`{scene_of(scene)}`" if i == 0 else "", row[0], *row[2 if is_wide else -2:]] for i, row in enumerate(chosen)]
-    return table(["scene", "", *(COLUMNS if is_wide else COLUMNS[-2:])], rows, left=2)
-
-
-def expected_table():
-    """Seconds and error in the Cornell box on each device, at the default resolution and number of samples."""
-    rows, pixels, samples = [], 512 * 512, 64
-    for record in load_records("chapters"):
-        cases = [case for case in record["cases"] if kind_of(case) == "chapter" and case["scene"].startswith("cornell_box")]
-        cells = []
-        for case in cases:
-            error = case["samples"] * errors(case).mean
-            cells.append(f"{per_sample(case, 'device_seconds') * pixels * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
-        rows.append([record["environment"]["device"], *cells])
-    text = table(["device", *(case["case"] for case in cases)], rows) + "\n"
-    for record in load_records("backends"):
-        rates = record["scenes"][0]["backends"]
-        best = max(rates, key=lambda name: rates[name]["paths_per_second"])
-        paths = rates[best]["paths_per_second"]
-        text += (f"{record['device']}, `{best}`: {paths / 1e6:.0f} million paths per second in a Cornell box by next event estimation with Russian roulette. "
-                 f"The picture above takes {1e3 * pixels * samples / paths:.2g} ms.\n\n")
-    return text
-
-
-def headline_table():
-    """On each device, error × time of all chapters in the Cornell box, and how much faster the best one is."""
-    devices, rows, text = [], {}, ""
-    for record in load_records("chapters"):
-        device = record["environment"]["device"]
-        devices.append(device)
-        scene = next(case["scene"] for case in record["cases"] if case["scene"].startswith("cornell_box"))
-        chapters = kind_tables(record)["chapter", scene]
-        for cells in chapters:
-            rows.setdefault(cells[0], {})[device] = cells[-1]
-        best, gain = next(texts for (scene, _, _), texts in among_chapters(record) if scene == "cornell_box")
-        text += f"On {device}, {best} is {gain} times as fast as {chapters[0][0]}.\n"
-    rows = [[name, *(cells.get(device, "") for device in devices)] for name, cells in rows.items()]
-    return table(["error × time", *devices], rows) + "\n" + text
-
-
-def over_bare(rates):
-    """Rays per second relative to the bare rate: the median of interleaved runs and their range. Older records have a single
-    number."""
-    if "runs" not in rates:
-        return f"{rates['rays_per_second'] / rates['bare_rays_per_second']:.2f}"
-    ratios = [a / b for a, b in zip(rates["runs"]["rays_per_second"], rates["runs"]["bare_rays_per_second"])]
-    return with_range(ratios)
-
-
-def backend_table(record):
-    """The Markdown table of one device."""
-    head = ["scene", "triangles", "backend", "million paths/s", "million rays/s", "bare million rays/s", "rays/s over bare", "structure"]
-    rows = [[scene["scene"], f"{scene['triangles']:,}", f"`{name}`", f"{rates['paths_per_second'] / 1e6:.4g}", f"{rates['rays_per_second'] / 1e6:.4g}",
-             f"{rates['bare_rays_per_second'] / 1e6:.4g}", over_bare(rates),
-             f"{rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s"]
-            for scene in record["scenes"] for name, rates in scene["backends"].items()]
-    return f"Driver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x {record['size']} pixels.\n\n" + table(head, rows, left=3)
-
-
-# Tables of docs/results/DEVICE.md: from docs/records/FOLDER/DEVICE.json.
-DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table),
-                 "cpu": ("cpu", cpu_table), "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
-OWN_TABLES = {
-    "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
-    "running": running_table, "shader": shader_tables, "best chapters": best_table, "submissions": submission_table,
-    "facet sampling": sampling_table, "furnace": furnace_table,
-    "check": lambda: confusion_table(read_json(RECORDS / "check/confusion.json")),
-    **examples(),
-}
-AGES = "ages of records"
-# Shown wherever times on such a device are compared.
-NO_RAY_TRACING_CORES = """
-> **An NVIDIA H200 has no ray tracing cores.** There the driver, our tree and Mitsuba's OptiX all trace rays in software. GPUs with such
-> cores trace rays several times faster in hardware, and Mitsuba gains from that as well. No ratio measured here holds for them.
-
-"""
-
-
-def device_table(name, stem):
-    """A table on a device's page."""
-    folder, text_of = DEVICE_TABLES[name]
-    file = RECORDS / folder / f"{stem}.json"
-    return "\n" + text_of(read_json(file)) if file.is_file() else "\nNot measured on this device.\n"
-
-
-def page_tables(name, page):
-    """The text of a table: its own, or the first device's with its explanation."""
-    if name in OWN_TABLES:
-        return OWN_TABLES[name]()
-    if name == AGES:
-        return age_table(page)
-    if name == "no ray tracing cores":
-        return NO_RAY_TRACING_CORES
-    if name in DEVICE_TABLES and page.parent == DOCS / "results":
-        return device_table(name, page.stem)
+def table_named(name):
+    tables = {"shader": shader_tables, **examples()}
     if name.startswith("bug "):
         return bug_block(name.removeprefix("bug "))
-    results = os.path.relpath(DOCS / "results", page.parent)
-    first = load_records("chapters")[0]
-    return (f"Measured on {first['environment']['device']}; [what the columns mean]({results}.md#what-the-numbers-mean), "
-            f"[other devices]({results}.md#all-numbers).\n\n{page_table(name, first)}\n")
+    if name not in tables:
+        raise UserError(f"there is no table '{name}': {', '.join(tables)} and bug NAME")
+    return tables[name]()
 
 
-def without_ages(text):
-    return TABLE.sub(lambda match: "" if match[2] == AGES else match[0], text)
-
-
-def write_pages(is_check=False, checks_ages=False):
-    """Writes all pages and plots, or only checks that they are up to date. The age of records is checked separately: otherwise
-    each change of a shader would require other pages."""
-    for page in PAGES:
-        before = page.read_text(encoding="utf-8")
-        text = TABLE.sub(lambda match: match[1] + page_tables(match[2], page) + match[3], before)
-        text = fill(text, page.relative_to(ROOT))
-        if not is_check:
-            page.write_text(text, encoding="utf-8")
-        elif text != before and (checks_ages or without_ages(text) != without_ages(before)):
-            raise UserError(f"{page.relative_to(ROOT)} is not what the records and the sources say: run `python3 tools tables`")
-    for name in PLOTS:
-        file = DOCS / f"pictures/{name}.svg"
-        if not is_fresh(file, name):
-            if is_check:
-                raise UserError(f"{file.relative_to(ROOT)} does not show the records: run `python3 tools tables`")
-            write_plot(file, name)
+def write_all(is_check=False):
+    write_pages(PAGES, lambda page, text: fill(filled(text, "table", table_named), page.relative_to(ROOT)), is_check, "python3 tools tables")
 
 
 def main():
-    parser = Parser("tools/tables", __doc__)
+    parser = Parser("python3 tools tables", __doc__)
     parser.add_argument("--check", action="store_true", help="write nothing; say which page is not up to date")
-    parser.add_argument("--ages", action="store_true", help="with --check: what the pages say of the age of the records, too")
-    options = parser.parse_args()
-    write_pages(options.check, options.ages)
+    write_all(parser.parse_args().check)

@@ -17,15 +17,15 @@ from pathlib import Path
 
 from book import build as book
 from package import windows_programs
-from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, run_to_end
+from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, Parser, UserError, run_to_end
 
 HERE = Path(__file__).parent
 NAME = "path_tracing_lab"
-FOLDERS = ["assets", "chapters", "docs", "shaders", "tools"]
+FOLDERS = ["assets", "chapters", "docs", KNOWLEDGE.relative_to(ROOT).as_posix(), "shaders", "tools"]
 FILES = ["CHANGELOG.md", "LICENSE", "README.md"]
 # Solutions and other material for teachers, and what needs the sources.
 LEFT_OUT = ["tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/exercise.json",
-            "chapters/*/mistakes.json", "chapters/*/solutions/*", "chapters/*/variants/*", "*/__pycache__/*"]
+            "chapters/*/mistakes.json", "chapters/*/solutions/*", "*/__pycache__/*"]
 DATE = 1980, 1, 1, 0, 0, 0  # for all files: the same sources make the same archive
 BOOK = ROOT / "output/book"
 

@@ -1,11 +1,10 @@
-"""Runs chapters, and Mitsuba as their peer, and records their reports: see numbers.py.
+"""Runs chapters, and other renderers as their peers, and records their reports: see numbers.py.
 
 The record is written after each run, so an interrupted measurement can continue. The runs of all cases are interleaved, so that
 other load on the machine affects all of them alike.
 """
 import hashlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -13,10 +12,8 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import (CHAPTERS, ROOT, SAMPLERS, VARIANTS, UserError, commit, failure_text, has_low_discrepancy,
-                     program_file, read_json, run_program, show_progress, write_json)
+from project import CHAPTERS, ROOT, UserError, commit, failure_text, program_file, read_json, run_program, show_progress, write_json
 from references.images import averaged, read_reference, read_rgb, rel_mse
-from report.sources import measured
 
 PILOT_PART = 0.3  # of a run's seconds: a pilot determines how many samples a run takes
 DEVICE_LOST = 3  # exit code
@@ -36,7 +33,7 @@ def relative(path):
 def new_case(scene_file, reference_file, name, program, options=(), is_peer=False, is_large=False):
     """A case to be rendered repeatedly. Resolution and path length are the reference's, if any. A large picture has `scale` times
     that resolution, and is compared with the reference after averaging blocks of scale x scale pixels. `variables` are NAME=VALUE of
-    the program's environment."""
+    the program's environment. The program of a peer is a command that takes a chapter's arguments."""
     case = {
         "scene": reference_file.stem if reference_file else scene_file.stem, "scene_file": relative(scene_file),
         "reference_file": None, "reference": None, "width": 128, "height": 128, "max_path_length": None, "scale": 1, "case": name,
@@ -59,35 +56,12 @@ def new_case(scene_file, reference_file, name, program, options=(), is_peer=Fals
     return case
 
 
-def report_cases(scenes, chapters, variants=(), samplers=(), is_large=False):
-    """Cases of all chapters and variants of Mitsuba for pairs (scene file, reference file); the fastest variant also uses these
-    samplers."""
-    peers = [(variant, SAMPLERS[0]) for variant in variants]
-    peers += [(variants[-1], sampler) for sampler in samplers if sampler != SAMPLERS[0]]
-    cases = []
-    for scene, reference in scenes:
-        cases += [new_case(scene, reference, f"chapter {number}", CHAPTERS[number], is_large=is_large) for number in chapters]
-        cases += [new_case(scene, reference, f"Mitsuba {VARIANTS[variant]}" + (f", {sampler}" if sampler != SAMPLERS[0] else ""),
-                           variant, ("--sampler", sampler), is_peer=True, is_large=is_large) for variant, sampler in peers]
-    return cases
+def report_cases(scenes, chapters, is_large=False):
+    """Cases of all chapters for pairs (scene file, reference file)."""
+    return [new_case(scene, reference, f"chapter {number}", CHAPTERS[number], is_large=is_large) for scene, reference in scenes for number in chapters]
 
 
 # ---------------------------------------------------------------------------------------------- programs
-def peer_command(variant):
-    """Uses the user's python3, which can find Mitsuba in an active virtual environment, for example."""
-    return [shutil.which("python3") or sys.executable, ROOT / "tools", "peer", "--variant", variant]
-
-
-def working_variants():
-    """The variants of Mitsuba that work here. Each is tried in a separate process, since some crash."""
-    size = ["--width", "8", "--height", "8", "--max-path-length", "1", "--samples", "1", "--seed", "1"]
-    tried = {variant: run_program([*peer_command(variant), ROOT / "assets/scenes/cornell_box.json", *size]) for variant in VARIANTS}
-    works = [variant for variant in VARIANTS if tried[variant].returncode == 0]
-    if not works:
-        raise UserError(failure_text(tried["scalar_rgb"]))
-    return works
-
-
 def run_once(program, arguments, timeout):
     return run_program([*program, *arguments], timeout=timeout)
 
@@ -98,7 +72,7 @@ def run_case(case, settings, arguments, run=run_once):
     with tempfile.TemporaryDirectory() as folder:
         limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
         limited += ["env", *case["variables"]] if case["variables"] else []
-        program = peer_command(case["program"]) if case["is_peer"] else [*limited, program_file(case["program"])]
+        program = case["program"].split() if case["is_peer"] else [*limited, program_file(case["program"])]
         command = [ROOT / case["scene_file"], "--width", case["width"], "--height", case["height"], *case["options"].split()]
         if case["reference_file"]:
             command += ["--max-path-length", case["max_path_length"]]
@@ -186,8 +160,7 @@ class Measurement:
         write_json(self.file, self.record)
 
     def finish(self):
-        """Marks the record as complete, and stores what it measured."""
-        self.record |= {"is_complete": True, "measured": measured(" ".join(case["program"] for case in self.record["cases"]))}
+        self.record["is_complete"] = True
 
     def run_seconds(self):
         """Rendering time of one run."""
