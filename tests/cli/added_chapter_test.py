@@ -138,7 +138,7 @@ class AddedChapterTest(Tree, ProgramTest):
         self.assertEqual(bugs.replace("bug 20", "bug 3"), self.run_in_tree(sys.executable, "-B", "tools", "bug", 3))
         self.rename()
         self.assertNotIn("Chapter 3 to 20", self.run_in_tree("./lab", "diff", 20))
-        self.assert_refused(["-B", self.tree / "tools", "check", 20], "chapter 20 has a title of its own", r"learn\.py learn", code=2,
+        self.assert_refused(["-B", self.tree / "tools", "check", 20], "chapter 20 has a title of its own", "notebook learn", code=2,
                             program=sys.executable)
 
     def test_is_in_the_handout_and_its_exercise_is_a_todo(self):
