@@ -6,7 +6,7 @@ Comments and blanks do not count, and neither do chapters that a record does not
 import hashlib
 import re
 
-from project import CHAPTERS, ROOT, shaders_of, text_of
+from project import CHAPTERS, ROOT, rendered_description, shaders_of, text_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.
 RENDERER = ["shaders", "common/film", "common/gpu", "common/rendering", "common/scene", "common/tracing"]
@@ -19,9 +19,9 @@ def code(text):
     return " ".join(COMMENT.sub(" ", text).split())
 
 
-def digest(files):
-    """Digest of the code in these files and of their names, wherever the project lies."""
-    found = hashlib.sha256()
+def digest(files, text=""):
+    """Digest of a text, and of the code in these files and their names, wherever the project lies."""
+    found = hashlib.sha256(text.encode())
     for path in sorted(set(files)):
         found.update(f"{path.relative_to(ROOT).as_posix()}\n{code(text_of(path))}\n".encode())
     return found.hexdigest()[:12]
@@ -37,7 +37,7 @@ def measured(text):
     parts = {"renderer": RENDERER} | ({"native": NATIVE} if "native" in text else {})
     named = {folder[3:]: number for number, folder in CHAPTERS.items() if re.search(rf"(?<![a-z]){folder[3:]}(?![a-z])", text)}
     return {part: digest(sources(folders)) for part, folders in parts.items()} | {
-        name: digest([*shaders_of(number), ROOT / "chapters" / CHAPTERS[number] / "chapter.json"]) for name, number in named.items()}
+        name: digest(shaders_of(number), rendered_description(CHAPTERS[number])) for name, number in named.items()}
 
 
 def changed_since(record):

@@ -176,13 +176,15 @@ class AgesTest(unittest.TestCase):
                      "chapters/05_russian_roulette/chapter.json", "chapters/04_splitting/path_trace.glsl")}
             for file in files.values():
                 file.parent.mkdir(parents=True, exist_ok=True)
-                file.write_text("a = 1;  // one\n")
+                file.write_text('{"options": ["a"], "measure": {}}' if file.suffix == ".json" else "a = 1;  // one\n")
             before = sources.measured(self.RECORD)
             self.assertEqual(list(before), ["renderer", "russian_roulette"])
             record = {"measured": before}
             self.assertEqual(sources.changed_since(record), [])
             for name, text, changed in (("shaders/a.glsl", "a =  1; // two\n", []), ("shaders/a.glsl", "a = 2;", ["renderer"]),
                                         ("chapters/04_splitting/path_trace.glsl", "b", []),
+                                        ("chapters/05_russian_roulette/chapter.json", '{"options": ["a"], "measure": {"picture": "b"}}', []),
+                                        ("chapters/05_russian_roulette/chapter.json", '{"options": ["b"]}', ["russian_roulette"]),
                                         ("chapters/05_russian_roulette/path_trace.glsl", "b", ["russian_roulette"])):
                 kept = files[name].read_text()
                 files[name].write_text(text)
