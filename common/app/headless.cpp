@@ -74,9 +74,9 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
-        // The limit is checked between dispatches, but a shader on the CPU may never finish one.
+        // The limit is checked between dispatches, but a shader may never finish one.
         constexpr double patience = 2;
-        if (options_.time_limit && acceleration_structure_.is_on_host()) interrupt_after(*options_.time_limit + patience);
+        if (options_.time_limit) interrupt_after(*options_.time_limit + patience);
         start_ = last_save_ = Clock::now();
         unmeasured_cpu_seconds_ = processor_seconds();
         try {

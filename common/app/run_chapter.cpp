@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "app/backends.h"
 #include "error.h"
 #include "files/file.h"
 #include "gpu/device.h"
@@ -21,7 +22,7 @@ namespace lab {
 namespace {
 
 void print_devices() {
-    const auto devices = list_devices();
+    const auto devices = list_devices(all_backends);
     for (size_t i = 0; i < devices.size(); ++i) {
         const auto& device = devices[i];
         std::printf("%zu  %s (%s, Vulkan %s, %s)\n", i, device.name.c_str(), device.kind.c_str(), device.api_version.c_str(),
@@ -29,9 +30,9 @@ void print_devices() {
         for (const Backend backend : all_backends) {
             std::string missing;
             for (const auto& name : device.missing.at(backend)) missing += (missing.empty() ? "" : ", ") + name;
-            std::printf("   %-9s %s\n", to_string(backend).c_str(), missing.empty() ? "works" : ("lacks " + missing).c_str());
+            std::printf("   %-9s %s\n", backend->name, missing.empty() ? "works" : ("lacks " + missing).c_str());
+            if (missing.empty() && backend->details) std::printf("   %s's rays: %s\n", backend->name, backend->details().c_str());
         }
-        if (device.missing.at(Backend::native).empty()) std::printf("   native's rays: %s\n", native::ray_tracer_name().c_str());
         std::printf("   largest image %zu megapixels\n", Film::max_pixels(device) / 1000000);
     }
 }
@@ -100,7 +101,8 @@ bool run_in_window(Window& window, const Chapter& chapter, const RenderJob& job)
     const Device device({.choice = options.device,
                          .validation = options.validation,
                          .instance_extensions = window.instance_extensions(),
-                         .make_surface = [&](VkInstance instance) { return window.make_surface(instance); }});
+                         .make_surface = [&](VkInstance instance) { return window.make_surface(instance); },
+                         .backends = all_backends});
     if (*device.surface()) {
         run_viewer(window, device, chapter, job);
         check_validation(device, options);
@@ -118,21 +120,25 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
     if (chapter.unlimited_path_length && !job.options.light.max_path_length)
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
-    if (build.backend == Backend::native) {
-        const auto [count, why_not_more] = build.renderer->tracer().paths_at_once();
+    if (const auto at_once = build.renderer->tracer().paths_at_once()) {
+        const auto& [count, why_not_more] = *at_once;
         std::cout << "each core      traces " << count << (count == 1 ? " path" : " paths") << " at a time"
                   << (why_not_more.empty() ? "" : ": " + why_not_more) << std::endl;
     }
 }
 
-// Builds a job without a window. If `auto` chooses `native` and that cannot run the shader, the device's backends have to.
+// Builds a job without a window. If `auto` chooses a backend that refuses the shader, the others have to run it.
 Build build_headless(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first, const Build* before) {
-    job.may_choose_native = job.options.run.backend == "auto" && suits_native(device, *job.scene);
-    if (!job.may_choose_native) return make_build(device, chapter, std::move(job), first, before);
+    const auto may_refuse = [&](Backend backend) {
+        return backend->may_refuse_shaders && device.description().supports(backend) &&
+               (!backend->suits || backend->suits(device, *job.scene));
+    };
+    job.may_be_refused = job.options.run.backend == "auto" && std::ranges::any_of(all_backends, may_refuse);
+    if (!job.may_be_refused) return make_build(device, chapter, std::move(job), first, before);
     try {
         return make_build(device, chapter, job, first, before);
     } catch (const std::exception& error) {
-        job.may_choose_native = false;
+        job.may_be_refused = false;
         Build build = make_build(device, chapter, std::move(job));  // throws the same for what no backend can run
         std::cerr << "note: " << error.what() << ": " << to_string(build.backend) << " renders instead\n";
         return build;
@@ -172,7 +178,7 @@ class Commands {
     explicit Commands(const Chapter& chapter) : chapter_(chapter) {}
 
     void run(const std::vector<std::string>& arguments) {
-        auto options = parse_options(chapter_, arguments);
+        auto options = parse_options(chapter_, all_backends, arguments);
         if (!options) return;
         if (options->run.batch) throw UserError("--batch goes alone: other options belong into the lines of the standard input");
         if (options->run.list_devices)
@@ -212,7 +218,7 @@ class Commands {
         const RunOptions& now = job.options.run;
         if (!build_ || build_->job.options.run.device != now.device || build_->job.options.run.validation != now.validation) {
             build_.reset();
-            device_.emplace(DeviceOptions{now.device, now.validation});
+            device_.emplace(DeviceOptions{.choice = now.device, .validation = now.validation, .backends = all_backends});
         }
         BuildStage first = BuildStage::scene;
         // Views, too, decide which backends are suitable.

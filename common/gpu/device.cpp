@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 
+#include "clock.h"
 #include "error.h"
 #include "files/cache.h"
 #include "files/file.h"
-#include "native/module.h"
 #include "platform.h"
 
 namespace lab {
@@ -38,18 +39,11 @@ using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDev
                                     vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
                                     vk::PhysicalDeviceRayTracingPipelineFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>;
 
-std::vector<const char*> extensions_for(Backend backend) {
-    if (backend == Backend::compute || backend == Backend::native) return {};
-    return {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
-            backend == Backend::query ? VK_KHR_RAY_QUERY_EXTENSION_NAME : VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME};
-}
-
 bool computes(const vk::QueueFamilyProperties& family) {
     return family.queueFlags & vk::QueueFlagBits::eCompute && family.timestampValidBits > 0;
 }
 
-// Features that every backend needs and the device lacks.
-std::vector<std::string> missing_everywhere(const vk::raii::PhysicalDevice& device, const Features& features) {
+std::vector<std::string> missing_features(const vk::raii::PhysicalDevice& device, const Features& features) {
     std::vector<std::string> missing;
     const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     if (!vulkan12.scalarBlockLayout) missing.emplace_back("scalarBlockLayout");
@@ -69,7 +63,7 @@ size_t usable_memory(const vk::raii::PhysicalDevice& device, bool shares_memory)
     return sum;
 }
 
-DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
+DeviceDescription describe(const vk::raii::PhysicalDevice& device, std::span<const Backend> backends) {
     const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
                                                   vk::PhysicalDeviceMaintenance3Properties>();
     const auto& general = properties.get<vk::PhysicalDeviceProperties2>().properties;
@@ -86,25 +80,25 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
         // Offsets of parts are 32-bit.
         .largest_buffer =
             std::min<size_t>(properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),
+        .missing_everywhere = {},
         .missing = {},
     };
     if (general.apiVersion < VK_API_VERSION_1_2) {
-        for (const Backend backend : all_backends) description.missing[backend] = {"Vulkan 1.2"};
+        description.missing_everywhere = {"Vulkan 1.2"};
+        for (const Backend backend : backends) description.missing[backend] = description.missing_everywhere;
         return description;
     }
     Features features;
     device.getDispatcher()->vkGetPhysicalDeviceFeatures2(*device, reinterpret_cast<VkPhysicalDeviceFeatures2*>(&features.get()));
     const auto extensions = device.enumerateDeviceExtensionProperties();
-    for (const Backend backend : all_backends) {
-        auto& missing = description.missing[backend];
-        missing = missing_everywhere(device, features);
-        for (const char* wanted : extensions_for(backend))
+    description.missing_everywhere = missing_features(device, features);
+    for (const Backend backend : backends) {
+        auto& missing = description.missing[backend] = description.missing_everywhere;
+        for (const char* wanted : backend->extensions)
             if (!contains(extensions, wanted)) missing.emplace_back(wanted);
-        if (!extensions_for(backend).empty() && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
+        if (!backend->extensions.empty() && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
             missing.emplace_back("bufferDeviceAddress");
-        if (backend != Backend::native) continue;
-        if (!shares_memory) missing.emplace_back("memory that it shares with the CPU (--device llvmpipe has it)");
-        for (const auto& tool : native::missing_tools()) missing.push_back(tool);
+        if (backend->missing) std::ranges::copy(backend->missing(description), std::back_inserter(missing));
     }
     return description;
 }
@@ -162,7 +156,7 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
     if (choice.empty()) {
         for (const char* kind : {"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"})
             for (size_t i = 0; i < devices.size(); ++i)
-                if (devices[i].kind == kind && devices[i].supports(Backend::compute)) return i;
+                if (devices[i].kind == kind && devices[i].missing_everywhere.empty()) return i;
         return 0;
     }
     const bool is_number = choice.size() < 6 && choice.find_first_not_of("0123456789") == std::string::npos;
@@ -185,13 +179,10 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
 
 }  // namespace
 
-std::string to_string(Backend backend) {
-    constexpr const char* names[] = {"pipeline", "query", "compute", "native"};
-    return names[static_cast<size_t>(backend)];
-}
-
 Device::Device(const DeviceOptions& options)
-    : context_(load_vulkan()), instance_(create_instance(context_, options.validation, options.instance_extensions)) {
+    : backends_(options.backends),
+      context_(load_vulkan()),
+      instance_(create_instance(context_, options.validation, options.instance_extensions)) {
     if (options.validation) {
         // The C structure: Vulkan-Hpp changed the callback's parameter types between releases.
         VkDebugUtilsMessengerCreateInfoEXT info{};
@@ -205,11 +196,11 @@ Device::Device(const DeviceOptions& options)
     }
     auto devices = enumerate_devices(instance_);
     std::vector<DeviceDescription> descriptions;
-    for (const auto& device : devices) descriptions.push_back(describe(device));
+    for (const auto& device : devices) descriptions.push_back(describe(device, backends_));
     const size_t chosen = choose_device(descriptions, options.choice);
     description_ = descriptions[chosen];
-    if (!description_.supports(Backend::compute))
-        throw DeviceError("device '" + description_.name + "' lacks " + description_.missing.at(Backend::compute).front() +
+    if (!description_.missing_everywhere.empty())
+        throw DeviceError("device '" + description_.name + "' lacks " + description_.missing_everywhere.front() +
                           ": choose another with --device (see --list-devices) or update its driver");
     physical_ = std::move(devices[chosen]);
     limits_ = physical_.getProperties().limits;
@@ -244,24 +235,24 @@ void Device::create_device() {
     auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     vulkan12.scalarBlockLayout = true;
     vulkan12.shaderSampledImageArrayNonUniformIndexing = true;
-    std::set<std::string> extensions;
-    for (const Backend backend : all_backends)
+    for (const Backend backend : backends_)
         if (description_.supports(backend))
-            for (const char* extension : extensions_for(backend)) extensions.insert(extension);
-    if (*surface_) extensions.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+            for (const char* extension : backend->extensions) extensions_.insert(extension);
+    if (*surface_) extensions_.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     constexpr const char* portability = "VK_KHR_portability_subset";  // must be enabled if a device has it
-    if (contains(physical_.enumerateDeviceExtensionProperties(), portability)) extensions.insert(portability);
-    vulkan12.bufferDeviceAddress = has_acceleration_structures();
-    const auto switch_on = [&]<typename Structure>(vk::Bool32 Structure::*feature, bool is_there) {
+    if (contains(physical_.enumerateDeviceExtensionProperties(), portability)) extensions_.insert(portability);
+    const auto switch_on = [&]<typename Structure>(vk::Bool32 Structure::*feature, const char* extension) {
         features.get<Structure>().*feature = true;
-        if (!is_there) features.unlink<Structure>();
+        if (!has_extension(extension)) features.unlink<Structure>();
     };
-    switch_on(&vk::PhysicalDeviceAccelerationStructureFeaturesKHR::accelerationStructure, has_acceleration_structures());
-    switch_on(&vk::PhysicalDeviceRayTracingPipelineFeaturesKHR::rayTracingPipeline, description_.supports(Backend::pipeline));
-    switch_on(&vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery, description_.supports(Backend::query));
+    vulkan12.bufferDeviceAddress = has_extension(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
+    switch_on(&vk::PhysicalDeviceAccelerationStructureFeaturesKHR::accelerationStructure,
+              VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
+    switch_on(&vk::PhysicalDeviceRayTracingPipelineFeaturesKHR::rayTracingPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    switch_on(&vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery, VK_KHR_RAY_QUERY_EXTENSION_NAME);
 
     std::vector<const char*> names;
-    for (const auto& extension : extensions) names.push_back(extension.c_str());
+    for (const auto& extension : extensions_) names.push_back(extension.c_str());
     vk::DeviceCreateInfo info({}, queue, {}, names);
     info.pNext = &features.get();
     device_ = {physical_, info};
@@ -270,6 +261,17 @@ void Device::create_device() {
     command_buffer_ = std::move(vk::raii::CommandBuffers(device_, {*command_pool_, vk::CommandBufferLevel::ePrimary, 1})[0]);
     fence_ = {device_, vk::FenceCreateInfo()};
     timestamps_ = {device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)};
+}
+
+void Device::wait_for_fence() const {
+    constexpr uint64_t nanoseconds = 50'000'000;  // between two looks for an interrupt
+    constexpr double patience = 3;                // seconds for a dispatch to end by itself
+    std::optional<Clock::time_point> interrupted;
+    while (device_.waitForFences(*fence_, true, nanoseconds) == vk::Result::eTimeout) {
+        if (!interrupted && is_interrupted()) interrupted = Clock::now();
+        if (interrupted && seconds_since(*interrupted) > patience)
+            throw EndlessWork("the shader did not end: does it have a loop without an end?");
+    }
 }
 
 double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
@@ -285,8 +287,7 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
                                     vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
     command_buffer_.end();
     queue_.submit(vk::SubmitInfo({}, {}, *command_buffer_), *fence_);
-    if (device_.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
-        throw DeviceFailure("the device did not finish its work");
+    wait_for_fence();
     device_.resetFences(*fence_);
     const auto [result, ticks] = timestamps_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t),
                                                                   vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
@@ -342,11 +343,11 @@ void wait_for_writes(const vk::raii::CommandBuffer& commands) {
         {}, {});
 }
 
-std::vector<DeviceDescription> list_devices() {
+std::vector<DeviceDescription> list_devices(std::span<const Backend> backends) {
     const vk::raii::Context context = load_vulkan();
     const vk::raii::Instance instance = create_instance(context, false);
     std::vector<DeviceDescription> descriptions;
-    for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device));
+    for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device, backends));
     return descriptions;
 }
 

@@ -4,24 +4,16 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "error.h"
+#include "gpu/backend.h"
 #include "gpu/vulkan.h"
 
 namespace lab {
-
-// The ways to trace rays (docs/backends.md compares them).
-enum class Backend {
-    pipeline,  // VK_KHR_ray_tracing_pipeline
-    query,     // VK_KHR_ray_query in a compute shader
-    compute,   // our own bounding volume hierarchy in a compute shader
-    native,    // the same shaders as C++ on the CPU
-};
-inline constexpr Backend all_backends[] = {Backend::pipeline, Backend::query, Backend::compute, Backend::native};
-
-// The backend's name on the command line and in reports.
-std::string to_string(Backend backend);
 
 struct DeviceOptions {
     std::string choice;       // index or part of a name in --list-devices; empty: the fastest kind
@@ -29,6 +21,7 @@ struct DeviceOptions {
     // Instance extensions that the window needs; empty without a window.
     std::vector<const char*> instance_extensions = {};
     std::function<VkSurfaceKHR(VkInstance)> make_surface = {};
+    std::span<const Backend> backends = {};  // of the program
 };
 
 // A device as --list-devices shows it.
@@ -40,7 +33,8 @@ struct DeviceDescription {
     bool shares_memory = false;                           // with the CPU
     size_t memory = 0;                                    // bytes that shaders can use
     size_t largest_buffer = 0;                            // bytes of a buffer that is bound part by part
-    std::map<Backend, std::vector<std::string>> missing;  // features that a backend lacks
+    std::vector<std::string> missing_everywhere;          // features that every backend needs and the device lacks
+    std::map<Backend, std::vector<std::string>> missing;  // what a backend lacks, the former included
 
     bool supports(Backend backend) const { return missing.at(backend).empty(); }
 };
@@ -72,9 +66,8 @@ class Device {
     Properties properties() const {
         return physical_.getProperties2<vk::PhysicalDeviceProperties2, Properties>().template get<Properties>();
     }
-    bool has_acceleration_structures() const {
-        return description_.supports(Backend::pipeline) || description_.supports(Backend::query);
-    }
+    std::span<const Backend> backends() const { return backends_; }
+    bool has_extension(const char* name) const { return extensions_.contains(name); }
 
     // For windows. The surface is null if the device cannot present to it.
     const vk::raii::Instance& instance() const { return instance_; }
@@ -84,7 +77,8 @@ class Device {
     // Hold this lock while using queue(). submit() takes it itself and may be called from any thread.
     std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
 
-    // Records and submits commands, waits for them, and returns the seconds they took on the device.
+    // Records and submits commands, waits for them, and returns the seconds they took on the device. Throws EndlessWork if they
+    // do not end after an interrupt (see platform.h).
     double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
     // Messages so far from the validation layers and the driver; empty without validation.
@@ -99,10 +93,12 @@ class Device {
     };
     static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
+    void wait_for_fence() const;
     void choose_queue_family();
     void create_device();
     void load_pipeline_cache();
 
+    const std::span<const Backend> backends_;
     Messages messages_;
     vk::raii::Context context_;
     vk::raii::Instance instance_ = nullptr;
@@ -111,6 +107,7 @@ class Device {
     vk::raii::PhysicalDevice physical_ = nullptr;
     DeviceDescription description_;
     vk::PhysicalDeviceLimits limits_;
+    std::set<std::string, std::less<>> extensions_;
     uint32_t queue_family_ = 0;
     uint64_t timestamp_mask_ = 0;  // the counter's valid bits
     vk::raii::Device device_ = nullptr;
@@ -130,7 +127,12 @@ class Device {
 void wait_for_writes(const vk::raii::CommandBuffer& commands);
 
 // All devices in the order of their indices. Throws DeviceError without a Vulkan driver.
-std::vector<DeviceDescription> list_devices();
+std::vector<DeviceDescription> list_devices(std::span<const Backend> backends);
+
+// A shader goes on although it was interrupted. Nothing that it uses can be destroyed any more.
+struct EndlessWork : DeviceFailure {
+    using DeviceFailure::DeviceFailure;
+};
 
 // What an exception means to the user of a program or window.
 struct Failure {

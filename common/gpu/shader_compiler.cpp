@@ -237,7 +237,15 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
         std::memcpy(words.data(), cached->data(), words.size() * sizeof(uint32_t));
         return words;
     }
-    words = compile(source, expanded);
+    try {
+        words = compile(source, expanded);
+    } catch (const UserError&) {
+        if (!source.edit) throw;
+        ShaderSource as_written = source;
+        as_written.edit = {};
+        compile_shader(as_written);  // describes mistakes in the words of the file
+        throw;
+    }
     write_cache(name, {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)});
     return words;
 }

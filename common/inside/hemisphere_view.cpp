@@ -12,7 +12,7 @@ Estimator hemisphere_estimator(const Estimator& estimator) {
     return {.file = project_folder() / "shaders" / "observation" / "view_hemisphere.glsl",
             .defines = estimator.defines,
             .observed = estimator.file,
-            .edit = {}};
+            .edit = estimator.edit};
 }
 
 RenderParameters with_size(RenderParameters parameters) {

@@ -8,6 +8,7 @@
 #include "files/project_folder.h"
 #include "inside/recording_calls.h"
 #include "shaders/observation/recorded_path.h"
+#include "tracing/limited_loops.h"
 
 namespace lab {
 namespace {
@@ -153,16 +154,20 @@ Estimator recording(const Estimator& estimator) {
     return {.file = project_folder() / "shaders" / "observation" / "record_path.glsl",
             .defines = estimator.defines,
             .observed = estimator.file,
-            .edit = add_recording_calls};
+            .edit = [further = estimator.edit](const std::string& text) {
+                const std::string recorded = add_recording_calls(text);
+                return further ? further(recorded) : recorded;
+            }};
 }
 
 PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
                            uvec2 image_size)
     : device_(&device),
+      estimator_(estimator),
       // The samples go into a single row of blocks, wherever the pixel is in the image.
       film_(device, image_size.x, BLOCK_HEIGHT),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
-      ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent), vk::BufferUsageFlagBits::eStorageBuffer) {
     const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                         storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
@@ -175,14 +180,16 @@ RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixe
     of_sample.first_sample = sample;
     parameters_.write(&of_sample, sizeof of_sample);
     film_.clear();
+    const std::span<uint32_t> counters = ray_counters_.mapped<uint32_t>();
+    std::fill(counters.begin(), counters.end(), 0);
     const Header header{pixel.y * film_.width() + pixel.x, sample, 0};
     events_.write(&header, sizeof header);
 
     const uint32_t row = pixel.y / BLOCK_HEIGHT;
     const uint32_t block = row * count_blocks({film_.width(), 1}) + pixel.x / BLOCK_WIDTH;
-    device_->submit([&](const vk::raii::CommandBuffer& commands) {
-        tracer_->record(commands, {block, 1, 1, 1, row * BLOCK_HEIGHT * film_.width()}, 1, 0);
-    });
+    const DispatchParameters step{block, 1, 1, 1, row * BLOCK_HEIGHT * film_.width()};
+    tracer_->trace(std::span(&step, 1), 1, 0);
+    check_loops(counters, estimator_);
 
     std::vector<std::byte> bytes(events_.size());
     events_.read(bytes.data(), bytes.size());

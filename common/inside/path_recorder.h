@@ -48,11 +48,12 @@ class PathRecorder {
                  uvec2 image_size);
 
     // Records the sample with this index (counted from first_sample), for the constructor's image size. Its values are those of a
-    // render with these parameters on the same backend.
+    // render with these parameters on the same backend. Throws StuckLoop as Renderer::advance() does.
     RecordedPath record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample);
 
   private:
     const Device* device_;
+    Estimator estimator_;
     Film film_;
     Buffer parameters_, ray_counters_, events_;
     std::unique_ptr<Tracer> tracer_;

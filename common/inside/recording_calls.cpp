@@ -3,14 +3,14 @@
 #include <cctype>
 #include <string_view>
 
+#include "gpu/shader_editor.h"
+
 namespace lab {
 namespace {
 
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
-class Scanner {
+class Scanner : ShaderEditor {
   public:
-    explicit Scanner(const std::string& text) : text_(text) {}
+    using ShaderEditor::ShaderEditor;
 
     std::string run() {
         while (at_ < text_.size()) {
@@ -33,21 +33,10 @@ class Scanner {
     }
 
   private:
-    void copy(size_t count) {
-        result_.append(text_, at_, count);
-        at_ += count;
-    }
-
     void copy_word() {
         const std::string_view word = word_at(at_);
         copy(word.size());
         begins_statement_ = word == "else" || word == "do";
-    }
-
-    std::string_view word_at(size_t at) const {
-        size_t end = at;
-        while (end < text_.size() && is_word(text_[end])) ++end;
-        return std::string_view(text_).substr(at, end - at);
     }
 
     // The variable that a statement here starts with, or a member to be recorded, like path.throughput.
@@ -58,19 +47,6 @@ class Scanner {
         const std::string_view member = word_at(dot + 1);
         if (member != "throughput" && member != "radiance") return word;
         return std::string_view(text_).substr(at, word.size() + 1 + member.size());
-    }
-
-    size_t skip_space(size_t at) const {
-        while (at < text_.size() && std::isspace(static_cast<unsigned char>(text_[at]))) ++at;
-        return at;
-    }
-
-    // Length of the comment or preprocessor line that starts here, or 0.
-    size_t comment_or_directive(size_t at) const {
-        const std::string_view rest = std::string_view(text_).substr(at);
-        if (rest.starts_with("//") || rest.starts_with("#")) return std::min(rest.find('\n'), rest.size());
-        if (rest.starts_with("/*")) return std::min(rest.find("*/"), rest.size() - 2) + 2;
-        return 0;
     }
 
     // Length up to the semicolon, or 0 if the block ends before one.
@@ -124,9 +100,6 @@ class Scanner {
         return "";
     }
 
-    const std::string& text_;
-    std::string result_;
-    size_t at_ = 0;
     bool begins_statement_ = false;
     int parentheses_ = 0, braces_ = 0;
     int radiances_ = 0;  // declared so far

@@ -8,7 +8,7 @@ namespace lab {
 struct Build {
     RenderJob job;
     std::shared_ptr<const GpuScene> gpu_scene;
-    Backend backend = Backend::compute;
+    Backend backend = nullptr;
     std::shared_ptr<const AccelerationStructure> acceleration_structure;
     std::unique_ptr<Renderer> renderer;
 };

@@ -28,6 +28,12 @@ std::string short_number(double number) {
     return text;
 }
 
+std::string samples_text(double samples) {
+    char text[40];
+    std::snprintf(text, sizeof text, samples < 100 ? "%.3g" : "%.0f", samples);
+    return text;
+}
+
 std::string duration_text(double seconds) {
     char text[64];
     if (seconds < 60) {

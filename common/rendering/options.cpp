@@ -35,7 +35,7 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
 }
 
 // Options common to all chapters, in the order of --help.
-void add_options(CLI::App& app, Options& options, std::string& view) {
+void add_options(CLI::App& app, Options& options, std::string& view, const std::vector<std::string>& backends) {
     auto& [scene, estimator, image, camera, light, samples, appearance, run] = options;
     constexpr uint32_t max_count = 4294967295u;
     const auto whole = [&](const char* name, auto& value, uint32_t low, uint32_t high, const std::string& help) {
@@ -86,8 +86,7 @@ void add_options(CLI::App& app, Options& options, std::string& view) {
     app.add_option("--report", run.report, "Error against samples and seconds (.json or .csv)");
     app.add_option("--resume", run.resume, "EXR of an earlier run to continue");
     number("--save-every", run.save_every, 1e-3, 1e9, "a positive number of seconds", "Write the outputs every so many seconds");
-    app.add_option("--backend", run.backend, "How rays are traced")
-        ->check(CLI::IsMember({"auto", "pipeline", "query", "compute", "native"}));
+    app.add_option("--backend", run.backend, "How rays are traced")->check(CLI::IsMember(backends));
     app.add_option("--device", run.device, "Number or part of the name of the device");
     app.add_flag("--list-devices", run.list_devices, "Show the devices and what they lack");
     const auto window = [&](const char* name, WindowChoice choice, const char* help) {
@@ -180,25 +179,29 @@ bool needs_no_window(const Options& options) {
 }
 
 const std::vector<View>& views() {
-    static const std::vector<View> all{{"normals", "VIEW_NORMALS", DisplayTransform::as_is},
-                                       {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
-                                       {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
-                                       {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
-                                       {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
-                                       {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
-                                       {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
-                                       {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum},
-                                       {"idle-lanes", "", DisplayTransform::as_is, "observation/idle_lanes/path_trace.glsl"}};
+    static const std::vector<View> all{
+        {"normals", "VIEW_NORMALS", DisplayTransform::as_is},
+        {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
+        {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
+        {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
+        {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
+        {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
+        {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
+        {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum, {}, true},
+        {"idle-lanes", "", DisplayTransform::as_is, "observation/idle_lanes/path_trace.glsl", true}};
     return all;
 }
 
-std::optional<Options> parse_options(const Chapter& chapter, const std::vector<std::string>& arguments) {
+std::optional<Options> parse_options(const Chapter& chapter, std::span<const Backend> backends,
+                                     const std::vector<std::string>& arguments) {
     Options options;
     std::string scene = chapter.default_scene, view;
     CLI::App app(chapter.title, chapter.name);
     app.set_version_flag("--version", chapter.name + " " LAB_VERSION);
     app.add_option("scene", scene, "Scene file (.json or .obj) or the name of one in assets/scenes")->capture_default_str();
-    add_options(app, options, view);
+    std::vector<std::string> names{"auto"};
+    std::ranges::transform(backends, std::back_inserter(names), &BackendRow::name);
+    add_options(app, options, view, names);
     add_chapter_options(app, chapter, options);
     try {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last one first

@@ -18,6 +18,7 @@ struct View {
     std::string define;
     DisplayTransform display;
     std::string observer = {};
+    bool is_special = false;  // only backends that name it among their special_views can show it
 };
 
 // The scene files in assets/scenes, sorted by name; empty without that folder.
@@ -115,6 +116,7 @@ bool needs_no_window(const Options& options);
 
 // Parses the arguments of a command line. Prints and returns nothing for --help and --version. Throws UserError for anything it
 // does not understand.
-std::optional<Options> parse_options(const Chapter& chapter, const std::vector<std::string>& arguments);
+std::optional<Options> parse_options(const Chapter& chapter, std::span<const Backend> backends,
+                                     const std::vector<std::string>& arguments);
 
 }  // namespace lab

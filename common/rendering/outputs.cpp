@@ -1,5 +1,7 @@
 #include "rendering/outputs.h"
 
+#include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -21,18 +23,25 @@ void write_picture(const std::filesystem::path& file, const FilmImage& film, con
         write_jpg(file, to_display(film, options.image.display(), options.appearance.exposure));
 }
 
-void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write) {
-    const Failure failure = failure_of(error);
-    if (failure.exit_code != 3) throw;
-    if (film.min_samples() == 0 && film.has_equal_sample_counts())
-        throw DeviceFailure(failure.message + ": there was nothing to write yet");
+// Keeps the last snapshot, and returns what was kept.
+static std::string keep(const FilmImage& film, const std::function<void()>& write) {
+    if (film.min_samples() == 0 && film.has_equal_sample_counts()) return ": there was nothing to write yet";
     try {
         write();
     } catch (const UserError& unwritten) {
-        throw DeviceFailure(failure.message + "; " + unwritten.what());
+        return std::string("; ") + unwritten.what();
     }
-    throw DeviceFailure(failure.message + ": the outputs hold " + std::to_string(film.min_samples()) +
-                        " samples a pixel; --resume continues");
+    return ": the outputs hold " + std::to_string(film.min_samples()) + " samples a pixel; --resume continues";
+}
+
+void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write) {
+    const Failure failure = failure_of(error);
+    if (failure.exit_code != 3) throw;
+    const std::string message = failure.message + keep(film, write);
+    if (!dynamic_cast<const EndlessWork*>(&error)) throw DeviceFailure(message);
+    std::fflush(stdout);
+    std::fprintf(stderr, "error: %s\n", message.c_str());
+    std::_Exit(failure.exit_code);  // without destroying what the shader uses
 }
 
 void write_each(const std::vector<std::filesystem::path>& files, const std::function<void(const std::filesystem::path&)>& write) {

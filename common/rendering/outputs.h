@@ -16,7 +16,7 @@ namespace lab {
 void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record, const Options& options);
 
 // After a failure of device or memory: calls write() to keep the last snapshot, then throws DeviceFailure with the cause and what
-// was kept. Rethrows other errors.
+// was kept, or after EndlessWork ends the program. Rethrows other errors.
 [[noreturn]] void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write);
 
 // Writes all files even if some fail, then throws the first UserError.

@@ -16,7 +16,7 @@ struct RenderJob {
     uint32_t samples = 0;  // target per pixel
     FilmRecord record = {};
     std::optional<FilmFile> resumed = {};  // the run that this one continues
-    bool may_choose_native = false;        // for "auto": the caller is prepared for a shader that `native` refuses
+    bool may_be_refused = false;           // for "auto": the caller is prepared for a backend that refuses the shader
 };
 
 // The sample count at which a render next computes its error: more by the factor `growth`, but by at least an eighth, at most a
@@ -33,9 +33,6 @@ void set_options(RenderJob& job, const Chapter& chapter, const Options& options)
 
 // Whether a backend supports a view.
 bool can_show(const View& view, Backend backend);
-
-// Whether `native` may be faster than the device's backends: on CPUs with a compiler, for scenes that fit into memory.
-bool suits_native(const Device& device, const Scene& scene);
 
 // The backend that the job's options ask for. "auto" measures which one is fastest on this scene and caches the choice by device,
 // driver and decade of the triangle count. Views trace camera rays only, which would mislead the measurement, so they use

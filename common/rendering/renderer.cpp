@@ -1,10 +1,15 @@
 #include "rendering/renderer.h"
 
 #include <algorithm>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <thread>
 
 #include "clock.h"
 #include "files/project_folder.h"
 #include "platform.h"
+#include "tracing/limited_loops.h"
 
 namespace lab {
 namespace {
@@ -15,6 +20,26 @@ constexpr uint32_t enough_groups = 8192;
 // Samples per workgroup and pixel that wait to be added to the film. With more, threads would wait less for others at the end,
 // but all must fit into 128 MiB, the largest binding of some devices.
 constexpr uint32_t samples_per_group = 20;
+
+// Says so if a dispatch takes very long, since its shader may never end.
+class Reminder {
+  public:
+    explicit Reminder(const Estimator& estimator)
+        : thread_([&](const std::stop_token& done) {
+              constexpr std::chrono::seconds patience(10);
+              std::mutex mutex;
+              std::unique_lock lock(mutex);
+              std::condition_variable_any ended;
+              ended.wait_for(lock, done, patience, [] { return false; });
+              if (done.stop_requested()) return;
+              const auto& file = estimator.observed.empty() ? estimator.file : estimator.observed;
+              std::fprintf(stderr, "note: no sample for %d s: if a loop of %s does not end, Ctrl-C stops the program\n",
+                           static_cast<int>(patience.count()), file.string().c_str());
+          }) {}
+
+  private:
+    std::jthread thread_;
+};
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
 
@@ -62,20 +87,17 @@ std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
 Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
                    const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
-      is_on_host_(acceleration_structure.is_on_host()),
+      estimator_(estimator),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
-      ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
-                    Buffer::Location::host),
+      ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window) {
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
-    if (are_pixels_shared(parameters.image_size) && !is_on_host_) {
+    if (are_pixels_shared(parameters.image_size) && acceleration_structure.can_share_pixels()) {
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
-        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "engine/add_samples.comp"}, bindings,
-                       sizeof(DispatchParameters));
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
     tracer_ = acceleration_structure.make_tracer(configured, bindings);
@@ -101,21 +123,16 @@ void Renderer::resume(const FilmImage& image) {
     next_block_ = 0;
 }
 
-void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const {
-    if (!adder_) {
-        tracer_->record(commands, {next_block_, 1, 0, pass_samples_, window.first_pixel}, blocks, window.offset());
-        return;
-    }
+std::vector<DispatchParameters> Renderer::steps_of_pass(uint32_t blocks, const FilmWindow& window) const {
+    if (!samples_) return {{next_block_, 1, 0, pass_samples_, window.first_pixel}};
+    std::vector<DispatchParameters> steps;
     const uint32_t groups_per_block = enough_groups / blocks;
     for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
         const uint32_t added = std::min(groups_per_block * samples_per_group, pass_samples_ - samples);
         samples += added;
-        const DispatchParameters dispatch{next_block_, std::min(groups_per_block, added), added, samples, window.first_pixel};
-        tracer_->record(commands, dispatch, blocks, window.offset());
-        wait_for_writes(commands);
-        adder_->record(commands, &dispatch, blocks, window.offset());
-        wait_for_writes(commands);
+        steps.push_back({next_block_, std::min(groups_per_block, added), added, samples, window.first_pixel});
     }
+    return steps;
 }
 
 bool Renderer::advance(uint32_t target_samples) {
@@ -124,7 +141,8 @@ bool Renderer::advance(uint32_t target_samples) {
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
         // More at once keep lanes busy: one whose pixel is finished waits for its neighbours.
-        const bool has_lanes = tracer_->paths_at_once().count > 1;
+        const auto at_once = tracer_->paths_at_once();
+        const bool has_lanes = at_once && at_once->count > 1;
         const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, has_lanes ? samples_per_group : 1.0));
         pass_samples_ = finished_samples_ + std::min(step, target_samples - finished_samples_);
     }
@@ -135,15 +153,17 @@ bool Renderer::advance(uint32_t target_samples) {
     const uint32_t count = static_cast<uint32_t>(
         std::min({fitting, static_cast<double>(group_limit), static_cast<double>(window.end_block - next_block_)}));
 
-    const auto counters = ray_counters_.mapped<uint32_t>();
+    const std::span<uint32_t> counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = Clock::now();
-    const double device_seconds =
-        device_->submit([&](const vk::raii::CommandBuffer& commands) { record(commands, count, window); });
+    std::optional<Reminder> reminder(estimator_);
+    const auto device_seconds = tracer_->trace(steps_of_pass(count, window), count, window.offset());
     const double seconds = seconds_since(start);
-    if (is_on_host_ && is_interrupted()) return true;  // even within blocks; finished samples are in the film
-    device_seconds_ += is_on_host_ ? seconds : device_seconds;
-    for (const uint32_t counter : counters) rays_ += counter;
+    reminder.reset();
+    if (!device_seconds) return true;  // finished samples are in the film
+    device_seconds_ += *device_seconds;
+    check_loops(counters, estimator_);
+    for (const uint32_t counter : counters.first(RAY_COUNTER_COUNT)) rays_ += counter;
 
     // Blocks differ in cost, so the rate follows the last dispatch, and grows by a bounded factor.
     const double work = static_cast<double>(count) * step;

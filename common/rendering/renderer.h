@@ -30,7 +30,7 @@ class Renderer {
 
     // Makes one dispatch of about `dispatch_seconds` towards `target_samples` per pixel; returns true while more are needed.
     // Short dispatches keep driver watchdogs quiet and the program responsive: one sample of a large image can take a minute on a
-    // slow device.
+    // slow device. Throws StuckLoop for an estimator with_limited_loops() if one does not end.
     bool advance(uint32_t target_samples);
 
     Film& film() { return film_; }
@@ -49,16 +49,15 @@ class Renderer {
 
   private:
     uint32_t block_count() const;
-    // Renders `blocks` blocks from next_block_ on, all of them in the window, from finished_samples_ to pass_samples_.
-    void record(const vk::raii::CommandBuffer& commands, uint32_t blocks, const FilmWindow& window) const;
+    // Those that render `blocks` blocks from next_block_ on, all of them in the window, from finished_samples_ to pass_samples_.
+    std::vector<DispatchParameters> steps_of_pass(uint32_t blocks, const FilmWindow& window) const;
 
     const Device* device_;
-    bool is_on_host_;  // whether the tracer works while it records
+    Estimator estimator_;
     Buffer parameters_;
     std::optional<Buffer> samples_;  // of shared pixels, until added to the film
     Buffer ray_counters_;
     Film film_;
-    std::optional<ComputeKernel> adder_;  // for shared pixels
     std::unique_ptr<Tracer> tracer_;
 
     double dispatch_seconds_ = 0.1;

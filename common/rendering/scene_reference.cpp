@@ -1,6 +1,7 @@
 #include "rendering/scene_reference.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "files/file.h"
 #include "files/project_folder.h"
@@ -67,6 +68,23 @@ std::variant<Reference, std::string> find_reference(const Scene& scene, const Re
     if (!lengths.empty()) return "this scene's references are for a maximal path length of " + lengths;
     if (is_stale) return "this scene's reference is older than the scene: ./lab reference --all";
     return "this scene has no reference";
+}
+
+std::optional<VerdictSettings> settings_for_verdict(const Scene& scene, const RenderParameters& parameters) {
+    if (!difference_from_file(scene, parameters).empty()) return std::nullopt;
+    std::optional<VerdictSettings> nearest;
+    const auto distance = [&](uint32_t length) {
+        return std::abs(static_cast<double>(length) - static_cast<double>(parameters.max_path_length));
+    };
+    for (const Reference& reference : references_of(scene.file)) {
+        if (reference.attributes.at("scene_hash") != hexadecimal(scene.hash) || !reference.variance) continue;
+        const auto length = static_cast<uint32_t>(std::stoul(reference.attributes.at("max_path_length")));
+        if (nearest && distance(nearest->max_path_length) <= distance(length)) continue;
+        const uvec2 size(reference.mean.width, reference.mean.height);
+        const double times = std::round(static_cast<double>(parameters.image_size.x) / size.x);
+        nearest = {length, size * static_cast<uint32_t>(std::max(times, 1.0))};
+    }
+    return nearest;
 }
 
 std::string mismatch(const Reference& reference, const Scene& scene, const RenderParameters& parameters) {

@@ -148,20 +148,22 @@ class ObjReader {
         obj_.triangle_lines.push_back(static_cast<uint32_t>(statements_.line()));
     }
 
-    // Exporters do not escape spaces, so all words together are tried before each of them.
+    // Exporters do not escape spaces, so all words together are tried before each of them. A folder may have the name of a word.
     void read_libraries() {
+        std::error_code ignored;
         bool is_found = read_library(statements_.name());
         if (!is_found)
-            for (const std::string_view name : statements_.words()) is_found |= read_library(name);
+            for (const std::string_view name : statements_.words())
+                if (!std::filesystem::is_directory(path_.parent_path() / to_path(name), ignored)) is_found |= read_library(name);
         if (!is_found) note_missing(statements_.line(), "there is no material file " + in_quotes(statements_.name()));
     }
 
-    // Returns false if there is no such file. A folder may have the name of a word.
+    // Returns false if there is no such file.
     bool read_library(std::string_view name) {
         if (++library_names_ > max_library_names) statements_.fail("more than 256 names of material files");
         const std::filesystem::path folder = path_.parent_path(), file = folder / to_path(name);
         std::error_code ignored;  // a name that the file system refuses is not a file
-        if (name.empty() || !std::filesystem::exists(file, ignored) || std::filesystem::is_directory(file, ignored)) return false;
+        if (name.empty() || !std::filesystem::exists(file, ignored)) return false;
         if (!libraries_.insert(file.lexically_normal()).second) return true;  // already read
         read_materials(file, folder);
         return true;

@@ -1,16 +1,32 @@
-// What the backends and build_acceleration_structure() share.
+// The backends that Vulkan traces rays with, and what they share.
 #pragma once
+#include "gpu/compute_kernel.h"
 #include "tracing/tracer.h"
 
 namespace lab {
 
-std::unique_ptr<AccelerationStructure> build_compute_backend(const Device& device, const GpuScene& scene);
-std::unique_ptr<AccelerationStructure> build_query_backend(const Device& device, const GpuScene& scene);
-std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene);
-std::unique_ptr<AccelerationStructure> build_native_backend(const GpuScene& scene);
+extern const BackendRow pipeline_row, query_row, compute_row;
+inline constexpr Backend pipeline_backend = &pipeline_row;  // VK_KHR_ray_tracing_pipeline
+inline constexpr Backend query_backend = &query_row;        // VK_KHR_ray_query in a compute shader
+inline constexpr Backend compute_backend = &compute_row;    // our own bounding volume hierarchy in a compute shader
 
 // A shader of shaders/, with the defines for this scene and estimator.
 ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator);
+
+// Submits what a tracer records.
+class DeviceTracer : public Tracer {
+  public:
+    DeviceTracer(const Device& device, std::span<const Binding> bindings);
+    std::optional<double> trace(std::span<const DispatchParameters> steps, uint32_t block_count,
+                                uint32_t film_offset) const final;
+
+  private:
+    virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
+                        uint32_t film_offset) const = 0;
+
+    const Device& device_;
+    std::optional<ComputeKernel> adder_;  // of the samples of shared pixels to the film
+};
 
 // A scene's tree and the tracers for it. Backends add their shaders.
 template <typename Tree, typename TreeTracer>

@@ -46,7 +46,7 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, 
     };
     // The driver builds its acceleration structure from the first two.
     vk::BufferUsageFlags build_input;
-    if (device.has_acceleration_structures())
+    if (device.has_extension(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME))
         build_input =
             vk::BufferUsageFlagBits::eAccelerationStructureBuildInputReadOnlyKHR | vk::BufferUsageFlagBits::eShaderDeviceAddress;
     add("positions", BINDING_POSITIONS, scene.positions, build_input);

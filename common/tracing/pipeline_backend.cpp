@@ -17,10 +17,10 @@ vk::DeviceSize align(vk::DeviceSize size, vk::DeviceSize alignment) { return (si
 constexpr uint32_t first_miss_group = 1;
 constexpr uint32_t first_hit_group = 2;
 
-class PipelineTracer : public Tracer {
+class PipelineTracer : public DeviceTracer {
   public:
     PipelineTracer(const Device& device, const std::vector<ShaderSource>& shaders, const std::vector<Binding>& bindings)
-        : descriptors_(device, bindings, all_stages) {
+        : DeviceTracer(device, bindings), descriptors_(device, bindings, all_stages) {
         std::vector<std::vector<uint32_t>> compiled;
         std::string key = descriptors_.layout_text();
         for (const ShaderSource& source : shaders) {
@@ -31,6 +31,7 @@ class PipelineTracer : public Tracer {
         fill_shader_binding_table(device, static_cast<uint32_t>(shaders.size()));
     }
 
+  private:
     void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
                 uint32_t film_offset) const override {
         commands.bindPipeline(vk::PipelineBindPoint::eRayTracingKHR, *pipeline_->handle);
@@ -41,7 +42,6 @@ class PipelineTracer : public Tracer {
                               block_count * dispatch.threads_per_pixel * BLOCK_SIZE, 1, 1);
     }
 
-  private:
     Pipeline create_pipeline(const Device& device, const std::vector<std::vector<uint32_t>>& shaders) const {
         std::vector<vk::raii::ShaderModule> modules;
         std::vector<vk::PipelineShaderStageCreateInfo> stages;
@@ -117,10 +117,16 @@ class PipelineBackend : public SceneTree<HardwareBvh, PipelineTracer> {
     }
 };
 
-}  // namespace
-
-std::unique_ptr<AccelerationStructure> build_pipeline_backend(const Device& device, const GpuScene& scene) {
+std::unique_ptr<AccelerationStructure> build_pipeline(const Device& device, const GpuScene& scene) {
     return std::make_unique<PipelineBackend>(device, scene, HardwareBvh(device, scene));
 }
+
+constexpr const char* pipeline_extensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                               VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+                                               VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME};
+
+}  // namespace
+
+const BackendRow pipeline_row{.name = "pipeline", .extensions = pipeline_extensions, .build = build_pipeline};
 
 }  // namespace lab

@@ -1,5 +1,7 @@
 #include "tracing/tracer.h"
 
+#include <algorithm>
+
 #include "error.h"
 #include "files/file.h"
 #include "files/project_folder.h"
@@ -11,8 +13,8 @@ namespace {
 void require_support(Backend backend, const DeviceDescription& device) {
     if (device.supports(backend)) return;
     std::string working;
-    for (const Backend other : all_backends)
-        if (device.supports(other)) working += (working.empty() ? "" : ", ") + to_string(other);
+    for (const auto& [other, missing] : device.missing)
+        if (missing.empty()) working += (working.empty() ? "" : ", ") + to_string(other);
     throw DeviceError("device '" + device.name + "' lacks " + device.missing.at(backend).front() + " for the backend '" +
                       to_string(backend) + "'; these work on it: " + working);
 }
@@ -72,13 +74,29 @@ uint64_t estimator_hash(const Estimator& estimator) {
     return hash;
 }
 
+DeviceTracer::DeviceTracer(const Device& device, std::span<const Binding> bindings) : device_(device) {
+    if (std::ranges::find(bindings, BINDING_SAMPLES, &Binding::index) != bindings.end())
+        adder_.emplace(device, ShaderSource{.file = project_folder() / "shaders" / "engine/add_samples.comp"}, bindings,
+                       sizeof(DispatchParameters));
+}
+
+std::optional<double> DeviceTracer::trace(std::span<const DispatchParameters> steps, uint32_t block_count,
+                                          uint32_t film_offset) const {
+    return device_.submit([&](const vk::raii::CommandBuffer& commands) {
+        for (const DispatchParameters& step : steps) {
+            record(commands, step, block_count, film_offset);
+            if (!adder_) continue;
+            wait_for_writes(commands);
+            adder_->record(commands, &step, block_count, film_offset);
+            wait_for_writes(commands);
+        }
+    });
+}
+
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
                                                                     const GpuScene& scene) {
     require_support(backend, device.description());
-    if (backend == Backend::pipeline) return build_pipeline_backend(device, scene);
-    if (backend == Backend::query) return build_query_backend(device, scene);
-    if (backend == Backend::native) return build_native_backend(scene);
-    return build_compute_backend(device, scene);
+    return backend->build(device, scene);
 }
 
 }  // namespace lab

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -38,16 +39,16 @@ uint64_t estimator_hash(const Estimator& estimator);
 class Tracer {
   public:
     virtual ~Tracer() = default;
-    // Records the rendering of `block_count` blocks of pixels up to the dispatch's sample count. With SHARED_PIXELS
-    // shaders/engine/add_samples.comp must add the samples to the film. `film_offset` in bytes is that of the film's binding.
-    virtual void record(const vk::raii::CommandBuffer& commands, const DispatchParameters& dispatch, uint32_t block_count,
-                        uint32_t film_offset) const = 0;
+    // Renders `block_count` blocks of pixels up to the sample count of each step, one step after the other. `film_offset` in
+    // bytes is that of the film's binding. Returns the seconds on the device, or nothing if an interrupt ended blocks too early.
+    virtual std::optional<double> trace(std::span<const DispatchParameters> steps, uint32_t block_count,
+                                        uint32_t film_offset) const = 0;
     // How many paths a core of the CPU traces at once, and why not more of them.
     struct PathsAtOnce {
         int count = 1;
         std::string why_not_more = {};
     };
-    virtual PathsAtOnce paths_at_once() const { return {}; }
+    virtual std::optional<PathsAtOnce> paths_at_once() const { return std::nullopt; }  // nothing for other devices
 };
 
 // A scene's acceleration structure, shared by its tracers.
@@ -56,15 +57,15 @@ class AccelerationStructure {
     virtual ~AccelerationStructure() = default;
     // The shaders that make_tracer() compiles, main program first.
     virtual std::vector<ShaderSource> shaders(const Estimator& estimator) const = 0;
-    // `bindings`: render parameters, film, ray counters, and samples of shared pixels. Throws UserError if the estimator does not
-    // compile.
+    // `bindings`: render parameters, film, ray counters, and samples of shared pixels, if threads shall share pixels. Throws
+    // UserError if the estimator does not compile.
     virtual std::unique_ptr<Tracer> make_tracer(const Estimator& estimator, std::span<const Binding> bindings) const = 0;
-    virtual bool is_on_host() const { return false; }  // whether tracers do their work in record(), on the CPU
-    virtual size_t bytes() const = 0;                  // of device memory
-    virtual double build_seconds() const = 0;          // on the CPU or the device
+    virtual bool can_share_pixels() const { return true; }
+    virtual size_t bytes() const = 0;          // of device memory
+    virtual double build_seconds() const = 0;  // on the CPU or the device
 };
 
-// Device and scene must outlive the result. Throws DeviceError if the device does not support the backend.
+// Device and scene must outlive the result. Throws DeviceError if the device lacks something for the backend.
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device, const GpuScene& scene);
 
 }  // namespace lab

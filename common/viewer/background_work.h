@@ -6,15 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "files/project_folder.h"
 #include "gpu/device.h"
 #include "gpu/vulkan.h"
 
 namespace lab {
 
-// For handlers of the work's exceptions: returns the message for the window, or rethrows the loss of the device.
+// For handlers of exceptions: returns the message for the window, without the project's folder in names of files, or rethrows the
+// loss of the device.
 inline std::string window_message(const std::exception& error) {
     if (dynamic_cast<const vk::DeviceLostError*>(&error)) throw;
-    return failure_of(error).message;
+    std::string message = failure_of(error).message;
+    const std::string folder = project_folder().generic_string() + "/";
+    for (size_t at = message.find(folder); at != std::string::npos; at = message.find(folder)) message.erase(at, folder.size());
+    return message;
 }
 
 template <typename Result>

@@ -75,7 +75,7 @@ void Comparison::update(Session& first, double seconds, bool is_moving) {
     second_->is_paused = first.is_paused;
     const auto progress = [&](const Session& session) { return equal == Equal::time ? session.seconds() : session.samples(); };
     // Reduced pictures are about to be replaced.
-    const bool are_complete = first.reduction() == 1 && second_->reduction() == 1;
+    const bool are_complete = first.reduction() == 1 && second_->reduction() == 1 && !first.is_stuck() && !second_->is_stuck();
     first.waits = are_complete && progress(first) > progress(*second_);
     second_->waits = are_complete && progress(*second_) > progress(first);
     const bool is_one_waiting = first.waits || second_->waits;

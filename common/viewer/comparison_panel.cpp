@@ -6,6 +6,7 @@
 
 #include "rendering/numbers_text.h"
 #include "viewer/inside_drawing.h"
+#include "viewer/text.h"
 
 namespace lab {
 namespace {
@@ -32,9 +33,9 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
     const Session& second = comparison.second();
     const auto row = [](const char* side, const Session& session) {
         const auto error = session.relative_error();
-        ImGui::TextWrapped("%s %.6g samples per pixel in %s, noise %s", side, session.samples(),
-                           duration_text(session.seconds()).c_str(),
-                           error ? (short_number(100 * *error) + " %").c_str() : "not known yet");
+        text_in_words(side + (" " + samples_text(session.samples())) + " samples per pixel in " +
+                      duration_text(session.seconds()) + ", noise " +
+                      (error ? short_number(100 * *error) + " %" : "not known yet"));
     };
     row("left:", first);
     row("right:", second);

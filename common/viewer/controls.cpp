@@ -13,6 +13,8 @@
 #include "rendering/render_job.h"
 #include "rendering/settings.h"
 #include "scene/features.h"
+#include "viewer/inside_drawing.h"
+#include "viewer/text.h"
 
 namespace lab {
 namespace {
@@ -61,16 +63,16 @@ void draw_chapter_option(const ChapterOption& option, const RenderParameters& pa
 
 void draw_progress(const Session& session, double frames_per_second) {
     const FilmRecord& record = session.build().job.record;
-    const double seconds = std::max(session.seconds(), 1e-9), samples = session.samples();
+    const double rendered = session.seconds(), seconds = std::max(rendered, 1e-9), samples = session.samples();
     ImGui::TextWrapped("%s", session.chapter().title.c_str());
     ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
     ImGui::Separator();
-    if (session.target_samples() < UINT32_MAX - record.first_sample)
-        ImGui::Text("%.6g of %u samples per pixel in %s", samples, session.target_samples(), duration_text(seconds).c_str());
-    else
-        ImGui::Text("%.6g samples per pixel in %s", samples, duration_text(seconds).c_str());
-    ImGui::TextWrapped("per second: %s samples, %s rays, %.0f frames", short_number(samples / seconds).c_str(),
-                       short_number(static_cast<double>(session.rays()) / seconds).c_str(), frames_per_second);
+    const std::string target =
+        session.target_samples() < UINT32_MAX - record.first_sample ? " of " + std::to_string(session.target_samples()) : "";
+    text_in_words(samples_text(samples) + target + " samples per pixel in " + duration_text(rendered));
+    text_in_words("per second: " + short_number(samples / seconds) + " samples, " +
+                  short_number(static_cast<double>(session.rays()) / seconds) + " rays, " +
+                  std::to_string(std::lround(frames_per_second)) + " frames");
     constexpr double wanted = 0.01;
     if (const auto error = session.relative_error(); error && *error > wanted)
         ImGui::TextWrapped("noise %.3g %%, 1 %% in %s", 100 * *error,
@@ -78,10 +80,11 @@ void draw_progress(const Session& session, double frames_per_second) {
     else if (error)
         ImGui::Text("noise %.2g %%", 100 * *error);
     else
-        ImGui::TextUnformatted(session.reduction() > 1 ? "reduced while the camera moves" : "error not known yet");
+        ImGui::TextUnformatted(session.reduction() > 1 && !session.is_stuck() ? "reduced while the camera moves"
+                                                                              : "error not known yet");
     if (session.is_building()) ImGui::TextUnformatted("building ...");
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
-    if (!session.message().empty()) ImGui::TextWrapped("%s", session.message().c_str());
+    if (!session.message().empty()) text_in_words(session.message());
     ImGui::PopStyleColor();
 }
 
@@ -122,10 +125,11 @@ void draw_picture(const Session& session, Options& options) {
 
 int Controls::width() const { return static_cast<int>(std::ceil(panel_width() * ImGui::GetIO().DisplayFramebufferScale.x)); }
 
-void Controls::draw(Session& session, CameraControl& camera_control, double frames_per_second,
+void Controls::draw(Session& session, CameraControl& camera_control, const Rectangle& where, double frames_per_second,
                     const std::function<void()>& further) {
-    ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize({panel_width(), ImGui::GetIO().DisplaySize.y});
+    const Placement placement(where);
+    ImGui::SetNextWindowPos(placement.at({0, 0}));
+    ImGui::SetNextWindowSize({placement.size.x, placement.size.y});
     ImGui::Begin("Controls", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
@@ -189,6 +193,7 @@ void Controls::draw_scene(Session& session, Options& options) {
     ImGui::BeginDisabled(are_of_file);
     if (ImGui::Checkbox(are_of_file ? "specular lobes (Ks), of the scene" : "specular lobes (Ks)", &has_lobes))
         options.scene.specular = has_lobes;
+    lobes_box_ = {ImGui::GetItemRectMin().x + 8, ImGui::GetItemRectMin().y + 8};
     ImGui::EndDisabled();
 }
 

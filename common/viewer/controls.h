@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "viewer/camera_control.h"
+#include "viewer/screen.h"
 #include "viewer/session.h"
 
 namespace lab {
@@ -12,9 +13,11 @@ namespace lab {
 class Controls {
   public:
     // Call between Screen::begin_frame() and Screen::show(). `further` draws more sections of the panel.
-    void draw(Session& session, CameraControl& camera_control, double frames_per_second, const std::function<void()>& further);
-    int width() const;                               // in framebuffer pixels
+    void draw(Session& session, CameraControl& camera_control, const Rectangle& where, double frames_per_second,
+              const std::function<void()>& further);
+    int width() const;                               // beside the picture, in framebuffer pixels
     vec2 seed_field() const { return seed_field_; }  // for tests
+    vec2 lobes_box() const { return lobes_box_; }    // for tests
 
   private:
     void draw_actions(Session& session);
@@ -25,7 +28,7 @@ class Controls {
 
     const std::vector<std::filesystem::path> scenes_ = shipped_scenes();
     std::string notice_;  // the latest action
-    vec2 seed_field_{0};
+    vec2 seed_field_{0}, lobes_box_{0};
 };
 
 }  // namespace lab

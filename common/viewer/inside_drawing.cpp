@@ -47,9 +47,14 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
     }
     for (size_t i = 0; i < vertices.size(); ++i) {
         const auto position = vertices[i].is_hit ? project(camera, vertices[i].position) : std::nullopt;
-        if (position)
-            list.AddCircleFilled(placement.at(*position), i == chosen ? 6.0f : 4.0f,
-                                 i == chosen ? IM_COL32(255, 80, 200, 255) : IM_COL32(60, 200, 255, 255));
+        if (!position) continue;
+        const uint32_t colour = i == chosen ? IM_COL32(255, 80, 200, 255) : IM_COL32(60, 200, 255, 255);
+        const ImVec2 at = placement.at(*position);
+        list.AddCircleFilled(at, i == chosen ? 6.0f : 4.0f, colour);
+        const std::string name = "x" + std::to_string(i + 1);
+        const ImVec2 corner(at.x + 7, at.y - 0.5f * ImGui::GetFontSize()), size = ImGui::CalcTextSize(name.c_str());
+        list.AddRectFilled({corner.x - 2, corner.y}, {corner.x + size.x + 2, corner.y + size.y}, IM_COL32(0, 0, 0, 160));
+        list.AddText(corner, colour, name.c_str());
     }
     list.PopClipRect();
 }

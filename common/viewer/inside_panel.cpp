@@ -9,7 +9,9 @@
 #include "files/file.h"
 #include "rendering/settings.h"
 #include "statistics/error_metrics.h"
+#include "tracing/limited_loops.h"
 #include "viewer/inside_drawing.h"
+#include "viewer/text.h"
 
 namespace lab {
 namespace {
@@ -20,8 +22,13 @@ ImVec4 colour_of(VerdictState state) {
     return state == VerdictState::agrees ? green : state == VerdictState::biased ? red : grey;
 }
 
-void text_colour(const char* name, const vec3& v) { ImGui::TextWrapped("%s RGB %.3g %.3g %.3g", name, v.x, v.y, v.z); }
-void text_point(const char* name, const vec3& v) { ImGui::TextWrapped("%s (%.3g, %.3g, %.3g)", name, v.x, v.y, v.z); }
+void text_vector(const char* format, const char* name, const vec3& v) {
+    char text[160];
+    std::snprintf(text, sizeof text, format, name, v.x, v.y, v.z);
+    text_in_words(text);
+}
+void text_colour(const char* name, const vec3& v) { text_vector("%s RGB %.3g %.3g %.3g", name, v); }
+void text_point(const char* name, const vec3& v) { text_vector("%s (%.3g, %.3g, %.3g)", name, v); }
 
 }  // namespace
 
@@ -48,6 +55,7 @@ void InsidePanel::draw_panel(const std::string& whose, const Rectangle& panel) {
     const Placement placement(panel);
     ImGui::SetNextWindowPos({placement.corner.x, placement.corner.y});
     ImGui::SetNextWindowSize({placement.size.x, placement.size.y});
+    ImGui::SetNextWindowBgAlpha(1);  // controls may be behind it
     const auto& selection = *inspection_.selection();
     const std::string title = whose + ": sample " + std::to_string(selection.sample) + " of pixel (" +
                               std::to_string(selection.pixel.x) + ", " + std::to_string(selection.pixel.y) + ")###path";
@@ -58,10 +66,13 @@ void InsidePanel::draw_panel(const std::string& whose, const Rectangle& panel) {
         if (!inspection_.message().empty()) ImGui::TextWrapped("%s", inspection_.message().c_str());
         if (inspection_.path()) {
             draw_sample();
-            ImGui::BeginChild("vertices", {0.59f * ImGui::GetContentRegionAvail().x, 0}, true);
+            // Side by side where there is room for whole lines, or else one below the other.
+            const ImVec2 free = ImGui::GetContentRegionAvail();
+            const bool is_narrow = free.x < 30 * ImGui::GetFontSize();
+            ImGui::BeginChild("vertices", is_narrow ? ImVec2(0, 0.33f * free.y) : ImVec2(0.56f * free.x, 0), true);
             draw_vertices();
             ImGui::EndChild();
-            ImGui::SameLine();
+            if (!is_narrow) ImGui::SameLine();
             ImGui::BeginChild("hemisphere");
             draw_hemisphere();
             ImGui::EndChild();
@@ -71,9 +82,14 @@ void InsidePanel::draw_panel(const std::string& whose, const Rectangle& panel) {
     if (!is_open) inspection_.deselect();
 }
 
-void InsidePanel::draw_controls(const Session& session) {
+void InsidePanel::draw_controls(Session& session) {
     ImGui::Separator();
     draw_verdict(session);
+    if (const auto& settings = session.settings_for_verdict()) {
+        const std::string label =
+            "Verdict: max path length " + std::to_string(settings->max_path_length) + ", " + size_text(settings->image_size);
+        if (ImGui::Button(label.c_str())) session.change_for_verdict();
+    }
     if (ImGui::CollapsingHeader("look inside")) {
         int overlay = static_cast<int>(overlay_.shown);
         ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));
@@ -105,11 +121,15 @@ void InsidePanel::select_clicked_pixel(const Session& session, float split, cons
 
 void InsidePanel::draw_verdict(const Session& session) {
     const VerdictState state = session.verdict_state();
-    // Constant height, so that nothing below jumps.
-    ImGui::BeginChild("verdict", {0, 3 * ImGui::GetTextLineHeightWithSpacing()}, false, ImGuiWindowFlags_NoScrollbar);
+    std::string text = session.verdict_text();
+    if (session.has_moved()) text += "\nF: back to the first camera";
+    const std::string lines = broken_between_words(text, ImGui::GetContentRegionAvail().x);
+    // Nothing below jumps as long as three lines are enough.
+    const float height = std::max(3 * ImGui::GetTextLineHeightWithSpacing(),
+                                  ImGui::CalcTextSize(lines.c_str()).y + ImGui::GetStyle().ItemSpacing.y);
+    ImGui::BeginChild("verdict", {0, height}, false, ImGuiWindowFlags_NoScrollbar);
     ImGui::PushStyleColor(ImGuiCol_Text, colour_of(state));
-    ImGui::TextWrapped("%s", session.verdict_text().c_str());
-    if (session.has_moved()) ImGui::TextWrapped("F: back to the first camera");
+    ImGui::TextUnformatted(lines.c_str());
     ImGui::PopStyleColor();
     ImGui::EndChild();
     if (state != VerdictState::none && ImGui::IsItemHovered())
@@ -200,15 +220,21 @@ void InsidePanel::draw_hemisphere() {
     double mean = 0;
     for (const float value : pictures_.incoming_radiance.pixels) mean += value;
     mean /= static_cast<double>(pictures_.incoming_radiance.pixels.size());
-    ImGui::TextWrapped("what x%zu sees: incoming radiance, BRDF, cosine", vertex);
+    text_in_words("what x" + std::to_string(vertex) + " sees: incoming radiance, BRDF, cosine");
+    // In a row, or where there is little room the last two smaller, one below the other.
     const ImVec2 free = ImGui::GetContentRegionAvail();
-    const float width = std::max(
-        std::min((free.x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3, free.y - 3 * ImGui::GetTextLineHeightWithSpacing()), 1.0f);
-    draw_disc(pictures_.incoming_radiance, mean > 0 ? static_cast<float>(0.25 / mean) : 1, width);
+    const float space = ImGui::GetStyle().ItemSpacing.x, gap = ImGui::GetStyle().ItemSpacing.y;
+    const float tall = free.y - 3.5f * ImGui::GetTextLineHeightWithSpacing(), in_row = (free.x - 2 * space) / 3;
+    const bool is_row = in_row >= 0.8f * tall;
+    const float first = std::max(is_row ? std::min(in_row, tall) : std::min(0.66f * (free.x - space), tall), 1.0f);
+    const float others = is_row ? first : std::max(0.5f * (first - gap), 1.0f);
+    draw_disc(pictures_.incoming_radiance, mean > 0 ? static_cast<float>(0.25 / mean) : 1, first);
     ImGui::SameLine();
-    draw_disc(pictures_.brdf, 1 / largest(pictures_.brdf), width);
-    ImGui::SameLine();
-    draw_disc(pictures_.cosine, 1, width);
+    ImGui::BeginGroup();
+    draw_disc(pictures_.brdf, 1 / largest(pictures_.brdf), others);
+    if (is_row) ImGui::SameLine();
+    draw_disc(pictures_.cosine, 1, others);
+    ImGui::EndGroup();
     text_colour("their product reflects radiance", pictures_.reflected_radiance());
     ImGui::Text("mean of %.0f samples", pictures_samples_);
     if (ImGui::IsItemHovered())
@@ -238,7 +264,7 @@ bool Inspection::have_tools(const Session& session) {
     const WindowBuild& build = session.build();
     Options options = build.job.options;
     options.image.view = nullptr;
-    const Estimator estimator = make_estimator(session.chapter(), options);
+    const Estimator estimator = with_limited_loops(make_estimator(session.chapter(), options));
     uint64_t hash = hash_text(estimator.file.string(), build.shader_hash);
     for (const auto& define : estimator.defines) hash = hash_text(define + "\n", hash);
     const auto wanted = std::make_shared<Tools>(Tools{.scene = build.job.scene,
@@ -261,7 +287,7 @@ bool Inspection::have_tools(const Session& session) {
     return false;
 }
 
-void Inspection::update(const Session& session, double seconds) {
+void Inspection::update(const Session& session, double seconds) try {
     if (!selection_ || session.reduction() > 1 || !have_tools(session)) {
         path_.reset();
         shown_.reset();
@@ -273,6 +299,7 @@ void Inspection::update(const Session& session, double seconds) {
     parameters_ = parameters;
     selection_->pixel = glm::min(selection_->pixel, parameters.image_size - 1u);
     if (shown_ != selection_) {
+        message_.clear();
         if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample)
             path_ = tools_->recorder->record(parameters, selection_->pixel, parameters.first_sample + selection_->sample);
         has_hemisphere_ = false;
@@ -288,6 +315,11 @@ void Inspection::update(const Session& session, double seconds) {
     constexpr uint32_t enough_samples = 256;
     tools_->hemisphere->set_dispatch_seconds(seconds);
     tools_->hemisphere->advance(enough_samples);
+} catch (const StuckLoop& loop) {
+    message_ = window_message(loop);
+    path_.reset();
+    has_hemisphere_ = false;
+    shown_ = selection_;  // not again
 }
 
 }  // namespace lab

@@ -71,7 +71,7 @@ class InsidePanel {
               double seconds);
     int height() const;  // of the panel, in framebuffer pixels
     // Draws a section of the controls.
-    void draw_controls(const Session& session);
+    void draw_controls(Session& session);
     const Inspection& inspection() const { return inspection_; }
     void show_next_overlay() { overlay_.show_next(); }
 

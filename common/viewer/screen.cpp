@@ -82,6 +82,9 @@ void Screen::start_user_interface() {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::StyleColorsDark();
+    // Darker knobs, so that the numbers over them can be read.
+    ImGui::GetStyle().Colors[ImGuiCol_SliderGrab] = ImVec4(0.16f, 0.36f, 0.62f, 1);
+    ImGui::GetStyle().Colors[ImGuiCol_SliderGrabActive] = ImVec4(0.2f, 0.44f, 0.76f, 1);
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // write no settings file
     const float scale = window_->scale();

@@ -6,10 +6,9 @@
 
 #include "error.h"
 #include "files/file.h"
-#include "files/project_folder.h"
 #include "rendering/outputs.h"
-#include "rendering/scene_reference.h"
 #include "rendering/settings.h"
+#include "tracing/limited_loops.h"
 
 namespace lab {
 namespace {
@@ -17,13 +16,6 @@ namespace {
 // Whether a render can continue under the other options.
 bool has_same_samples(const Options& a, const Options& b) {
     return a.samples == b.samples && a.camera == b.camera && a.light == b.light;
-}
-
-// Removes the project's folder from file names in a message.
-std::string shortened(std::string message) {
-    const std::string folder = project_folder().generic_string() + "/";
-    for (size_t at = message.find(folder); at != std::string::npos; at = message.find(folder)) message.erase(at, folder.size());
-    return message;
 }
 
 }  // namespace
@@ -81,7 +73,15 @@ void Session::update(double dispatch_seconds, bool is_moving) {
     else if (reduction_ > 1 && !is_moving && build_->renderer->samples() >= 1)
         begin(1);
     // The build matters more than the picture it replaces; both may need the same processor.
-    render(is_building() ? 0.1 * dispatch_seconds : dispatch_seconds);
+    if (is_stuck_) return;
+    try {
+        render(is_building() ? 0.1 * dispatch_seconds : dispatch_seconds);
+    } catch (const StuckLoop& loop) {
+        begin(reduction_);  // the film holds wrong samples
+        is_stuck_ = true;
+        message_ = window_message(loop);
+        verdict_ = "a loop of the shader does not end";
+    }
 }
 
 void Session::look_for_changed_shaders() {
@@ -134,7 +134,7 @@ void Session::adopt_finished_build() {
 }
 
 void Session::take_back(const std::string& why) {
-    message_ = shortened(why);
+    message_ = why;
     // Blame the shaders only if nothing else changed and they are still the compiled ones.
     if (work_stage_ == BuildStage::nothing && hash_of(watched_shaders_) == work_shader_hash_)
         failed_shader_hash_ = work_shader_hash_;
@@ -143,6 +143,7 @@ void Session::take_back(const std::string& why) {
 
 void Session::begin(uint32_t reduction) {
     needs_restart_ = false;
+    if (std::exchange(is_stuck_, false)) message_.clear();
     const Options before = build_->job.options;
     try {
         set_options(build_->job, chapter_, keep_built(before, options_));
@@ -159,6 +160,18 @@ void Session::begin(uint32_t reduction) {
     snapshot_ = {};
     snapshot_error_.reset();
     verdict_ = find_verdict();
+    verdict_settings_.reset();
+    const RenderJob& job = build_->job;
+    if (!verdict() && reduction_ == 1 && !job.options.image.view)
+        verdict_settings_ = lab::settings_for_verdict(*job.scene, job.parameters);
+}
+
+void Session::change_for_verdict() {
+    Options options = options_;
+    options.light.max_path_length = verdict_settings_->max_path_length;
+    options.image.width = verdict_settings_->image_size.x;
+    options.image.height = verdict_settings_->image_size.y;
+    change(options);
 }
 
 // Starts a live verdict, or says why there is none.
@@ -171,7 +184,7 @@ std::variant<LiveVerdict, std::string> Session::find_verdict() const {
         if (const auto* why = std::get_if<std::string>(&reference)) return *why;
         return LiveVerdict(std::get<Reference>(std::move(reference)), job.parameters.image_size);
     } catch (const UserError& error) {
-        return shortened(error.what());
+        return window_message(error);
     }
 }
 
@@ -290,6 +303,7 @@ std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapt
     // Hash before compiling, so that changes made meanwhile are noticed.
     build->shader_files = shader_files(job.estimator);
     build->shader_hash = hash_of(build->shader_files);
+    job.estimator = with_limited_loops(std::move(job.estimator));
     static_cast<Build&>(*build) = make_build(device, chapter, std::move(job), first, before);
     const uvec2 size = build->job.parameters.image_size;
     std::shared_ptr<StorageImage> picture = before ? before->display->shared_picture() : nullptr;

@@ -5,6 +5,7 @@
 
 #include "clock.h"
 #include "rendering/build.h"
+#include "rendering/scene_reference.h"
 #include "statistics/live_verdict.h"
 #include "viewer/background_work.h"
 #include "viewer/screen.h"
@@ -61,6 +62,8 @@ class Session {
     // Whether another scene is being loaded, although camera and background are already the new ones.
     bool is_loading_scene() const { return reloads_scene_ || options_.scene.file != build_->job.options.scene.file; }
     const std::string& message() const { return message_; }  // the last failure, or empty
+    // Whether rendering has ended because of a loop that does not. It is tried again after any change.
+    bool is_stuck() const { return is_stuck_; }
 
     // --- Progress since the last restart.
     uint32_t target_samples() const;             // per pixel; UINT32_MAX without --samples
@@ -77,6 +80,9 @@ class Session {
     const Verdict* latest_verdict() const { return verdict() && verdict()->verdict() ? &*verdict()->verdict() : nullptr; }
     VerdictState verdict_state() const;
     std::string verdict_text() const;
+    // Where there is no verdict: the nearest settings that give one, if any, and a change to them.
+    const std::optional<VerdictSettings>& settings_for_verdict() const { return verdict_settings_; }
+    void change_for_verdict();
 
     // Writes the current picture in the formats given by the files' extensions.
     void save(const std::vector<std::filesystem::path>& files);
@@ -114,12 +120,14 @@ class Session {
     std::string message_;
 
     bool needs_restart_ = true;
+    bool is_stuck_ = false;
     uint32_t reduction_ = 1;
     double paths_per_second_ = 0;  // camera paths, measured
     double seconds_ = 0;
     FilmImage snapshot_;  // at the last power of two
     FilmRecord snapshot_record_;
     std::variant<LiveVerdict, std::string> verdict_ = "the render goes on from an earlier one";
+    std::optional<VerdictSettings> verdict_settings_;
     std::optional<double> snapshot_error_;
 };
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "platform.h"
+#include "rendering/numbers_text.h"
 #include "viewer/comparison_panel.h"
 
 namespace lab {
@@ -40,7 +41,8 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
       comparison_(device) {}
 
 bool Viewer::frame() {
-    const bool has_work = !session_.is_paused && !session_.is_building() && session_.samples() < session_.target_samples();
+    const bool has_work =
+        !session_.is_paused && !session_.is_stuck() && !session_.is_building() && session_.samples() < session_.target_samples();
     window_.poll_events(has_work ? 0 : 0.02);
     if (window_.should_close() || is_interrupted()) return false;
     const auto start = Clock::now();
@@ -56,7 +58,7 @@ bool Viewer::frame() {
         inside_panel_.draw(session_, beside, beside ? comparison_.split : 1, picture_rectangle(), path_rectangle(),
                            0.15 * budget);
         draw_halves(comparison_, session_, picture_rectangle());
-        controls_.draw(session_, camera_control_, frames_per_second_, [&] {
+        controls_.draw(session_, camera_control_, controls_rectangle(), frames_per_second_, [&] {
             inside_panel_.draw_controls(session_);
             draw_controls(comparison_, session_);
         });
@@ -75,9 +77,24 @@ bool Viewer::frame() {
     return true;
 }
 
+bool Viewer::is_narrow() const { return static_cast<int>(screen_.size().x) < 5 * controls_.width() / 3; }
+
+Rectangle Viewer::controls_rectangle() const {
+    const glm::ivec2 window(screen_.size());
+    if (!is_narrow()) return {{0, 0}, {controls_.width(), window.y}};
+    const glm::dvec2 picture(session_.build().job.parameters.image_size);
+    const int top = std::min(static_cast<int>(window.x * picture.y / picture.x), window.y / 2);
+    return {{0, top}, {window.x, window.y - top}};
+}
+
 Rectangle Viewer::path_rectangle() const {
     const glm::ivec2 window(screen_.size());
-    const int left = shows_controls_ ? std::min(controls_.width(), window.x / 2) : 0;
+    if (shows_controls_ && is_narrow()) {  // over the controls
+        Rectangle whole = controls_rectangle();
+        if (!inside_panel_.inspection().selection()) whole.size.y = 0;
+        return whole;
+    }
+    const int left = shows_controls_ ? controls_.width() : 0;
     const int height = shows_controls_ ? std::min(inside_panel_.height(), window.y * 2 / 5) : 0;
     return {{left, window.y - height}, {window.x - left, height}};
 }
@@ -146,7 +163,7 @@ void run_viewer(Window& window, const Device& device, const Chapter& chapter, co
         session.keep_snapshot_after(error, options.outputs);
     }
     if (options.quiet) return;
-    std::printf("samples        %.6g a pixel\n", session.samples());
+    std::printf("samples        %s a pixel\n", samples_text(session.samples()).c_str());
     for (const auto& file : options.outputs) std::printf("picture        %s\n", file.string().c_str());
 }
 

@@ -27,8 +27,10 @@ class Viewer {
     Comparison& comparison() { return comparison_; }
     Rectangle picture_rectangle() const;  // in the window
     Rectangle path_rectangle() const;     // panel below for the selected path; of height 0 without one
+    Rectangle controls_rectangle() const;
 
   private:
+    bool is_narrow() const;  // too narrow for controls beside the picture: they are below
     void move_camera(double seconds);
     void handle_keys();
 

@@ -156,7 +156,7 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
 
 int run(const Options& options) {
     check_writable(options.output, {".json"});  // fail before spending minutes
-    const Device device({options.device});
+    const Device device({.choice = options.device, .backends = all_backends});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size, options.size);
     json record = record_of(device);
@@ -166,10 +166,10 @@ int run(const Options& options) {
     record["scenes"] = describe_shipped_scenes(device);
     std::vector<Backend> backends;
     std::copy_if(std::begin(all_backends), std::end(all_backends), std::back_inserter(backends), [&](Backend backend) {
-        return description.supports(backend) && (backend != Backend::native || description.kind == "CPU");
+        return description.supports(backend) && (backend != native_backend || description.kind == "CPU");
     });
     for (const Backend backend : backends)
-        if (backend != Backend::native)  // which has no SPIR-V to count
+        if (backend != native_backend)  // which has no SPIR-V to count
             record["features"].push_back(measure_features(device, backend, options));
     for (const Growth& growth : all_growths(options.size))
         for (const Backend backend : backends) record["growth"].push_back(measure_growth(device, backend, growth, options));

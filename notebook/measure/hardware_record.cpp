@@ -19,7 +19,7 @@ namespace {
 // paths are adjacent in memory.
 std::vector<std::string> path_defines(Backend backend, size_t path_count) {
     const std::string index =
-        backend == Backend::pipeline ? "gl_LaunchIDEXT.x" : "gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex";
+        backend == pipeline_backend ? "gl_LaunchIDEXT.x" : "gl_WorkGroupID.x * 64u + gl_LocalInvocationIndex";
     return {"PATH_INDEX (dispatch.first_block * 64u + " + index + ")", "PATH_COUNT " + std::to_string(path_count) + "u"};
 }
 
@@ -58,8 +58,8 @@ json measure(const Device& device, const Subject& subject) {
     device.submit([&](const vk::raii::CommandBuffer& commands) { commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, 0); });
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
     {
-        const auto structure = build_acceleration_structure(Backend::compute, device, gpu_scene);
-        Estimator record{measure / "record_rays.glsl", path_defines(Backend::compute, path_count), estimator.file};
+        const auto structure = build_acceleration_structure(compute_backend, device, gpu_scene);
+        Estimator record{measure / "record_rays.glsl", path_defines(compute_backend, path_count), estimator.file};
         record.defines.insert(record.defines.end(), estimator.defines.begin(), estimator.defines.end());
         Renderer recorder(device, *structure, record, parameters, {&ray_binding, 1});
         while (recorder.advance(1)) {
@@ -97,7 +97,7 @@ json measure(const Device& device, const Subject& subject) {
 
 int run(const RecordSettings& settings) {
     check_writable(settings.output, {".json"});  // fail before spending minutes
-    const Device device({settings.device});
+    const Device device({.choice = settings.device, .backends = all_backends});
     const uint32_t size = settings.size;
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), size, size);

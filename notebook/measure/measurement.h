@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "app/backends.h"
 #include "gpu/device.h"
 
 namespace lab {

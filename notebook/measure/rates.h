@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "app/backends.h"
 #include "rendering/renderer.h"
 
 namespace lab {

@@ -67,7 +67,7 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
 
     const GpuScene gpu_scene(device, scene);
     std::vector<Side> sides;
-    for (const Backend backend : {Backend::compute, Backend::native})
+    for (const Backend backend : {compute_backend, native_backend})
         if (device.description().supports(backend)) sides.emplace_back(backend, device, gpu_scene, parameters);
     for (uint32_t run = 0; run <= options.runs; ++run)
         for (Side& side : sides) {
@@ -87,7 +87,7 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
 }
 
 int run(const Options& options) {
-    const Device device({.choice = options.device});
+    const Device device({.choice = options.device, .backends = all_backends});
     std::printf("%s, %s\n", device.description().name.c_str(), device.description().driver.c_str());
     compare(device, options, 5, 3);
     compare(device, options, 200, 100);

@@ -1,4 +1,10 @@
 // What all backends run for a pixel: brings it to the requested number of samples, or renders this thread's share of them.
+
+// Numbers of rays. Behind them is the place of a loop that does not end, or 0.
+layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uint ray_counters[]; };
+#ifdef LIMITED_LOOPS
+#include "limited_loops.glsl"
+#endif
 #include "world/constants.glsl"
 #include "world/random.glsl"
 #include "world/frame.glsl"
@@ -13,7 +19,6 @@
 #include "film.glsl"
 
 layout(scalar, set = 0, binding = BINDING_FILM) buffer Film { FilmPixel film[]; };
-layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uint ray_counters[]; };
 #ifdef SHARED_PIXELS
 layout(scalar, set = 0, binding = BINDING_SAMPLES) writeonly buffer Samples { vec3 samples[]; };
 #endif
@@ -29,6 +34,9 @@ bool is_counted(uint path_length) {
 
 // Generates the camera ray through a random point of the pixel for the sample with this index, and seeds its random numbers.
 Ray start_sample(uvec2 position, uint index, out uvec2 seed) {
+#ifdef LIMITED_LOOPS
+    start_counting_iterations();
+#endif
     uint pixel_index = position.y * parameters.image_size.x + position.x;
     seed = random_start_state(pixel_index, parameters.first_sample + index, parameters.seed_key);
     vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
@@ -69,6 +77,9 @@ void render_pixel(uint invocation) {
 
     // L := 1/N sum of path_trace(x_0, ω_0, 0) over N samples. The film is divided by N when it is read.
     uint first = film[film_index].sample_count;
+#ifdef LIMITED_LOOPS
+    samples_with_own_loops = (dispatch.target_samples - first) / dispatch.threads_per_pixel + 1u;
+#endif
 #ifdef SHARED_PIXELS
     uint turn = group % dispatch.threads_per_pixel;
     sample_place = (block * dispatch.samples_per_pixel + turn) * BLOCK_SIZE + index;

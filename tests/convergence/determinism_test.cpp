@@ -115,7 +115,7 @@ TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
     // With a film that shaders see in parts: the checkpoint contains the samples of all parts.
     const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
     const GpuScene gpu_scene(test_device(), scene);
-    const auto acceleration_structure = build_acceleration_structure(Backend::compute, test_device(), gpu_scene);
+    const auto acceleration_structure = build_acceleration_structure(compute_backend, test_device(), gpu_scene);
     const auto make_renderer = [&] {
         return Renderer(test_device(), *acceleration_structure, settings().estimator, make_parameters(scene, settings()), {},
                         two_rows_of_blocks);
@@ -173,7 +173,7 @@ class PathRegeneration : public OnEachBackend {
     // of the pixels differed by up to 3e-6.
     static void expect_same(const FilmImage& a, const FilmImage& b, const std::string& name) {
         const bool is_cpu = test_device().physical().getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
-        if (GetParam() != Backend::pipeline || is_cpu) {
+        if (GetParam() != pipeline_backend || is_cpu) {
             EXPECT_TRUE(are_identical(a, b)) << name;
             return;
         }

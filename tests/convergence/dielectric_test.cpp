@@ -102,9 +102,9 @@ void expect_beers_law(float thickness, float degrees, float scale, Backend backe
 }
 
 TEST(Dielectric, AbsorbsByBeersLaw) {
-    expect_beers_law(0.1f, 0, 1, Backend::compute);
-    expect_beers_law(1, 0, 1, Backend::compute);
-    expect_beers_law(1, 50, 1, Backend::compute);
+    expect_beers_law(0.1f, 0, 1, compute_backend);
+    expect_beers_law(1, 0, 1, compute_backend);
+    expect_beers_law(1, 50, 1, compute_backend);
 }
 
 class DielectricOnEachBackend : public OnEachBackend {};

@@ -88,7 +88,7 @@ std::string case_name(const ReferenceCase& c) {
 // users get.
 Backend backend_for(const ReferenceCase& c) {
     const auto first = std::ranges::find(all_references, c.chapter, &ReferenceCase::chapter);
-    return &*first == &c ? Backend::compute : fastest_backend();
+    return &*first == &c ? compute_backend : fastest_backend();
 }
 
 class ReferenceImage : public testing::TestWithParam<size_t> {};

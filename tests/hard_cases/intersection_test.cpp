@@ -70,7 +70,7 @@ void Intersection::expect_no_self_hits(uint32_t effort) const {
     Random random(1);
     for (size_t i = 0; i < 3 * triangle_count; ++i) slivers.push_back(random.point());
     const std::vector<vec3> sizes = random.triangles(triangle_count);
-    const bool is_ours = GetParam() == Backend::compute;
+    const bool is_ours = GetParam() == compute_backend;
     // In 32 bits, the distance of a ray from a sliver that it runs along can be anything: 6 of 10^6 rays hit one of these again,
     // which cover a negligible area. Drivers have their own triangle tests, and that of an NVIDIA H200 lets 9 of 1000 do so.
     const double largest_part_of_slivers = is_ours ? 5e-5 : 0.02;
@@ -86,7 +86,7 @@ void Intersection::expect_no_self_hits(uint32_t effort) const {
 
 TEST_P(Intersection, NoRayHitsTheTriangleItLeaves) { expect_no_self_hits(1); }
 // Trees of slivers can be slow: lavapipe needs a second for 10^5 rays.
-TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleItLeaves_all) { expect_no_self_hits(GetParam() == Backend::compute ? 16 : 4); }
+TEST_P(Intersection, NoneOfManyRaysHitsTheTriangleItLeaves_all) { expect_no_self_hits(GetParam() == compute_backend ? 16 : 4); }
 
 void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) const {
     const auto turn = [](float angle) { return mat3(glm::rotate(glm::mat4(1), angle, glm::normalize(vec3(1, 2, -0.5f)))); };
@@ -101,7 +101,7 @@ void Intersection::expect_no_self_hits_of_stretched_instances(uint32_t effort) c
         {"slender_only_in_the_mesh", scale(100, 1, 1), scale(0.01f, 1, 1)},
         {"slender_only_in_the_mesh_turned", turn(0.7f) * scale(1, 1e3f, 1), scale(1, 1e-3f, 1)},
     };
-    const uint32_t size = GetParam() == Backend::compute ? 320 : 160;  // drivers' trees of slivers are slow
+    const uint32_t size = GetParam() == compute_backend ? 320 : 160;  // drivers' trees of slivers are slow
     for (const auto& [name, object_to_world, before] : cases) {
         std::vector<vec3> corners = Random(2).triangles(200);
         for (vec3& corner : corners) corner = before * corner;
@@ -235,7 +235,7 @@ void Intersection::expect_no_escapes(uint32_t effort) const {
         {"far_plane", grid_pyramid(100, 12, far), far + vec3(6, 6, 4), 1},
         {"large_triangles", bumpy_sphere(4), vec3(0), 0.3f},
     };
-    const bool is_ours = GetParam() == Backend::compute;
+    const bool is_ours = GetParam() == compute_backend;
     const double rays_of_all = (is_ours ? 1e6 : 2e5) * effort;
     // Our own triangle test is watertight; drivers' are not necessarily: an NVIDIA H200 lets through 8 of 10,000 rays far from
     // the origin, lavapipe 2 % of the rays that aim at a vertex.

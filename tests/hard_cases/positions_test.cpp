@@ -25,7 +25,7 @@ class Positions : public OnEachBackend {
                               32);
     }
     // What drivers do is measured. Our code goes as far as areas and volumes fit into 32 bits.
-    static bool is_of_a_driver() { return GetParam() == Backend::pipeline || GetParam() == Backend::query; }
+    static bool is_of_a_driver() { return GetParam() == pipeline_backend || GetParam() == query_backend; }
 };
 INSTANTIATE_TEST_SUITE_P(Backends, Positions, testing::ValuesIn(all_backends), own_backend_name);
 

@@ -16,7 +16,7 @@ glm::dvec3 probe_total(const Scene& scene, const RenderSettings& settings) {
 }
 
 std::vector<std::string> chapters_for(Backend backend, std::vector<std::string> all) {
-    if (backend != Backend::compute) all.resize(1);
+    if (backend != compute_backend) all.resize(1);
     return all;
 }
 

@@ -12,6 +12,7 @@
 #include "support/gpu_test.h"
 #include "support/render.h"
 #include "support/scenes.h"
+#include "tracing/limited_loops.h"
 
 namespace lab {
 namespace {
@@ -102,7 +103,7 @@ Limits limits_of(const Scene& scene, Backend backend) {
     if (triangles > 1000000) limits = {.radiance = 1e-2, .fraction = 5e-4};
     // Sine, cosine and arctangent are the CPU's on `native` and the driver's elsewhere. Near a small sun in a light probe,
     // rounding the direction changes radiance by some percent, and equally so in all paths.
-    if (backend == Backend::native && scene.light_probe)
+    if (backend == native_backend && scene.light_probe)
         limits = {std::max(limits.radiance, 1e-2), std::max(limits.fraction, 2e-4), 1e-4};
     return limits;
 }
@@ -133,7 +134,7 @@ class Parity : public testing::TestWithParam<Backend> {
 
     void expect_same(const std::string& what, const Scene& scene, uint32_t size, const Limits& limits) {
         const RenderSettings settings{.width = size, .height = size};
-        expect_parity(what, GetParam(), BackendScene(Backend::compute, scene).render(settings),
+        expect_parity(what, GetParam(), BackendScene(compute_backend, scene).render(settings),
                       BackendScene(GetParam(), scene).render(settings), limits);
     }
 
@@ -146,7 +147,7 @@ void Parity::expect_same_on(const std::filesystem::path& file, const Estimators&
     for (const bool with_probe : {false, true}) {
         const auto samples_so = [&](const auto& e) { return samples_probe(e.second.estimator) == with_probe; };
         if (std::none_of(estimators.begin(), estimators.end(), samples_so)) continue;
-        const BackendScene expected(Backend::compute, scene, with_probe), actual(GetParam(), scene, with_probe);
+        const BackendScene expected(compute_backend, scene, with_probe), actual(GetParam(), scene, with_probe);
         for (const auto& [name, settings] : estimators)
             if (samples_so(std::pair(name, settings)))
                 expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings), actual.render(settings),
@@ -161,6 +162,22 @@ TEST_P(Parity, ChaptersWithTheirOwnPaths) {
     std::vector<std::string> chapters = chapters_that([](const std::string& chapter) { return !repeats_another(chapter); });
     chapters.push_back(all_chapters.back());
     expect_same_on(project_folder() / "assets/scenes/cornell_box.json", with_every_hit(estimators_of(chapters)));
+}
+
+// In the window, loops that do not end are ended. Others are not changed by that.
+TEST_P(Parity, LimitedLoopsFollowTheSamePaths) {
+    for (const bool with_probe : {false, true}) {
+        const Scene scene = load_shipped_scene("cornell_box.json");
+        for (const Backend backend : {compute_backend, GetParam()}) {
+            const BackendScene traced(backend, scene, with_probe);
+            for (auto [name, settings] : estimators_of({all_chapters.front(), all_chapters.back()})) {
+                if (samples_probe(settings.estimator) != with_probe) continue;
+                const TracedImage expected = traced.render(settings);
+                settings.estimator = with_limited_loops(settings.estimator);
+                expect_parity(name + ", limited", backend, expected, traced.render(settings), {});
+            }
+        }
+    }
 }
 
 class ParityOnScenes : public Parity {};
@@ -214,10 +231,10 @@ TEST_P(Parity, LargeMeshes) {
     }
 }
 
-const auto other_backends = testing::Values(Backend::pipeline, Backend::query, Backend::native);
+const auto other_backends = testing::Values(pipeline_backend, query_backend, native_backend);
 INSTANTIATE_TEST_SUITE_P(, Parity, other_backends, backend_name);
 INSTANTIATE_TEST_SUITE_P(, ParityOnScenes, other_backends, [](const auto& backend) {
-    return instance_name(to_string(backend.param), backend.param == Backend::pipeline ? Run::always : Run::with_all);
+    return instance_name(to_string(backend.param), backend.param == pipeline_backend ? Run::always : Run::with_all);
 });
 
 }  // namespace

@@ -82,7 +82,7 @@ void FeatureCode::expect_no_feature_in_bare_scene(Backend backend) const {
     const Footprint bare = footprint(bare_scene(), backend);
     const std::set<uint32_t> arrays{BINDING_POSITIONS, BINDING_TRIANGLES, BINDING_TRIANGLE_MATERIALS, BINDING_MATERIALS};
     std::set<uint32_t> others{BINDING_RENDER_PARAMETERS, BINDING_FILM, BINDING_RAY_COUNTERS};
-    if (backend == Backend::compute)
+    if (backend == compute_backend)
         others.insert({BINDING_BVH_NODES, BINDING_BVH_TRIANGLES});
     else
         others.insert({BINDING_ACCELERATION_STRUCTURE, BINDING_GEOMETRY_FIRST_TRIANGLES});
@@ -131,18 +131,18 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
 
 // The native backend translates the shaders of compute.
 TEST_P(FeatureCode, OfABareSceneIsOfNoFeature) {
-    for (const Backend backend : {Backend::pipeline, Backend::query, Backend::compute}) {
+    for (const Backend backend : {pipeline_backend, query_backend, compute_backend}) {
         SCOPED_TRACE(to_string(backend));
         if (test_device().description().supports(backend)) expect_no_feature_in_bare_scene(backend);
     }
 }
 
 // So the test above would find each of them.
-TEST_P(FeatureCode, HasWhatEachFeatureNeedsAndNothingElse) { expect_each_feature_alone(Backend::compute); }
+TEST_P(FeatureCode, HasWhatEachFeatureNeedsAndNothingElse) { expect_each_feature_alone(compute_backend); }
 
 // The chapters' code is the same on all backends.
 TEST_P(FeatureCode, OfTheDriversBackendsHasWhatEachFeatureNeedsAndNothingElse_all) {
-    for (const Backend backend : {Backend::pipeline, Backend::query}) {
+    for (const Backend backend : {pipeline_backend, query_backend}) {
         SCOPED_TRACE(to_string(backend));
         if (test_device().description().supports(backend)) expect_each_feature_alone(backend);
     }

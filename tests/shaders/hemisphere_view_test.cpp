@@ -19,7 +19,7 @@ struct LookAtPoint {
     LookAtPoint(Scene scene_to_use, const RenderSettings& settings)
         : scene(std::move(scene_to_use)),
           gpu_scene(test_device(), scene),
-          acceleration_structure(build_acceleration_structure(Backend::compute, test_device(), gpu_scene)),
+          acceleration_structure(build_acceleration_structure(compute_backend, test_device(), gpu_scene)),
           parameters(make_parameters(scene, settings)),
           view(test_device(), *acceleration_structure, settings.estimator) {
         PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator, parameters.image_size);

@@ -9,7 +9,7 @@
 namespace lab {
 
 const Device& test_device() {
-    static const Device device({.choice = "", .validation = true});
+    static const Device device({.choice = "", .validation = true, .backends = all_backends});
     return device;
 }
 

@@ -28,7 +28,7 @@ Estimator view_estimator(const std::string& view, const std::string& chapter) {
 
 Backend fastest_backend() {
     const DeviceDescription& device = test_device().description();
-    return device.kind == "CPU" && device.supports(Backend::native) ? Backend::native : Backend::compute;
+    return device.kind == "CPU" && device.supports(native_backend) ? native_backend : compute_backend;
 }
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings) {
@@ -136,11 +136,11 @@ void OnEachBackend::SetUp() {
 }
 
 std::string backend_name(const testing::TestParamInfo<Backend>& info) {
-    return instance_name(to_string(info.param), info.param == Backend::query ? Run::with_all : Run::always);
+    return instance_name(to_string(info.param), info.param == query_backend ? Run::with_all : Run::always);
 }
 
 std::string own_backend_name(const testing::TestParamInfo<Backend>& info) {
-    return instance_name(to_string(info.param), info.param == Backend::compute ? Run::always : Run::with_all);
+    return instance_name(to_string(info.param), info.param == compute_backend ? Run::always : Run::with_all);
 }
 
 std::string chapter_name(const testing::TestParamInfo<std::string>& info) { return "chapter_" + info.param; }

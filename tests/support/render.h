@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "app/backends.h"
 #include "rendering/renderer.h"
 #include "scene/scene.h"
 #include "support/chapters.h"
@@ -36,7 +37,7 @@ struct RenderSettings {
     float survival_weight = 1;
     Strategy strategy = Strategy::both;
     Estimator estimator = chapter_estimator(all_chapters.front());
-    Backend backend = Backend::compute;
+    Backend backend = compute_backend;
     double dispatch_seconds = 0.1;
     size_t max_film_window = SIZE_MAX;  // bytes
 };

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 
+#include "app/backends.h"
 #include "files/project_folder.h"
 #include "support/chapters.h"
 #include "support/temporary_folder.h"
@@ -68,7 +69,8 @@ class ViewerTest : public testing::Test {
                 DeviceOptions{.choice = choice,
                               .validation = true,
                               .instance_extensions = window_->instance_extensions(),
-                              .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); }});
+                              .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); },
+                              .backends = all_backends});
             if (*device_->surface()) break;
         }
         ASSERT_TRUE(*device_->surface());

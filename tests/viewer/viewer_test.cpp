@@ -86,6 +86,83 @@ TEST_F(ViewerTest, TypingIntoAFieldDoesNotMoveTheCamera) {
     EXPECT_NE(session().camera().position, before.position) << "a click beside the field gives the keys back";
 }
 
+TEST_F(ViewerTest, ANarrowWindowHasTheControlsBelowThePicture) {
+    open(make_options());
+    for (const uvec2 size : {uvec2(400, 600), uvec2(599, 500), uvec2(600, 500), uvec2(1280, 720)}) {
+        glfwSetWindowSize(window_->handle(), static_cast<int>(size.x), static_cast<int>(size.y));
+        wait_until("resized", [&] { return viewer_->screen().size() == size; });
+        const Rectangle picture = viewer_->picture_rectangle(), controls = viewer_->controls_rectangle();
+        const bool is_below = picture.corner.y + picture.size.y <= controls.corner.y;
+        EXPECT_EQ(is_below, size.x < 600);
+        EXPECT_TRUE(is_below || picture.corner.x >= controls.corner.x + controls.size.x) << size.x;
+        EXPECT_GE(picture.size.x * picture.size.y, 30000) << "too small to be seen";
+        EXPECT_GE(controls.size.x, controls.corner.x + 360);
+        // What is there can be clicked.
+        const vec2 middle = vec2(picture.corner) + 0.5f * vec2(picture.size);
+        click(middle.x, middle.y);
+        EXPECT_TRUE(viewer_->inside_panel().inspection().selection());
+        const Rectangle path = viewer_->path_rectangle();
+        EXPECT_GE(path.size.x, 200);
+        EXPECT_LE(viewer_->picture_rectangle().corner.y + viewer_->picture_rectangle().size.y, path.corner.y);
+        take_screenshot("viewer_" + std::to_string(size.x));
+        const_cast<Inspection&>(viewer_->inside_panel().inspection()).deselect();
+        run_frames(1);
+    }
+}
+
+TEST_F(ViewerTest, LobesAreShownAsOnWhereTheSceneHasThem) {
+    Options options = make_options();
+    open(options);
+    // Check marks are blue.
+    const auto is_checked = [&] {
+        take_screenshot("viewer_lobes");
+        const Texture& shown = viewer_->screen().captured();
+        const uvec2 at(viewer_->controls().lobes_box());
+        size_t blue = 0;
+        for (uint32_t y = at.y - 4; y < at.y + 4; ++y)
+            for (uint32_t x = at.x - 4; x < at.x + 4; ++x) blue += shown.pixels[4 * (size_t{y} * shown.width + x) + 2] > 150;
+        return blue > 2;
+    };
+    const auto click_box = [&] {
+        const vec2 box = viewer_->controls().lobes_box();
+        click(box.x, box.y);
+        finish_build();
+    };
+    wait_until("samples", [&] { return session().samples() >= 1 && session().reduction() == 1; });
+    EXPECT_FALSE(is_checked());
+    click_box();
+    EXPECT_TRUE(session().options().scene.specular);
+    EXPECT_TRUE(is_checked());
+    click_box();
+    EXPECT_FALSE(session().options().scene.specular);
+
+    session().open_scene(scenes / "glossy.json");
+    finish_build();
+    wait_until("samples", [&] { return session().samples() >= 1 && session().reduction() == 1; });
+    EXPECT_TRUE(is_checked());
+    click_box();
+    EXPECT_FALSE(session().options().scene.specular) << "the scene's own lobes cannot be switched";
+    EXPECT_TRUE(is_checked());
+}
+
+TEST_F(ViewerTest, AButtonSetsWhatTheReferenceHas) {
+    Options options = make_options();
+    options.scene.file = scenes / "plates.json";
+    options.image.width = 300;
+    options.image.height = 200;
+    open(options);
+    wait_until("why not", [&] { return session().settings_for_verdict().has_value(); });
+    EXPECT_EQ(session().verdict(), nullptr);
+    session().change_for_verdict();
+    finish_build();
+    wait_until("a verdict", [&] { return session().latest_verdict() != nullptr; });
+    EXPECT_FALSE(session().settings_for_verdict());
+    EXPECT_EQ(session().build().job.parameters.image_size, uvec2(288, 192));
+    hold(GLFW_KEY_W, 2);
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    EXPECT_FALSE(session().settings_for_verdict()) << "the camera has moved";
+}
+
 TEST_F(ViewerTest, EveryOptionTakesEffect) {
     open(make_options());
     const auto parameters = [&] { return session().build().job.parameters; };

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <map>
 
+#include "app/backends.h"
 #include "error.h"
 #include "files/project_folder.h"
 #include "gpu/compute_kernel.h"
@@ -40,7 +41,7 @@ std::vector<float> sample(const std::string& define, const std::string& chapter,
                         .defines = {define, "COLUMNS " + std::to_string(columns)},
                         .named_includes = named_includes(estimator)};
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
-    const Device device({device_name, false});
+    const Device device({.choice = device_name, .backends = all_backends});
     // A table of one triangle, the stub's second one, that always stands for itself.
     const Inputs inputs{seed_key(seed), 1, samples, {0, 1, 0xffffffffu, 0, 1.0f}};
     std::vector<float> points(size_t{count} * columns);

@@ -1,7 +1,9 @@
-// The `native` backend: the shaders of `compute` as C++ on the CPU. Embree traces the rays where it is installed.
+#include "native/backend.h"
+
 #include "clock.h"
 #include "files/project_folder.h"
 #include "native/module.h"
+#include "platform.h"
 #include "tracing/backends.h"
 #include "tracing/bvh.h"
 
@@ -100,16 +102,20 @@ class NativeTracer : public Tracer {
   public:
     NativeTracer(native::Code code, const native::Bindings& bindings) : code_(std::move(code)), bindings_(bindings) {}
 
-    void record(const vk::raii::CommandBuffer&, const DispatchParameters& dispatch, uint32_t block_count,
-                uint32_t film_offset) const override {
+    std::optional<double> trace(std::span<const DispatchParameters> steps, uint32_t block_count,
+                                uint32_t film_offset) const override {
         native::Bindings bindings = bindings_;
-        DispatchParameters constants = dispatch;
-        bindings.push_constants = reinterpret_cast<std::byte*>(&constants);
         bindings.ranges[BINDING_FILM].data += film_offset;
-        native::run_groups(code_.run, bindings, 0, block_count);
+        const auto start = Clock::now();
+        for (DispatchParameters step : steps) {
+            bindings.push_constants = reinterpret_cast<std::byte*>(&step);
+            native::run_groups(code_.run, bindings, 0, block_count);
+        }
+        if (is_interrupted()) return std::nullopt;
+        return seconds_since(start);
     }
-    PathsAtOnce paths_at_once() const override {
-        return {code_.why_one_by_one.empty() ? native::lane_count : 1, code_.why_one_by_one};
+    std::optional<PathsAtOnce> paths_at_once() const override {
+        return PathsAtOnce{code_.why_one_by_one.empty() ? native::lane_count : 1, code_.why_one_by_one};
     }
 
   private:
@@ -147,7 +153,7 @@ class NativeBackend : public AccelerationStructure {
         return std::make_unique<NativeTracer>(load_shader(checked, shaders(estimator).front()), bound);
     }
 
-    bool is_on_host() const override { return true; }
+    bool can_share_pixels() const override { return false; }  // a processor takes blocks alone
     size_t bytes() const override { return tree_.bytes() + triangles_.bytes(); }
     double build_seconds() const override { return tree_.build_seconds(); }
 
@@ -167,10 +173,30 @@ class NativeBackend : public AccelerationStructure {
     native::Texture probe_{};
 };
 
-}  // namespace
-
-std::unique_ptr<AccelerationStructure> build_native_backend(const GpuScene& scene) {
+std::unique_ptr<AccelerationStructure> build(const Device&, const GpuScene& scene) {
     return std::make_unique<NativeBackend>(scene, world_triangles(scene.scene()));
 }
+
+std::vector<std::string> find_missing(const DeviceDescription& device) {
+    std::vector<std::string> missing = native::missing_tools();
+    if (!device.shares_memory) missing.insert(missing.begin(), "memory that it shares with the CPU (--device llvmpipe has it)");
+    return missing;
+}
+
+// It may be faster than the other backends on CPUs with a compiler, for scenes that fit into memory.
+bool suits(const Device& device, const Scene& scene) {
+    constexpr uint64_t bytes_per_triangle = 512;  // while its tree is built
+    const DeviceDescription& description = device.description();
+    return description.kind == "CPU" && instanced_triangle_count(scene) < description.memory / bytes_per_triangle;
+}
+
+}  // namespace
+
+const BackendRow native_row{.name = "native",
+                            .may_refuse_shaders = true,
+                            .missing = find_missing,
+                            .details = native::ray_tracer_name,
+                            .suits = suits,
+                            .build = build};
 
 }  // namespace lab

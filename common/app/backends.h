@@ -1,0 +1,10 @@
+// The backends that the programs have. A new one is a row here, and its folder.
+#pragma once
+#include "native/backend.h"
+#include "tracing/backends.h"
+
+namespace lab {
+
+inline constexpr Backend all_backends[] = {pipeline_backend, query_backend, compute_backend, native_backend};
+
+}  // namespace lab

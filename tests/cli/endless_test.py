@@ -1,0 +1,74 @@
+"""A shader with a loop that does not end: what the programs say, and that they end when asked to."""
+
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from debug_test import SHADER, CopiedLab
+from program import PROJECT, ProgramTest
+
+WITH_DISPLAY = PROJECT / "tests/support/with_display.sh"
+BODY = """vec3 path_trace(Ray ray, inout uvec2 seed) {
+    vec3 radiance = vec3(0.5);
+    for (;;) {
+        Hit hit;
+        if (trace_ray(ray, NO_LIMIT, hit)) radiance += 1.0;
+        ray.direction = -ray.direction;
+        if (radiance.x < 0.0) break;
+    }
+    return radiance;
+}
+"""
+SOON = 15  # seconds, of which the programs wait 3 for the shader
+
+
+class EndlessTest(CopiedLab, ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.shader.write_text(BODY, encoding="utf-8")
+
+    def end(self, process, number):
+        process.send_signal(number)
+        start = time.monotonic()
+        try:
+            _, err = process.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            self.fail(f"still running 60 s after {number}")
+        self.assertLess(time.monotonic() - start, SOON)
+        return err
+
+    def test_a_signal_ends_a_render_whose_shader_does_not_end(self):
+        for backend, number, code in (("compute", signal.SIGTERM, 3), ("pipeline", signal.SIGINT, 3), ("native", signal.SIGTERM, 1)):
+            with self.subTest(backend=backend), self.start("quad.json", "--width=32", "--height=32", "--samples=2", "--headless",
+                                                           f"--backend={backend}", program=self.program) as process:
+                self.assertIn(f"backend {backend}", process.stdout.readline())
+                note = process.stderr.readline()  # after some seconds
+                self.assertRegex(note, rf"\Anote: no sample for \d+ s: if a loop of \S+{SHADER} does not end, Ctrl-C stops")
+                err = self.end(process, number)
+                self.assertRegex(err, r"(?m)^error: [^\n]*nothing[^\n]*\n\Z")
+                self.assertEqual(process.returncode, code)
+
+    def test_a_time_limit_ends_it(self):
+        start = time.monotonic()
+        code, _, err = self.run_program("quad.json", *self.SIZE, "--backend=compute", "--time-limit=1", program=self.program)
+        self.assertEqual((code, err.count("\n")), (3, 1), err)
+        self.assertLess(time.monotonic() - start, SOON)
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
+    def test_the_window_closes_and_says_why_it_writes_nothing(self):
+        command = ["sh", "-c", 'exec "$0" quad.json --width=32 --height=32 --window --output=a.exr & echo $!; wait $!', self.program]
+        with self.start(*command, program=WITH_DISPLAY, environment={"WAYLAND_DISPLAY": None}) as process:
+            window = int(process.stdout.readline())
+            time.sleep(5)  # it has met the loop
+            self.assertIsNone(process.poll())
+            subprocess.run(["kill", "-TERM", str(window)], check=True)
+            _, err = process.communicate(timeout=SOON)
+        self.assertRegex(err, rf"\Aerror: \S+{SHADER}:3: this loop, or one around it, does not end[^\n]*\n\Z")
+        self.assertFalse((self.folder / "a.exr").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
