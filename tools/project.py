@@ -49,7 +49,16 @@ def chapter_named(name):
 
 def description(folder):
     """A chapter's chapter.json."""
-    return read_json(ROOT / "chapters" / folder / "chapter.json")
+    file = ROOT / "chapters" / folder / "chapter.json"
+    try:
+        return read_json(file)
+    except ValueError as error:
+        raise UserError(f"{file}: not valid JSON: {error}") from None
+
+
+def rendered_description(folder):
+    """What chapter.json says about renders, as text: without what only tests and tools read."""
+    return json.dumps({key: value for key, value in description(folder).items() if key not in ("check", "exercise", "tests", "measure")})
 
 
 def original(number):

@@ -101,8 +101,9 @@ Chapter load_chapter(const std::string& name) {
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(content, file.string(), "the chapter",
                           {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics",
-                           "microfacets", "low_discrepancy", "options", "choices", "check"});
-    // For ./lab check: tools/check/grading.py reads it.
+                           "microfacets", "low_discrepancy", "options", "choices", "check", "exercise", "tests", "measure"});
+    // The last four are for others: tools/check/grading.py, tools/course/handout.py, tests/support/chapters.cpp,
+    // tools/report/studies.py.
     if (root.has("check"))
         root.object("check", {"samples", "references", "other_references", "gains_over", "passed_by_placeholder"});
     const Chapter defaults;

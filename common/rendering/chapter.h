@@ -30,7 +30,8 @@ struct ChapterChoice {
 
 // The contents of chapter.json, under the same names. Only the title is mandatory. It may also have "check", for ./lab check: the
 // "samples" of a run, the "references" whose scenes show what the shader can do, and those that the exercise's placeholder
-// passes.
+// passes; "exercise", for ./lab handout: the lines that a student fills in; "tests", see tests/support/chapters.h; and "measure",
+// for figures and tables, see tools/report/studies.py.
 struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help

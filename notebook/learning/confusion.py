@@ -16,9 +16,9 @@ from learning.learn import Workshop, digest, own_text, parse, settings
 from learning.planting import trials
 from project import commit, read_json, write_json
 from report.batch import run_all
+from report.sources import code
 from tables.ages import stamped
 from tables.records import RECORDS
-from tables.sources import code
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"

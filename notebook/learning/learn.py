@@ -19,8 +19,8 @@ from check.names import ratios_of
 from course.mistakes import catalogue, own_shader
 from project import CHAPTERS, Parser, add_device_options, number, read_json, write_json
 from report.batch import Batch, run_all
+from report.sources import code
 from tables.records import NOTEBOOK
-from tables.sources import code
 
 GOES_ON = True
 # Levels use the seeds of a check without --seed, see grading.first_seed(); the others use seeds that no check has.

@@ -20,9 +20,9 @@ from check.facts import readings
 from learning.learn import digest, own_text
 from project import CHAPTERS, Parser, UserError, add_device_options, commit, number, read_json, write_json
 from report.batch import Batch, run_all
+from report.sources import code
 from tables.ages import stamped
 from tables.records import RECORDS
-from tables.sources import code
 
 GOES_ON = True
 SEED, PICTURES = 9001, 4  # of the second measurement, per point

@@ -1,5 +1,5 @@
-// ./lab device: how accurate this device's arithmetic is, compared with Vulkan's guarantees. The tests derive their tolerances
-// from the same measurement.
+// ./lab notebook device_report: how accurate this device's arithmetic is, compared with Vulkan's guarantees. The tests derive
+// their tolerances from the same measurement.
 #include <cstdio>
 
 #include "files/file.h"

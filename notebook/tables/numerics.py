@@ -65,7 +65,7 @@ def case_table():
 
 
 def device_tables():
-    """The largest errors of each device recorded by ./lab device."""
+    """The largest errors of each device recorded by ./lab notebook device_report."""
     records = load_records("devices")
     names = [short_name(record) for record in records]
     rows = []

@@ -11,6 +11,7 @@ import paths  # noqa: F401  (first: it finds the others)
 import project
 from docs import page_plots
 from docs.tables import DOCS, PAGES
+from report import sources as digests
 from tables import ages, best_table, confusion_table, cpu_table, export, peer_table, result_plots, sources
 
 SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}
@@ -171,18 +172,20 @@ class AgesTest(unittest.TestCase):
     RECORD = '{"program": "05_russian_roulette"}'
 
     def test_comments_and_other_chapters_do_not_count(self):
-        with tempfile.TemporaryDirectory() as folder, mock.patch.object(sources, "ROOT", Path(folder)), mock.patch.object(project, "ROOT", Path(folder)):
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(digests, "ROOT", Path(folder)), mock.patch.object(project, "ROOT", Path(folder)):
             files = {name: Path(folder) / name for name in ("shaders/a.glsl", "chapters/05_russian_roulette/path_trace.glsl",
                      "chapters/05_russian_roulette/chapter.json", "chapters/04_splitting/path_trace.glsl")}
             for file in files.values():
                 file.parent.mkdir(parents=True, exist_ok=True)
-                file.write_text("a = 1;  // one\n")
+                file.write_text('{"options": ["a"], "measure": {}}' if file.suffix == ".json" else "a = 1;  // one\n")
             before = sources.measured(self.RECORD)
             self.assertEqual(list(before), ["renderer", "russian_roulette"])
             record = {"measured": before}
             self.assertEqual(sources.changed_since(record), [])
             for name, text, changed in (("shaders/a.glsl", "a =  1; // two\n", []), ("shaders/a.glsl", "a = 2;", ["renderer"]),
                                         ("chapters/04_splitting/path_trace.glsl", "b", []),
+                                        ("chapters/05_russian_roulette/chapter.json", '{"options": ["a"], "measure": {"picture": "b"}}', []),
+                                        ("chapters/05_russian_roulette/chapter.json", '{"options": ["b"]}', ["russian_roulette"]),
                                         ("chapters/05_russian_roulette/path_trace.glsl", "b", ["russian_roulette"])):
                 kept = files[name].read_text()
                 files[name].write_text(text)

@@ -85,7 +85,6 @@ class Tree:
         """Makes it a chapter of bounces whose folder has functions that no other one has."""
         shutil.rmtree(self.chapter)
         shutil.copytree(self.tree / "chapters/02_cosine_sampling", self.chapter)
-        self.rename("Concentric sampling: a map of another kind")
         (self.chapter / "sample_hemisphere.glsl").unlink()
         (self.chapter / "sample_concentrically.glsl").write_text(TECHNIQUE, encoding="utf-8")
         (self.chapter / "lambertian.glsl").write_text(MATERIAL, encoding="utf-8")
@@ -97,7 +96,7 @@ class Tree:
         shader.write_text(text, encoding="utf-8")
         exercise = {"file": "lambertian.glsl", "first": "vec3 brdf = s.diffuse_albedo / PI;", "last": "return brdf;",
                     "placeholder": ["// TODO: the BRDF.", "return vec3(0.0);"]}
-        (self.chapter / "exercise.json").write_text(json.dumps(exercise), encoding="utf-8")
+        self.rename("Concentric sampling: a map of another kind", exercise=exercise)
 
     def run_tests(self, kind, tests):
         """Runs tests of a test program on this tree; at least one must run."""

@@ -18,11 +18,11 @@ from program import PROJECT as ROOT
 import cited_tests
 from course.handout import take_out
 from lesson import sample
-from project import read_json
+from project import description
 
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/**/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
-COURSE = [name for name in CHAPTERS.values() if (ROOT / "chapters" / name / "exercise.json").exists()]
+COURSE = [name for name in CHAPTERS.values() if "exercise" in description(name)]
 SECTIONS = ["From the formula to the code", "The decisive lines", "What it gains, and where it does not", "What can go wrong", "How we know",
             "Exercises", "Summary"]  # of each chapter's page, in this order
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
@@ -144,7 +144,7 @@ class DocumentationTest(unittest.TestCase):
     def test_solutions_of_the_first_exercise_are_folded(self):
         for chapter in COURSE:
             folder = ROOT / "chapters" / chapter
-            exercise = read_json(folder / "exercise.json")
+            exercise = description(chapter)["exercise"]
             _, solution = take_out(text_of(folder / exercise["file"]), exercise)
             open_text = re.sub(r"<details>.*?</details>", "", text_of(folder / "README.md"), flags=re.DOTALL)
             shown = {line.strip() for block in re.findall(r"```glsl\n(.*?)```", open_text, re.DOTALL) for line in block.splitlines()}
@@ -156,7 +156,7 @@ class DocumentationTest(unittest.TestCase):
             solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"), re.MULTILINE)
             self.assertEqual(solutions, exercises[1:], chapter)
             named = re.search(r"[Ee]xercise 1 is [^()]*\(\.\./(\w+\.glsl)\)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"))
-            self.assertEqual(named[1], read_json(ROOT / "chapters" / chapter / "exercise.json")["file"], chapter)
+            self.assertEqual(named[1], description(chapter)["exercise"]["file"], chapter)
 
     def test_tables_are_what_the_sources_say(self):
         subprocess.run([sys.executable, "-B", TOOLS, "tables", "--check"], check=True)

@@ -57,7 +57,7 @@ class Figures_all(ProgramTest):
 
     def test_makes_all_pictures_of_the_pages(self):
         made = "".join(file.read_text(encoding="utf-8") for file in [TOOLS / "docs/figure_plots.py", TOOLS / "docs/figures.py",
-                                                                     *PROJECT.glob("chapters/*/measure.json")])
+                                                                     *PROJECT.glob("chapters/*/chapter.json")])
         names = {path.name for path in (PROJECT / "chapters").iterdir()} | {f"bugs_{name}" for name in GALLERY}
         exported = ("results_", "noise.", "equal_time.")  # by the notebook
         pictures = [path for path in (PROJECT / "docs/pictures").iterdir() if not path.name.startswith(exported)]
@@ -72,7 +72,7 @@ class Figures_all(ProgramTest):
     def test_pictures_show_what_the_command_on_their_page_shows(self):
         shapes = []
         for folder in (PROJECT / "chapters").iterdir():
-            for name, figure in read_json(folder / "measure.json").get("figures", {}).items():
+            for name, figure in read_json(folder / "chapter.json")["measure"].get("figures", {}).items():
                 if "scene" in figure and "size" in figure:
                     scene = read_json(PROJECT / f"assets/scenes/{figure['scene']}.json")
                     of_scene, of_picture = (scene.get("width", 512), scene.get("height", 512)), figure["size"]

@@ -11,7 +11,7 @@ import unittest
 from program import BINARIES, PROJECT, TOOLS, ProgramTest
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
-EXERCISES = {name: json.loads((PROJECT / "chapters" / name / "exercise.json").read_text(encoding="utf-8")) for name in CHAPTERS}
+EXERCISES = {name: json.loads((PROJECT / "chapters" / name / "chapter.json").read_text(encoding="utf-8"))["exercise"] for name in CHAPTERS}
 MISTAKES = {mistake["name"] for name in CHAPTERS
             for mistake in json.loads((PROJECT / "chapters" / name / "mistakes.json").read_text(encoding="utf-8"))}
 # What other pages could reveal of chapter 3's solution, and what is for teachers only.
@@ -34,7 +34,7 @@ float later = 1.0;
 ```
 <!-- end of code -->
 """
-TEACHERS = ["exercise.json", "mistakes.json", "solutions", "tests.json"]  # in a chapter's folder
+TEACHERS = ["mistakes.json", "solutions"]  # in a chapter's folder
 FOR_TEACHERS = ["chapters/03_next_event_estimation/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
 
 
@@ -68,6 +68,7 @@ class HandoutTest(ProgramTest):
                     text = path.read_text(encoding="utf-8")
                     self.assertNotIn(exercise["last"], text, path)
                     self.assertEqual([mistake for mistake in MISTAKES if f'"{mistake}"' in text], [], path)
+            self.assertEqual(max(path.stem for path in (tree / "assets/expected").iterdir()), name)
             knowledge = json.loads((tree / "notebook/knowledge" / f"{name}.json").read_text(encoding="utf-8"))
             self.assertEqual(list(knowledge), [str(i) for i, _ in enumerate(knowledge, 1)])
 

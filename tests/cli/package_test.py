@@ -11,7 +11,7 @@ from package import make
 class ArchiveFilesTest(ProgramTest):
     def test_files_for_teachers_stay_out(self):
         kept = ["LICENSE", "README.md", "chapters/01_a/chapter.json", "chapters/01_a/path_trace.glsl", "tools/check/grading.py"]
-        for name in [*kept, "chapters/01_a/exercise.json", "chapters/01_a/mistakes.json", "chapters/01_a/solutions/1.glsl",
+        for name in [*kept, "chapters/01_a/mistakes.json", "chapters/01_a/solutions/1.glsl",
                      "notebook/variants/01_a/other.glsl", "chapters/01_a/solutions/README.md", "tools/course/bug.py", "tools/check/__pycache__/grading.pyc"]:
             (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
             self.write(name, "")

@@ -8,6 +8,7 @@ from unittest import mock
 import tools_path  # noqa: F401  (first: it finds the others)
 from book import code_blocks
 from docs import tables
+import project
 from project import UserError
 from report import studies
 
@@ -57,8 +58,8 @@ class StudiesTest(unittest.TestCase):
 
     def test_a_broken_file_is_named(self):
         with tempfile.TemporaryDirectory() as name:
-            file = Path(name) / "chapters/01_a/measure.json"
+            file = Path(name) / "chapters/01_a/chapter.json"
             file.parent.mkdir(parents=True)
             file.write_text("{", encoding="utf-8")
-            with mock.patch.multiple(studies, ROOT=Path(name), CHAPTERS={1: "01_a"}, original=int), self.assertRaisesRegex(UserError, r"01_a/measure\.json: not valid JSON: "):
-                studies.measures()
+            with mock.patch.object(project, "ROOT", Path(name)), self.assertRaisesRegex(UserError, r"01_a/chapter\.json: not valid JSON: "):
+                project.description("01_a")

@@ -58,7 +58,7 @@ class GradedTogether(Submissions, ProgramTest):
                 text = (copy / name).read_text(encoding="utf-8")
                 (copy / name).write_text(f"{text}// mine: {name}\n", encoding="utf-8")
             (copy / "helper.glsl").write_text("// mine: helper.glsl\n", encoding="utf-8")
-            for file in ("path_trace.glsl", read_json(copy / "exercise.json")["file"], "helper.glsl"):
+            for file in ("path_trace.glsl", read_json(copy / "chapter.json")["exercise"]["file"], "helper.glsl"):
                 for path in (copy / file, Path(os.path.relpath(copy / file))):
                     self.assertEqual([name for name, text in self.tree(chapter, path).items() if f"// mine: {name}" not in text], [], path)
 

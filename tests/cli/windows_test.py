@@ -159,7 +159,7 @@ class WindowsPrograms_all(RenderTest):
 
     def test_a_handout_has_its_chapters_and_a_todo(self):
         chapter = "chapters/03_next_event_estimation"
-        exercise = json.loads((PROJECT / chapter / "exercise.json").read_text(encoding="utf-8"))
+        exercise = json.loads((PROJECT / chapter / "chapter.json").read_text(encoding="utf-8"))["exercise"]
         subprocess.run([sys.executable, "-B", TOOLS, "handout", "3", self.folder / "lab_3", "--windows"], check=True)
         with zipfile.ZipFile(self.folder / "lab_3.zip") as archive:
             programs = {Path(name).stem for name in archive.namelist() if name.endswith(".exe")}

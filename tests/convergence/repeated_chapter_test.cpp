@@ -10,7 +10,7 @@
 namespace lab {
 namespace {
 
-// From the chapters' tests.json.
+// From "tests" in the chapters' chapter.json.
 const std::vector<Repetition> repeated_chapters = repetitions();
 
 class RepeatedChapter : public testing::TestWithParam<size_t> {};

@@ -1,4 +1,5 @@
 // A light probe with a sun: one texel is 10^6 times as bright as the others.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,6 +18,11 @@ using std::numbers::pi;
 constexpr uint32_t width = 64, height = 32;
 constexpr uvec2 ordinary_sun{40, 8};
 constexpr float sky_radiance = 0.1f, sun_radiance = 1e5f;
+
+// Each backend has seeds of its own.
+uint32_t place_of(Backend backend) {
+    return static_cast<uint32_t>(std::ranges::find(all_backends, backend) - std::begin(all_backends));
+}
 
 // A white floor under the probe, and lamps of radiance 10^5; the camera sees only the floor.
 constexpr float lamp_radiance = 1e5f;
@@ -83,7 +89,7 @@ TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
                  {"at the horizon", {20, height / 2 - 1}, sky_radiance},
                  {"in a black sky", {13, 5}, 0},
                  {"in a black sky that is turned", {13, 5}, 0, 2.5f}};
-    uint32_t seed = 100 * (1 + static_cast<uint32_t>(GetParam()));
+    uint32_t seed = 100 * (1 + place_of(GetParam()));
     for (const auto& [name, sun, sky, rotation] : cases)
         for (const bool only_light_samples : {false, true}) {
             const bool is_first = sun == ordinary_sun && !only_light_samples;
@@ -102,8 +108,7 @@ TEST_P(SunCases, IsFoundByLightSamplesWhereverItIs) {
 }
 
 TEST_P(SunCases, LampAndSunAddUp) {
-    RenderSettings settings{
-        .samples = 64, .max_path_length = 1, .seed = 77 + static_cast<uint32_t>(GetParam()), .backend = GetParam()};
+    RenderSettings settings{.samples = 64, .max_path_length = 1, .seed = 77 + place_of(GetParam()), .backend = GetParam()};
     settings.estimator = chapter_estimator(chapter_named("light_probes"));
     // A lamp so far to the side that it hides almost nothing of the sky, and not the sun.
     const std::vector<dvec3> lamp{{9, 5, -9}, {10, 5, -8}, {10, 6, -8}, {9, 6, -9}};

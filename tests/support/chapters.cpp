@@ -11,8 +11,8 @@ namespace lab {
 namespace {
 
 nlohmann::json expectations(const std::string& chapter) {
-    const auto file = project_folder() / "chapters" / chapter / "tests.json";
-    return exists(file) ? parse_json(file.string(), read_file(file, 1 << 16)) : nlohmann::json::object();
+    const auto file = project_folder() / "chapters" / chapter / "chapter.json";
+    return parse_json(file.string(), read_file(file, 1 << 16)).value("tests", nlohmann::json::object());
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ bool has_roulette(const std::string& chapter);
 // Whether its random numbers come straight from the generator, so that the generator's states determine them.
 bool is_pseudorandom(const std::string& chapter);
 
-// From tests.json in its folder. Whether bounces off a Lambertian surface always have the weight of its albedo.
+// From "tests" in its chapter.json. Whether bounces off a Lambertian surface always have the weight of its albedo.
 bool weighs_by_albedo(const std::string& chapter);
 // Whether it follows the paths of another chapter, apart from what it adds, so that testing that one is enough.
 bool repeats_another(const std::string& chapter);
@@ -42,7 +42,7 @@ std::vector<std::string> chapters_that(const Abilities&... abilities) {
 // other start at different ones. A multiple of 1000, below 2^16.
 uint32_t chapter_seed(const std::string& chapter);
 
-// An image that a chapter is compared with: an entry of "references" in tests.json.
+// An image that a chapter is compared with: an entry of "references" there.
 struct ReferenceCase {
     std::string chapter;
     std::string reference;     // in assets/references: scene and maximal path length
@@ -54,7 +54,7 @@ struct ReferenceCase {
 };
 std::vector<ReferenceCase> reference_cases();
 
-// A chapter that equals the previous one when its addition is left out: "repeats" in tests.json.
+// A chapter that equals the previous one when its addition is left out: "repeats" there.
 struct Repetition {
     std::string chapter, before;
     std::vector<std::string> without;  // "splitting", "roulette", "glass" or "probe"

@@ -11,7 +11,7 @@ from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
-from check.grading import graded_together, known_mistakes
+from check.grading import DESCRIPTIONS, graded_together, known_mistakes
 from check.words import detail_lines, headline, laid_out, questions, short_lines
 from project import CHAPTERS, ROOT, UserError, course, printable, read_json, write_json
 from report.measurement import digest_of_sources
@@ -43,8 +43,7 @@ def shader_of(submission, chapter):
     """The file to be graded of a submission. In a folder it is the exercise's shader, or else the only one."""
     if not submission.is_dir():
         return submission
-    exercise = ROOT / "chapters" / CHAPTERS[chapter] / "exercise.json"  # not in a student's tree
-    wanted = read_json(exercise)["file"] if exercise.exists() else "path_trace.glsl"
+    wanted = DESCRIPTIONS[chapter].get("exercise", {}).get("file", "path_trace.glsl")  # a student's tree does not say it
 
     def distance(file):  # some hand in the whole tree
         return file.name != wanted, file.parent.name != CHAPTERS[chapter], len(file.parts)

@@ -1,4 +1,4 @@
-"""Writes a student's tree of chapters 1 to N into the folder DIR: the lines that exercise.json of chapter N names are a TODO.
+"""Writes a student's tree of chapters 1 to N into the folder DIR: the lines that "exercise" in the chapter.json of chapter N names are a TODO.
 
 It has neither later chapters nor the tests, which name solutions, nor the history. --verify proves for all chapters that
 the tree configures, and that its chapter fails ./lab check before the solution is filled in and passes with it.
@@ -14,15 +14,14 @@ from pathlib import Path
 from check.grading import known_mistakes
 from course.pages import clean_pages
 from package.make import pack
-from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, Parser, UserError, description, number, read_json, run_to_end, show_progress, text_of, write_json
+from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, Parser, UserError, description, number, run_to_end, show_progress, text_of, write_json
 
 HERE = Path(__file__).parent
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # For teachers only: these contain or name solutions, or belong to the whole course.
 TEACHERS = ["docs/teaching.md", "docs/debugging.md", "docs/extending.md", "docs/numerics.md", "docs/measuring.md", "docs/bugs*", "docs/pictures/bug*",
-            "docs/grading", "chapters/*/exercise.json", "chapters/*/mistakes.json",
-            "chapters/*/tests.json", "chapters/*/solutions", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
+            "docs/grading", "chapters/*/mistakes.json", "chapters/*/solutions", "tools/course", "tools/docs", "tools/package", "tools/lesson/bug*"]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -31,8 +30,8 @@ def few(chapter):
     return ["--runs", "8"] + ([] if description(CHAPTERS[chapter]).get("low_discrepancy") else ["--samples", "4"])
 
 
-def exercise_file(chapter):
-    return ROOT / "chapters" / CHAPTERS[chapter] / "exercise.json"
+def exercise_of(chapter):
+    return description(CHAPTERS[chapter]).get("exercise")
 
 
 def find_once(text, piece, exercise):
@@ -59,12 +58,15 @@ def write_handout(chapter, folder):
         shutil.copytree(ROOT / name, folder / name, ignore=ignore)
     for name in FILES:
         shutil.copy(ROOT / name, folder / name)
-    for path in [path for pattern in TEACHERS for path in folder.glob(pattern)]:
+    later = [path for path in (folder / "assets/expected").iterdir() if path.stem not in kept]
+    for path in [*later, *(path for pattern in TEACHERS for path in folder.glob(pattern))]:
         shutil.rmtree(path) if path.is_dir() else path.unlink()
     for name in kept:  # the names of mistakes give them away
         numbered = {str(i): seen for i, seen in enumerate(known_mistakes(int(name[:2])).values(), 1)}
         write_json(folder / KNOWLEDGE.relative_to(ROOT) / f"{name}.json", numbered, 1)
-    exercise = read_json(exercise_file(chapter))
+        told = {key: value for key, value in description(name).items() if key not in ("exercise", "tests")}
+        write_json(folder / "chapters" / name / "chapter.json", told, 2)
+    exercise = exercise_of(chapter)
     shader = folder / "chapters" / CHAPTERS[chapter] / exercise["file"]
     text, solution = take_out(text_of(shader), exercise)
     shader.write_text(text, encoding="utf-8")
@@ -89,7 +91,7 @@ def verify(chapter, folder):
     passed = [scene["scene"] for scene in result["scenes"] if scene["verdict"] != "biased"]
     if passed != description(CHAPTERS[chapter])["check"].get("passed_by_placeholder", []):
         raise UserError(f"chapter {chapter}: the scenes that the TODO passes are {passed}: write them into chapter.json")
-    solution = exercise_file(chapter).with_name(read_json(exercise_file(chapter))["file"])
+    solution = ROOT / "chapters" / CHAPTERS[chapter] / exercise_of(chapter)["file"]
     run_to_end([*check, solution], f"chapter {chapter}: check of the solution", EXPECTED["correct"], env=environment)
 
 
@@ -100,9 +102,9 @@ def main():
     parser.add_argument("--windows", action="store_true", help="write DIR.zip, with programs to unpack and run on Windows")
     parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
     options = parser.parse_intermixed_args()
-    known = [chapter for chapter in CHAPTERS if exercise_file(chapter).exists()]
+    known = [chapter for chapter in CHAPTERS if exercise_of(chapter)]
     if options.chapter not in [*known, *([None] if options.verify else [])]:
-        parser.error(f"N must be a chapter with an exercise.json in its folder: {', '.join(map(str, known))}")
+        parser.error(f"N must be a chapter with an exercise in its chapter.json: {', '.join(map(str, known))}")
     if options.verify == bool(options.folder):
         parser.error("give N and DIR, or --verify")
     if not options.verify:

@@ -70,7 +70,7 @@ class Render:
 
 
 def renders_of_tiles(folder, figure):
-    """The renders of a figure in a chapter's measure.json. Tiles add their own options, and "chapter" is relative to this one."""
+    """The renders of a figure that a chapter's chapter.json describes. Tiles add their own options, and "chapter" is relative to this one."""
     renders, names = [], list(CHAPTERS.values())
     look = {key: figure[key] for key in ("label", "tone", "rays_per_pixel") if key in figure}
     width, height = figure.get("size", (320, 320))
@@ -85,7 +85,7 @@ def renders_of_tiles(folder, figure):
 
 
 def renders_of_pictures(key, size, name_of):
-    """A picture for each chapter whose measure.json names its scene, with the same number of rays."""
+    """A picture for each chapter whose chapter.json names its scene, with the same number of rays."""
     return [Render(name_of(folder), folder, measure[key], size, (), RAYS_PER_PIXEL) for folder, measure in MEASURES.items() if key in measure]
 
 

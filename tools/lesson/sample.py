@@ -68,7 +68,7 @@ PLAYGROUNDS = {
     "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"),
 }
 
-# What a chapter's measure.json calls "points": the sampler, and what else its playground needs.
+# What a chapter's chapter.json calls "points": the sampler, and what else its playground needs.
 KINDS = {
     "directions": ("directions", {
         "integrals": COSINES, "coordinate": "cos θ", "coordinates": lambda p: drop_lost(p)[:, 2], "kind": "disk",

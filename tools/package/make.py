@@ -24,8 +24,7 @@ NAME = "path_tracing_lab"
 FOLDERS = ["assets", "chapters", "docs", KNOWLEDGE.relative_to(ROOT).as_posix(), "shaders", "tools"]
 FILES = ["CHANGELOG.md", "LICENSE", "README.md"]
 # Solutions and other material for teachers, and what needs the sources.
-LEFT_OUT = ["tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/exercise.json",
-            "chapters/*/mistakes.json", "chapters/*/solutions/*", "*/__pycache__/*"]
+LEFT_OUT = ["tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/mistakes.json", "chapters/*/solutions/*", "*/__pycache__/*"]
 DATE = 1980, 1, 1, 0, 0, 0  # for all files: the same sources make the same archive
 BOOK = ROOT / "output/book"
 

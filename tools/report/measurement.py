@@ -3,7 +3,6 @@
 The record is written after each run, so an interrupted measurement can continue. The runs of all cases are interleaved, so that
 other load on the machine affects all of them alike.
 """
-import hashlib
 import re
 import subprocess
 import sys
@@ -12,8 +11,9 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, UserError, commit, failure_text, program_file, read_json, run_program, show_progress, write_json
+from project import CHAPTERS, ROOT, UserError, commit, failure_text, program_file, read_json, rendered_description, run_program, show_progress, write_json
 from references.images import averaged, read_reference, read_rgb, rel_mse
+from report.sources import digest, files_of
 
 PILOT_PART = 0.3  # of a run's seconds: a pilot determines how many samples a run takes
 DEVICE_LOST = 3  # exit code
@@ -132,14 +132,9 @@ def find_device(program, settings):
 
 def digest_of_sources(cases):
     """A digest of all sources that affect a run: when they change, a measurement starts over."""
-    files = [path for folder in ("common", "shaders", "assets") for path in (ROOT / folder).rglob("*")]
-    files += [path for name in ("*.glsl", "chapter.json") for path in ROOT.glob(f"chapters/*/{name}")]
-    files += [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
-    digest = hashlib.sha256()
-    for path in sorted(set(files)):
-        if path.is_file() and path.suffix != ".md":
-            digest.update(relative(path).encode() + path.read_bytes())
-    return digest.hexdigest()[:16]
+    references = [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
+    return digest([*files_of(["common", "shaders", "assets"]), *ROOT.glob("chapters/*/*.glsl"), *references],
+                  "".join(map(rendered_description, CHAPTERS.values())))
 
 
 # ---------------------------------------------------------------------------------------------- measuring

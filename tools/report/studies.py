@@ -1,4 +1,4 @@
-"""Reads measure.json of each chapter: what figures, tables and reports measure of it.
+"""Reads "measure" in the chapter.json of each chapter: what figures, tables and reports measure of it.
 
 "picture", "thumbnail": the scenes of its pictures. "convergence_samples": samples of its curve in the plot of all chapters' errors.
 "compared_on": references on which the report's record compares it with the chapters before. "studies": on references, or on scenes
@@ -8,21 +8,13 @@ worked examples, with rows of a label, a statement and what is shown of its resu
 """
 import math
 
-from project import CHAPTERS, ROOT, UserError, original, read_json, table
+from project import CHAPTERS, description, original, table
 from report.numbers import short
 
 
 def measures():
-    """Folder -> content of its measure.json. Copies of a chapter are omitted."""
-    found = {}
-    for number, folder in CHAPTERS.items():
-        file = ROOT / "chapters" / folder / "measure.json"
-        if file.is_file() and original(number) == number:
-            try:
-                found[folder] = read_json(file)
-            except ValueError as error:
-                raise UserError(f"{file}: not valid JSON: {error}") from None
-    return found
+    """Folder -> its "measure". Copies of a chapter are omitted."""
+    return {folder: description(folder).get("measure", {}) for number, folder in CHAPTERS.items() if original(number) == number}
 
 
 def named(key):
