@@ -11,8 +11,8 @@ from pathlib import Path
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
 from check.formats import as_gradescope
-from course.handout import exercise_file, take_out
-from project import CHAPTERS, read_json
+from course.handout import exercise_of, take_out
+from project import CHAPTERS
 
 GRADING = PROJECT / "docs/grading"
 SUBMITTED = "direct_light.glsl"  # what chapter 3's exercise asks for
@@ -44,7 +44,7 @@ class GradingTest(ProgramTest):
     def test_gradescope_gets_points_and_a_question(self):
         chapter = int(re.search(r"^chapter=(\d+)", (GRADING / "gradescope/run_autograder").read_text(), re.MULTILINE)[1])
         shader = (PROJECT / "chapters" / CHAPTERS[chapter] / SUBMITTED).read_text(encoding="utf-8")
-        untouched = take_out(shader, read_json(exercise_file(chapter)))[0]
+        untouched = take_out(shader, exercise_of(chapter))[0]
         for text, points in ((shader, 10), (shader.replace("/ (distance * distance)", "/ distance"), 0), ("nothing", 0), (untouched, 0),
                              (untouched.replace("TODO", ""), 0)):
             result = self.autograde(text)

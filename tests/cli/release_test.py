@@ -44,7 +44,7 @@ class WorkflowsTest(unittest.TestCase):
             self.assertEqual(result.stderr, "", f"{file}: {command}")
             for name in re.findall(r"\./lab (\w+)", command):
                 self.assertIn(f"\ncommand_{name}()", lab, file)
-            for program in re.findall(r"(?:^|\s)(\.ci/\w+|tests/\w+)", command):
+            for program in re.findall(r"(?:^|\s)(\.ci/\w+|tests/[\w/.]+)", command):
                 self.assertTrue((PROJECT / program).is_file(), f"{file}: {program}")
 
     def test_actions_have_a_version(self):
