@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -124,7 +125,35 @@ size_t find_lone_byte(const std::string& line) {
     return is_lone ? token : std::string::npos;
 }
 
-std::string with_advice(const std::string& line) {
+// The feature of scenes without which the lab's shaders do not declare a name, such as FEATURE_LIGHT_TRIANGLES, or nothing.
+std::string feature_of(const std::string& name, const std::string& shader) {
+    constexpr std::string_view start = "#ifdef FEATURE_";
+    const std::regex word("\\b" + name + "\\b");
+    std::istringstream lines(shader);
+    std::vector<std::string> conditions;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("#if")) {
+            conditions.push_back(line);
+        } else if (line.starts_with("#el") && !conditions.empty()) {
+            conditions.back().clear();
+        } else if (line.starts_with("#endif") && !conditions.empty()) {
+            conditions.pop_back();
+        } else if (std::regex_search(line.substr(0, line.find("//")), word)) {
+            const auto feature = std::find_if(conditions.rbegin(), conditions.rend(),
+                                              [&](const std::string& condition) { return condition.starts_with(start); });
+            return feature == conditions.rend() ? "" : feature->substr(std::string_view("#ifdef ").size());
+        }
+    }
+    return "";
+}
+
+std::string with_advice(const std::string& line, const std::string& shader) {
+    static const std::regex unknown("'(\\w+)' : (undeclared identifier|no matching overloaded function|no such field)");
+    std::smatch name;
+    if (std::regex_search(line, name, unknown))
+        if (const std::string feature = feature_of(name[1], shader); !feature.empty())
+            return line + " (this scene lacks what it belongs to: put #ifdef " + feature +
+                   " before and #endif after what needs it)";
     if (const size_t token = find_lone_byte(line); token != std::string::npos)
         return line.substr(0, token) + ": a character that is not ASCII, which GLSL knows in comments only";
     for (const auto& [part, advice] : hints)
@@ -144,7 +173,7 @@ std::string recursion_text(const std::string& line) {
 
 // The errors in glslang's log as lines "file:line: text": only the first of each source line, since the others follow from it.
 // The most common ones say what to do.
-std::string readable_errors(const std::string& log) {
+std::string readable_errors(const std::string& log, const std::string& shader) {
     std::istringstream lines(log);
     std::string line, text, place;
     while (std::getline(lines, line)) {
@@ -158,7 +187,7 @@ std::string readable_errors(const std::string& log) {
         }
         line = line.substr(start.size(), line.find_last_not_of(' ') + 1 - start.size());
         const std::string before = std::exchange(place, line.substr(0, line.find(": ")));
-        if (place != before) text += (text.empty() ? "" : "\n") + with_advice(line);
+        if (place != before) text += (text.empty() ? "" : "\n") + with_advice(line, shader);
     }
     return text.empty() ? log : text;
 }
@@ -197,7 +226,7 @@ void with_glslang(const ShaderSource& source, const ExpandedShader& expanded, co
     shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 120);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-    if (!use(shader)) throw UserError(readable_errors(shader.getInfoLog()));
+    if (!use(shader)) throw UserError(readable_errors(shader.getInfoLog(), expanded.text));
 }
 
 std::vector<uint32_t> compile(const ShaderSource& source, const ExpandedShader& expanded) {
@@ -206,7 +235,8 @@ std::vector<uint32_t> compile(const ShaderSource& source, const ExpandedShader& 
         if (!shader.parse(GetDefaultResources(), 460, false, messages)) return false;
         glslang::TProgram program;
         program.addShader(&shader);
-        if (!program.link(messages)) throw UserError(source.file.generic_string() + ": " + readable_errors(program.getInfoLog()));
+        if (!program.link(messages))
+            throw UserError(source.file.generic_string() + ": " + readable_errors(program.getInfoLog(), expanded.text));
         glslang::GlslangToSpv(*program.getIntermediate(shader.getStage()), words);
         return true;
     });

@@ -8,10 +8,12 @@ import subprocess
 import sys
 import time
 import unittest
+from unittest import mock
 
 from image_files import Exr
 from program import BINARIES, CHAPTER, TIMEOUT_SECONDS, UNOPTIMISED, ProgramTest
 from project import UserError
+from report import batch as report_batch
 from report.batch import Batch, quoted
 
 SMALL = "--width 24 --height 20 --samples 3"
@@ -21,6 +23,8 @@ import os, shlex, sys, time
 for line in sys.stdin:
     if "crash" in line: os.kill(os.getpid(), 11)
     if "hang" in line: time.sleep(600)
+    if "wait" in line: time.sleep(1.5)
+    if "compute" in line: sum(range(10**10))
     if "refuse" in line: sys.exit("error: line %d of the standard input: refused" % 1)
     print(os.getpid(), file=open(shlex.split(line)[0], "w"))
     print("done", flush=True)
@@ -136,6 +140,17 @@ class BatchTest(ProgramTest):
             with self.assertRaises(subprocess.TimeoutExpired):
                 self.run_in(batch, "hang", timeout=0.3)
             self.assertIsInstance(self.run_in(batch, "picture"), int)
+
+    def test_a_program_that_others_keep_from_computing_is_given_more_time(self):
+        """Its limit counts what it computes then; without others, it counts what passes."""
+        for is_crowded, name, is_ended in ((False, "wait", True), (True, "wait", False), (True, "compute", True)):
+            with self.subTest(name, is_crowded=is_crowded), Batch() as batch, mock.patch.object(report_batch, "is_crowded", lambda: is_crowded):
+                self.run_in(batch, "picture")  # it has started
+                if is_ended:
+                    with self.assertRaises(subprocess.TimeoutExpired):
+                        self.run_in(batch, name, timeout=0.4)
+                else:
+                    self.assertIsInstance(self.run_in(batch, name, timeout=0.4), int)
 
     def test_at_the_end_nothing_goes_on(self):
         began = time.monotonic()

@@ -76,6 +76,12 @@ class ShaderFiles(ProgramTest):
                                 r"(one\(\) calls two|two\(\) calls one)\(\)")):
             self.assert_shader_refused(helpers + GREY.replace("get_grey()", "one(3)"), names + ".* write a loop")
 
+    def test_what_only_other_scenes_have_is_not_called_misspelt(self):
+        for use in ("uint(light_triangles.length())", "light_triangles[0].alias"):
+            shader = f"vec3 path_trace(Ray ray, inout uvec2 seed) {{ return vec3(float({use})); }}\n"
+            advice = r"path_trace\.glsl:1: .*\(this scene lacks what it belongs to: put #ifdef FEATURE_LIGHT_TRIANGLES before and #endif "
+            self.assert_shader_refused(shader, advice)
+
     def test_includes_are_small_files_below_the_tree(self):
         outside = self.write("outside.glsl", HELPER)
         folder = self.shader.parent

@@ -77,6 +77,15 @@ class GradedTogether(Submissions, ProgramTest):
         tree = self.tree(3, self.write("anna.glsl", mine))
         self.assertEqual(tree, {"path_trace.glsl": (own / "path_trace.glsl").read_text(encoding="utf-8"), TECHNIQUE: mine})
 
+    def test_a_file_with_helpers_of_its_own_is_known_by_the_functions_that_others_call(self):
+        for chapter, name, helper in ((9, "random_words.glsl", "scramble_reversed"), (11, "sample_normal.glsl", None)):
+            text = (chapter_folder(chapter) / name).read_text(encoding="utf-8")
+            mine = self.write("anna.glsl", text.replace(helper, "my_scramble") if helper else text)
+            self.assertEqual(grading.shader_like(CHAPTERS[chapter], mine).name, name)
+        estimator = self.write("bob.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) {\n    return vec3(0.0);\n}\n")
+        for chapter in course():
+            self.assertEqual(grading.shader_like(CHAPTERS[chapter], estimator).name, "path_trace.glsl")
+
     def check(self, *arguments):
         code, out, err = self.run_tool("check", *arguments, "--json")
         self.assertIn(code, (0, 1), err)

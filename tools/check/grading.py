@@ -71,13 +71,16 @@ def graded_together(chapter, file):
 
 def shader_like(chapter, file):
     """The shader in a chapter's folder that a file is graded as: one whose functions it all defines, preferably the estimator; or
-    else the one with its name, which may be a new one beside an estimator, or the estimator."""
+    else the one with its name, which may be a new one beside an estimator; the one with most of its functions; or the estimator."""
     estimator, functions = ROOT / "chapters" / chapter / "path_trace.glsl", functions_in(file)
-    for shader in (estimator, *sorted(estimator.parent.glob("*.glsl"))):
+    shaders = [estimator, *sorted(set(estimator.parent.glob("*.glsl")) - {estimator})]
+    for shader in shaders:
         if functions_in(shader) and functions >= functions_in(shader):
             return shader
+    most = max(shaders, key=lambda shader: len(functions & functions_in(shader)))  # the first one of several
     is_one_of_several = estimator.name in {other.name for other in graded_together(chapter, file)}
-    return estimator.with_name(file.name) if is_one_of_several or estimator.with_name(file.name).exists() else estimator
+    is_named_so = is_one_of_several or estimator.with_name(file.name).exists()
+    return estimator.with_name(file.name) if is_named_so else estimator if "path_trace" in functions else most
 
 
 def make_tree(chapter, file, tree, shader=None):
@@ -90,7 +93,9 @@ def make_tree(chapter, file, tree, shader=None):
     *others, _ = graded_together(chapter, file)
     places = {other: ROOT / "chapters" / chapter / other.name for other in others} | {file: shader or shader_like(chapter, file)}
     copies = {Path(shutil.copy(source, tree / place.relative_to(ROOT))).resolve(): source for source, place in places.items()}
-    share(ROOT / "assets", tree / "assets")
+    for folder in ("assets", "common"):  # an archive by ./lab package has no sources, which the backend native needs
+        if (ROOT / folder).exists():
+            share(ROOT / folder, tree / folder)
     if (libraries := BINARIES.parent / "lib").exists():  # from an archive by ./lab package
         share(libraries, tree / "lib")
     (tree / "bin").mkdir()

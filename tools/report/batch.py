@@ -5,9 +5,12 @@ import tempfile
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
 
 from project import ROOT, UserError, show_progress
 
+POLLING = 0.5  # seconds
+STARVED = 10  # times its limit that a program may take if other programs keep it from computing for as long
 JOBS = 2  # programs at a time: while one prepares a picture, another renders
 
 
@@ -35,6 +38,20 @@ def quoted(argument):
     return f'"{escaped}"'
 
 
+def cpu_seconds(process):
+    """What a running process has computed for so far, in all its threads; None where the system does not say."""
+    try:
+        fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return None
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def is_crowded():
+    """Whether programs wait for a core."""
+    return os.name == "posix" and os.getloadavg()[0] > os.cpu_count()
+
+
 class Worker:
     """A program that waits for command lines."""
 
@@ -46,14 +63,20 @@ class Worker:
         self.count = 0  # lines so far
 
     def run(self, arguments, timeout):
-        is_late = threading.Event()
+        is_late, has_ended = threading.Event(), threading.Event()
 
-        def stop():
-            is_late.set()
-            self.process.kill()
+        def watch():
+            started, before = time.monotonic(), cpu_seconds(self.process)
+            while not has_ended.wait(min(timeout, POLLING)):
+                elapsed, now = time.monotonic() - started, cpu_seconds(self.process)
+                is_starved = None not in (before, now) and now - before < timeout and is_crowded()
+                if elapsed >= (STARVED if is_starved else 1) * timeout:
+                    is_late.set()
+                    self.process.kill()
+                    return
 
-        timer = threading.Timer(timeout or threading.TIMEOUT_MAX, stop)
-        timer.start()
+        watching = threading.Thread(target=watch if timeout else lambda: None, daemon=True)
+        watching.start()
         self.count += 1
         try:
             self.process.stdin.write(os.fsencode(" ".join(map(quoted, arguments)) + "\n"))
@@ -61,8 +84,8 @@ class Worker:
             is_done = bool(self.process.stdout.readline())
         except OSError:  # it has ended before
             is_done = False
-        timer.cancel()
-        timer.join()
+        has_ended.set()
+        watching.join()
         code = 0 if is_done else self.process.wait()
         if is_late.is_set():
             raise subprocess.TimeoutExpired(self.program, timeout)
