@@ -63,6 +63,7 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
                    const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
       is_on_host_(acceleration_structure.is_on_host()),
+      max_threads_per_pixel_(estimator.max_threads_per_pixel),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, RAY_COUNTER_COUNT * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer,
                     Buffer::Location::host),
@@ -70,7 +71,7 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
-    if (are_pixels_shared(parameters.image_size) && !is_on_host_) {
+    if (are_pixels_shared(parameters.image_size) && max_threads_per_pixel_ > 1 && !is_on_host_) {
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
@@ -106,7 +107,7 @@ void Renderer::record(const vk::raii::CommandBuffer& commands, uint32_t blocks, 
         tracer_->record(commands, {next_block_, 1, 0, pass_samples_, window.first_pixel}, blocks, window.offset());
         return;
     }
-    const uint32_t groups_per_block = enough_groups / blocks;
+    const uint32_t groups_per_block = std::min(enough_groups / blocks, max_threads_per_pixel_);
     for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
         const uint32_t added = std::min(groups_per_block * samples_per_group, pass_samples_ - samples);
         samples += added;
