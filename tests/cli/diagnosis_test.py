@@ -12,6 +12,7 @@ from unittest import mock
 
 from program import PROJECT  # first: it finds the tools
 import learn
+import mutations
 from check import diagnosis, grading
 from check.diagnosis import reason, right_ones
 from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
@@ -22,7 +23,7 @@ from check.names import names_of, similar_to
 from check.words import MOST_FACTS, headline, hint_lines, laid_out
 from docs.confusion_table import rates
 from planting import CORRECT_CHECKS, catalogue
-from project import course
+from project import course, name_of
 
 KNOWLEDGE_OF = learn.read_knowledge(course())
 KNOWN = {chapter: entry["mistakes"] for chapter, entry in KNOWLEDGE_OF.items()}
@@ -325,6 +326,31 @@ class KnowledgeTest(unittest.TestCase):
         for entries in KNOWN.values():
             for name, entry in entries.items():
                 self.assertIn(entry["slide"], titles, name)
+
+
+class DecidingExperiments(unittest.TestCase):
+    def verdict_with_noise(self, factor, is_of_noise=True):
+        known = {key: [values] for key, values in {"mean": 0.5, "error": 0.001, "noise": 0.01, "noise_error": 0.0001, "rays": 3.0}.items()}
+        of = Experiment("kept", "light", "why", [Point({}, "x")], decides=True, is_of_noise=is_of_noise)
+        is_noisy = diagnosis.is_noisy(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0, 0.5)], known)
+        return diagnosis.verdict_with("correct", {"is_beyond_doubt": False, "is_noisy": is_noisy})
+
+    def test_noise_counts_where_an_experiment_is_about_it(self):
+        self.assertEqual([self.verdict_with_noise(factor) for factor in (1.4, 2.0)], ["correct", "noisy"])
+        self.assertEqual(self.verdict_with_noise(2.0, is_of_noise=False), "correct")
+
+    def test_each_exercise_has_mutations_and_those_that_change_nothing_are_among_them(self):
+        unchanged = json.loads(mutations.UNCHANGED.read_text(encoding="utf-8"))
+        for chapter in course():
+            changed = mutations.mutations(chapter)
+            self.assertGreaterEqual(len(changed), 10, chapter)
+            self.assertLessEqual(set(unchanged.get(name_of(chapter), {})), set(changed), f"chapter {chapter}: stale")
+
+    def test_each_kind_of_change_is_made(self):
+        text = "a = b * f(x, 2.0) - c;\n    if (!d) break;\n"
+        found = {(text[begin:end].strip(), replacement.strip()) for begin, end, replacement in mutations.changes(text)}
+        self.assertLessEqual({("a = b * f(x, 2.0) - c;", ";"), ("*", "/"), ("-", "+"), ("* f(x, 2.0)", ""), ("b *", ""), ("2.0", "4.0"),
+                              ("x, 2.0", "2.0, x"), ("(!d)", "(!(!d))"), ("!", ""), ("if (!d) break;", ";")}, found)
 
 
 class Learning(unittest.TestCase):
