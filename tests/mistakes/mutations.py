@@ -25,8 +25,9 @@ project.ensure_packages()
 from check import grading  # noqa: E402
 from check.diagnosis import is_deciding, is_noisy, observe  # noqa: E402
 from check.facts import BEYOND_DOUBT, TOLERANCE  # noqa: E402
+from check.experiments import experiments_of  # noqa: E402
 from course.handout import exercise_file, take_out  # noqa: E402
-from learn import digest  # noqa: E402
+from learn import digest, own_text  # noqa: E402
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, course, number, read_json, run_tool, text_of, write_json  # noqa: E402
 from report.batch import run_all  # noqa: E402
 
@@ -185,7 +186,7 @@ def main():
 
     def grade(item):
         (chapter, name), text = item
-        key, stamp = f"{chapter} {name}", digest(text, options.all_experiments, grading.knowledge_file(chapter).read_text(encoding="utf-8"))
+        key, stamp = f"{chapter} {name}", digest(text, options.all_experiments, repr(experiments_of(chapter)), own_text(chapter))
         if record.get(key, {}).get("stamp") != stamp:
             answer = graded(chapter, text, settings, options.all_experiments) | {"stamp": stamp}
             with lock:
