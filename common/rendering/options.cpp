@@ -87,6 +87,8 @@ void add_options(CLI::App& app, Options& options, std::string& view, const std::
     app.add_option("--resume", run.resume, "EXR of an earlier run to continue");
     number("--save-every", run.save_every, 1e-3, 1e9, "a positive number of seconds", "Write the outputs every so many seconds");
     app.add_option("--backend", run.backend, "How rays are traced")->check(CLI::IsMember(backends));
+    whole("--max-threads-per-pixel", estimator.max_threads_per_pixel, 1, max_count,
+          "Threads that share a pixel of a small picture, at most; default: as many as keep the device busy");
     app.add_option("--device", run.device, "Number or part of the name of the device");
     app.add_flag("--list-devices", run.list_devices, "Show the devices and what they lack");
     const auto window = [&](const char* name, WindowChoice choice, const char* help) {

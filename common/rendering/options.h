@@ -40,6 +40,7 @@ struct SceneOptions {
 struct EstimatorOptions {
     std::optional<Strategy> strategy;       // one of the chapter's
     std::map<std::string, size_t> choices;  // name of a chapter's choice -> index of its value
+    std::optional<uint32_t> max_threads_per_pixel;
     bool operator==(const EstimatorOptions&) const = default;
 };
 

@@ -132,6 +132,7 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
         if (const size_t value = value_of(choice, options); value > 0)
             estimator.defines.push_back(choice.define() + ' ' + choice.values[value].second);
     if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
+    estimator.max_threads_per_pixel = options.estimator.max_threads_per_pixel.value_or(estimator.max_threads_per_pixel);
     return estimator;
 }
 

@@ -22,6 +22,8 @@ struct Estimator {
     // If `file` observes another estimator: that one's file, included as "observed.glsl", and an edit to both texts.
     std::filesystem::path observed = {};
     std::function<std::string(const std::string&)> edit = {};
+    // Of an image with few pixels, whose threads share pixels.
+    uint32_t max_threads_per_pixel = UINT32_MAX;
 };
 
 // Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. The chapter's folder may override the

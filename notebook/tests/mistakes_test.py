@@ -1,11 +1,13 @@
-"""./lab notebook mistakes: the mistakes themselves take an hour; whether the code still has their places is seen at once."""
+"""./lab notebook mistakes and mutations: they themselves take hours; whether the code still has their places is seen at once."""
 
+import json
 import unittest
 from unittest import mock
 
 from paths import PROJECT  # first: it finds the others
 from course.mistakes import plant
-from mistakes import cpp_mistake
+from mistakes import cpp_mistake, mutations
+from project import course, name_of
 
 
 class PlantedMistakesTest(unittest.TestCase):
@@ -14,6 +16,21 @@ class PlantedMistakesTest(unittest.TestCase):
             for planted in cpp_mistake.load().values():
                 source, text = cpp_mistake.find_source(planted)
                 plant(text, planted["find"], planted["replace"], source.name)
+
+
+class MutationsTest(unittest.TestCase):
+    def test_each_exercise_has_mutations_and_those_that_change_nothing_are_among_them(self):
+        unchanged = json.loads(mutations.UNCHANGED.read_text(encoding="utf-8"))
+        for chapter in course():
+            changed = mutations.mutations(chapter)
+            self.assertGreaterEqual(len(changed), 10, chapter)
+            self.assertLessEqual(set(unchanged.get(name_of(chapter), {})), set(changed), f"chapter {chapter}: stale")
+
+    def test_each_kind_of_change_is_made(self):
+        text = "a = b * f(x, 2.0) - c;\n    if (!d) break;\n"
+        found = {(text[begin:end].strip(), replacement.strip()) for begin, end, replacement in mutations.changes(text)}
+        self.assertLessEqual({("a = b * f(x, 2.0) - c;", ";"), ("*", "/"), ("-", "+"), ("* f(x, 2.0)", ""), ("b *", ""), ("2.0", "4.0"),
+                              ("x, 2.0", "2.0, x"), ("(!d)", "(!(!d))"), ("!", ""), ("if (!d) break;", ";")}, found)
 
 
 if __name__ == "__main__":

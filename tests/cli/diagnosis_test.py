@@ -164,7 +164,7 @@ class NamesTest(unittest.TestCase):
 
 
 class SimilarNamesTest(unittest.TestCase):
-    """If no name fits, two may: those whose mistakes are wrong at most of the same points in the same direction."""
+    """If no name fits, one or two may: those whose mistakes are wrong at most of the same points in the same direction."""
     KNOWN = {"brighter": {"shows": {"angle": "1 2 4 8", "size": "2 2 2"}}, "darker": {"shows": {"angle": "1 0.5 0.3 0.1"}},
              "elsewhere": {"shows": {"distance": "3 3 3"}}, "other-scene": {"shows": {"angle": "0 0 0 0", "size": "3 3 3"}}}
 
@@ -172,8 +172,9 @@ class SimilarNamesTest(unittest.TestCase):
         return similar_to({name: seen(those, name=name) for name, those in values.items()}, self.KNOWN)
 
     def test_the_same_points_in_the_same_direction(self):
-        self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 8.0], size=[2.0, 2.0, 2.0]), ["brighter", "other-scene"])
-        self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 0.1], size=[1.0] * 3)[0], "darker")
+        self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 8.0], size=[2.0, 2.0, 2.0]), ["brighter"])
+        self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 0.1], size=[1.0] * 3), [], "half of the numbers differ")
+        self.assertEqual(self.names(angle=[1.0, 0.8, 0.3, 0.1], size=[1.0] * 3), ["darker"])
 
     def test_none_if_the_nearest_explains_too_little(self):
         self.assertEqual(self.names(angle=[0.6, 0.5, 2.0, 1.0], size=[1.0] * 3), [], "one point of four")
@@ -181,7 +182,7 @@ class SimilarNamesTest(unittest.TestCase):
 
     def test_they_are_told_only_where_none_fits(self):
         known = {"experiments": {}, "mistakes": {name: entry | {"hint": "?", "slide": "s"} for name, entry in self.KNOWN.items()}}
-        for values, fits, names in (([1.0, 2.0, 4.0, 8.0], True, ["brighter"]), ([1.0, 2.0, 4.0, 5.0], False, ["brighter", "other-scene"])):
+        for values, fits, names in (([1.0, 2.0, 4.0, 8.0], True, ["brighter"]), ([1.0, 2.0, 4.0, 5.0], False, ["brighter"])):
             facts = {"angle": seen(values), "size": seen([2.0] * 3, name="size")}
             with mock.patch.object(diagnosis, "next_step"):
                 found = reason(3, facts, {}, known, False)
@@ -308,6 +309,18 @@ class ExpectedTest(unittest.TestCase):
             found = reason(3, facts, {}, known, False)
         self.assertEqual((found["mistakes"], found["fits"]), ([], False))
         self.assertRegex(found["facts"][0]["text"], "2.00 ± 0.01 times as bright")
+
+
+class DecidingExperiments(unittest.TestCase):
+    def verdict_with_noise(self, factor, is_of_noise=True):
+        known = {key: [values] for key, values in {"mean": 0.5, "error": 0.001, "noise": 0.01, "noise_error": 0.0001, "rays": 3.0}.items()}
+        of = Experiment("kept", "light", "why", [Point({}, "x")], decides=True, is_of_noise=is_of_noise)
+        is_noisy = diagnosis.is_noisy(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0, 0.5)], known)
+        return diagnosis.verdict_with("correct", {"is_beyond_doubt": False, "is_noisy": is_noisy})
+
+    def test_noise_counts_where_an_experiment_is_about_it(self):
+        self.assertEqual([self.verdict_with_noise(factor) for factor in (1.4, 2.0)], ["correct", "noisy"])
+        self.assertEqual(self.verdict_with_noise(2.0, is_of_noise=False), "correct")
 
 
 if __name__ == "__main__":

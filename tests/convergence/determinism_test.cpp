@@ -108,7 +108,12 @@ TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
     RenderSettings shared = settings(), alone = settings();
     shared.dispatch_seconds = 10;
     alone.dispatch_seconds = 1e-9;
-    EXPECT_TRUE(are_identical(render_with_a_thread_for_each_pixel(scene, alone), render(scene, shared)));
+    const FilmImage expected = render_with_a_thread_for_each_pixel(scene, alone);
+    EXPECT_TRUE(are_identical(expected, render(scene, shared)));
+    for (const uint32_t threads : {1u, 2u}) {  // each renders several samples, one after another
+        shared.estimator.max_threads_per_pixel = threads;
+        EXPECT_TRUE(are_identical(expected, render(scene, shared))) << threads;
+    }
 }
 
 TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {

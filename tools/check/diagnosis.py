@@ -8,9 +8,9 @@ import time
 from pathlib import Path
 
 from check.experiments import experiments_of, known_sights, pictures, together, write_scene
-from check.facts import Fact, fact, readings
+from check.facts import SURE, Fact, fact, readings
 from check.findings import findings, shortened
-from check.grading import DESCRIPTIONS, expected_file, known_mistakes, make_tree, with_names_of
+from check.grading import DESCRIPTIONS, TOO_MUCH, expected_file, known_mistakes, make_tree, with_names_of
 from check.names import names_of, ratios_of, similar_to
 from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from report.batch import Batch
@@ -104,6 +104,13 @@ def noise_findings(facts, sights, expected):
     return found
 
 
+def is_noisy(experiment, sights, expected):
+    """Whether an experiment about noise has too much of it, as grade() judges pictures."""
+    ratios = ratios_of({experiment.name: sights}, {experiment.name: expected})
+    pairs = zip(ratios["noise"][experiment.name], ratios["rays"][experiment.name])
+    return experiment.is_of_noise and any((noise - SURE * error) * min(rays, 1) > TOO_MUCH for (noise, error), (rays, _) in pairs)
+
+
 def next_step(chapter, file, facts, sights, expected):
     """How the student can see the first wrong thing: writes a scene file and returns it in a command, with the value to expect."""
     name, seen = next(((name, seen) for name, seen in facts.items() if not seen.is_right and seen.readings), (None, None))
@@ -133,6 +140,7 @@ def reason(chapter, facts, sights, known, is_correct):
     names = fitting or (similar_to(facts, known["mistakes"]) if wrong else [])
     return {"facts": told, "right": right_ones(facts), "wrong": wrong, "fits": bool(fitting),
             "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
+            "is_noisy": any(is_noisy(facts[name].experiment, sights[name], known["experiments"][name]) for name in sights),
             "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
             "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()}}
 
@@ -150,5 +158,7 @@ def diagnose(chapter, file, settings, shader=None, is_correct=False):
 
 
 def verdict_with(verdict, diagnosis):
-    """The verdict on a shader. Experiments may find a bias where the pictures of a correct one do not look."""
-    return "biased" if verdict == "correct" and diagnosis["is_beyond_doubt"] else verdict
+    """The verdict on a shader. Experiments may find a bias or noise where the pictures of a correct one do not look."""
+    if verdict != "correct":
+        return verdict
+    return "biased" if diagnosis["is_beyond_doubt"] else "noisy" if diagnosis["is_noisy"] else "correct"

@@ -42,6 +42,7 @@ class Experiment:
     quantity: dict = field(default_factory=dict)  # functions of x that a law may follow, in words
     when: dict = field(default_factory=dict)  # name of another experiment -> whether it must have been right
     decides: bool = False  # whether it also runs for shaders whose pictures look right
+    is_of_noise: bool = False  # whether it decides about noise, too
 
 
 @dataclass
@@ -88,7 +89,7 @@ def experiment(name, says, samples):
     points = [Point(merged(says["scene"], point.get("scene", {})), point["at"], point.get("x"),
                     " ".join(filter(None, [says.get("options"), point.get("options")])), point.get("samples", says.get("samples", samples)), point.get("channel"))
               for point in says["points"]]
-    rest = {key: says[key] for key in ("quantity", "when", "decides") if key in says}
+    rest = {key: says[key] for key in ("quantity", "when", "decides", "is_of_noise") if key in says}
     return Experiment(name, says["subject"], says.get("varies", ""), points, **rest)
 
 
@@ -153,7 +154,7 @@ def colour(value):
 
 def write_scene(scene, folder, name):
     """Writes a scene and its mesh; returns the scene's file."""
-    vertices, faces, materials = [], [], []
+    vertices, normals, faces, materials = [], [], [], []
     for index, (key, says) in enumerate(scene.items()):
         if key in ("camera", "background", *OF_THE_SCENE):
             continue
@@ -165,11 +166,15 @@ def write_scene(scene, folder, name):
         if "rough" in says:
             materials += [f"Pr {says['rough']}", f"Pm {says.get('metal', 0)}"]
         faces.append(f"usemtl m{index}")
+        normal = ""
+        if "vertex_normals" in says:
+            normals.append("vn " + " ".join(map(str, says["vertex_normals"])))
+            normal = f"//{len(normals)}"
         for face in faces_of(says):
-            faces.append("f " + " ".join(str(len(vertices) + i) for i in range(1, len(face) + 1)))
+            faces.append("f " + " ".join(f"{len(vertices) + i}{normal}" for i in range(1, len(face) + 1)))
             vertices += [f"v {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in face]
     (folder / f"{name}.mtl").write_text("\n".join(materials) + "\n")
-    (folder / f"{name}.obj").write_text("\n".join([f"mtllib {name}.mtl", *vertices, *faces]) + "\n")
+    (folder / f"{name}.obj").write_text("\n".join([f"mtllib {name}.mtl", *vertices, *normals, *faces]) + "\n")
     camera = CAMERA | scene.get("camera", {})
     up = [0, 1, 0] if camera["from"][0] != camera["to"][0] or camera["from"][2] != camera["to"][2] else [0, 0, 1]
     background = scene.get("background", 0)

@@ -149,8 +149,9 @@ def sentence(experiment, those):
         else:
             if law:
                 factor, error, phrase = law
-                times = "" if abs(factor - 1) < 2 * error + FIT else f" times {number(factor, error)}"
-                words.append(f"wrong by a factor {'of' if 'per' in experiment.quantity else 'that follows'} {phrase}{times}")
+                is_per = "per" in experiment.quantity
+                once = f", and once by {number(factor, error)}" if is_per else f" times {number(factor, error)}"
+                words.append(f"wrong by a factor {'of' if is_per else 'that follows'} {phrase}{'' if abs(factor - 1) < 2 * error + FIT else once}")
             words.append(", ".join(map(in_words, wrong)).replace(" times", " times as bright as it should be", 1))
             right = [reading.at for reading in lit if reading.is_surely_right]
             words += [f"right: {', '.join(right)}"] if right else []

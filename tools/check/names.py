@@ -9,7 +9,8 @@ from check.experiments import known_sights
 LOOSENESS, LEAST = 0.03, 0.01
 FITS, EXCLUDED = 3.5, 5.0  # standard errors: within the first it fits, beyond the second it is a different mistake
 NOISE_LOOSENESS, RAYS_LOOSENESS = 0.25, 0.08  # of their logarithms
-MOST_NAMES, HALF = 2, 0.5  # of those that only may fit: how many are told, and what the nearest must explain more than
+# Of those that only may fit: how many are told, how much of what is wrong each must explain, and how many points may contradict it.
+MOST_NAMES, LEAST_LIKENESS, MOST_CONTRADICTIONS = 2, 0.75, 3
 
 
 def numbers(text):
@@ -64,20 +65,20 @@ def names_of(facts, sights, known, expected):
 
 
 def likeness(shown, facts):
-    """How much of what is wrong a mistake explains, from 0 to 1: over the points that are wrong in either, 1 where the numbers
-    fit and 1/2 where both are too bright or both too dark."""
+    """How much of what is wrong a mistake explains, from 0 to 1, and how many points contradict it: over the points that are wrong in
+    either, 1 where the numbers fit, 1/2 where both are too bright or both too dark, and 0 where they contradict each other."""
     marks = []
     for reading, known, off in compared(shown, facts):
         both = [reading, replace(reading, value=known)]
         if not all(one.is_right for one in both):
             sides = {0 if one.is_right else math.copysign(1, one.value - one.expected) for one in both}
             marks.append(1.0 if off <= FITS else 0.5 if len(sides) == 1 else 0.0)
-    return fmean(marks) if marks else 0.0
+    return fmean(marks) if marks else 0.0, marks.count(0.0)
 
 
 def similar_to(facts, known):
     """The names that may fit if none does, nearest first: a shader written in another way shows a mistake at the same points, but
-    not always with the same numbers. As that proves nothing, never a single one, and none if even the nearest explains less than half."""
+    not always with the same numbers. None unless it explains most of what is wrong and few points contradict it."""
     alike = {name: likeness(entry["shows"], facts) for name, entry in known.items() if "unseen" not in entry}
-    nearest = sorted(alike, key=alike.get, reverse=True)[:MOST_NAMES]
-    return nearest if len(nearest) > 1 and alike[nearest[0]] > HALF else []
+    near = [name for name, (value, contradictions) in alike.items() if value >= LEAST_LIKENESS and contradictions <= MOST_CONTRADICTIONS]
+    return sorted(near, key=alike.get, reverse=True)[:MOST_NAMES]

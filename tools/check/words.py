@@ -10,8 +10,8 @@ from project import CHAPTERS
 MOST_QUESTIONS, MOST_FACTS = 2, 5
 MARGIN = 15  # columns of the heads
 COLOURS = {"correct": 32, "biased": 31, "unfinished": 33, "noisy": 33, "expensive": 33}  # of a terminal
-SIMILAR = "no common mistake fits all facts, but two are similar: it may be one of them, or neither"
-NOTHING_SEEN = "no experiment finds what is wrong: look at the frames in the picture of the differences"
+SIMILAR = "no common mistake fits all facts; what follows is similar, but may be wrong"
+NOTHING_SEEN = "no experiment finds what is wrong: the picture of the differences shows where it is"
 
 
 def percent(value):
