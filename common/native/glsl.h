@@ -235,7 +235,7 @@ struct Builtins {
     LAB_SAME(matrixCompMult) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse)
     LAB_NUMBERS(sign) LAB_NUMBERS(min) LAB_NUMBERS(max) LAB_NUMBERS(clamp) LAB_NUMBERS(lessThan) LAB_NUMBERS(lessThanEqual)
     LAB_NUMBERS(greaterThan) LAB_NUMBERS(greaterThanEqual) LAB_NUMBERS(equal) LAB_NUMBERS(notEqual) LAB_SAME(any) LAB_SAME(all)
-    LAB_SAME(not_) LAB_SAME(bitfieldReverse) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(bitfieldInsert)
+    LAB_SAME(not_) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(bitfieldInsert)
     LAB_SAME(packHalf2x16) LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
     LAB_SAME(packUnorm2x16) LAB_SAME(unpackUnorm2x16) LAB_SAME(packSnorm4x8) LAB_SAME(unpackSnorm4x8) LAB_SAME(ldexp)
 #undef LAB_FLOATS
@@ -254,6 +254,10 @@ struct Builtins {
     template <typename T>
     static auto findMSB(const T& x) {
         return each([](auto bits) { return 31 - std::countl_zero(static_cast<uint>(bits < 0 ? ~bits : bits)); }, x);
+    }
+    template <typename T>
+    static auto bitfieldReverse(const T& x) {
+        return each([](auto bits) { return decltype(bits)(glm::bitfieldReverse(uint(bits))); }, x);
     }
     template <typename T>
     static auto bitfieldExtract(const T& x, int offset, int count) {

@@ -17,11 +17,15 @@ inline const Names scalar_types{"void", "bool", "int", "uint", "float", "double"
 inline const Names dropped{"precise",  "highp",    "mediump",  "lowp",     "flat",      "smooth", "invariant",
                            "coherent", "volatile", "restrict", "readonly", "writeonly", "shared", "subroutine"};
 // Names that C++ keeps for itself and GLSL does not.
-inline const Names cpp_words{"alignas",  "alignof", "and",       "auto",      "bitand",   "bitor",     "catch",    "char",
-                             "compl",    "concept", "constexpr", "co_await",  "co_yield", "co_return", "decltype", "delete",
-                             "explicit", "export",  "friend",    "mutable",   "new",      "noexcept",  "not",      "nullptr",
-                             "operator", "or",      "private",   "protected", "register", "requires",  "signed",   "throw",
-                             "try",      "typeid",  "typename",  "virtual",   "wchar_t",  "xor",       "bindings", "main"};
+// clang-format off
+inline const Names cpp_words{
+    "alignas", "alignof", "and", "and_eq", "assert", "auto", "bindings", "bitand", "bitor", "catch", "char", "char16_t",
+    "char32_t", "char8_t", "co_await", "co_return", "co_yield", "compl", "concept", "const_cast", "consteval", "constexpr",
+    "constinit", "decltype", "delete", "dynamic_cast", "errno", "explicit", "export", "friend", "main", "mutable", "new",
+    "noexcept", "not", "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "register", "reinterpret_cast",
+    "requires", "signed", "static_assert", "static_cast", "stderr", "stdin", "stdout", "thread_local", "throw", "try", "typeid",
+    "typename", "virtual", "wchar_t", "xor", "xor_eq"};
+// clang-format on
 
 inline bool is_vector_type(const std::string& name) {
     static const Names types = [] {
@@ -156,13 +160,16 @@ class TokenReader {
                         "' means here: use another one, --backend compute");
     }
     static std::string spelled(const std::string& token) {
-        if (cpp_words.contains(token)) return token + "_";
+        if (cpp_words.contains(token) || token.ends_with('_')) return token + "_";  // so that new and new_ are two names
         if (std::isdigit(static_cast<unsigned char>(token[0])) || (token[0] == '.' && token.size() > 1)) {
             const bool is_hexadecimal = token.starts_with("0x") || token.starts_with("0X");
             if (is_hexadecimal && std::tolower(token.back()) != 'u') return "int(" + token + ")";  // C++ has an unsigned one
             if (!is_hexadecimal && token.find_first_of(".eE") != std::string::npos &&
                 !std::isalpha(static_cast<unsigned char>(token.back())))
                 return token + "f";
+            // In C++ a decimal number that int cannot hold is a long one.
+            const bool is_whole = token.find_first_not_of("0123456789") == token.npos;
+            if (is_whole && std::stod(token) > 2147483647.0) return "int(" + token + "u)";
         }
         return token;
     }

@@ -46,6 +46,23 @@ TEST(Native, SwizzlesReadAndWrite) {
               (Numbers{3, 2, 1, 4, 3}));
 }
 
+TEST(Native, NamesAndNumbersMayBeThoseOfCpp) {
+    EXPECT_EQ(
+        run_shader("float and_eq = 1.0, char8_t = 2.0, static_assert = 3.0, new = 4.0, new_ = 5.0, new__ = 6.0, errno = 7.0;",
+                   "give(and_eq); give(char8_t); give(static_assert); give(new); give(new_); give(new__); give(errno);"),
+        (Numbers{1, 2, 3, 4, 5, 6, 7}));
+    EXPECT_EQ(run_shader("", "int lowest = -2147483648; give(lowest < 0 ? 1.0 : 2.0); give(float(uint(2147483648) >> 31));"),
+              (Numbers{1, 1}));
+}
+
+TEST(Native, BitsOfNegativeNumbersAreThoseOfTheirWords) {
+    EXPECT_EQ(run_shader("",
+                         "int x = -2; give(float(bitfieldReverse(x))); ivec2 v = bitfieldReverse(ivec2(-1, 1));"
+                         "give(float(v.x)); give(v.y < 0 ? 1.0 : 0.0); give(float(bitfieldInsert(-1, 0, 1, 2)));"
+                         "give(float(bitfieldInsert(0, -1, 0, 32)));"),
+              (Numbers{0x1p31f, -1, 1, -7, -1}));
+}
+
 TEST(Native, OutArgumentsAreCopiedInAndOut) {
     const char* const code =
         "float held = 1.0;\n"
