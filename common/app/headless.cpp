@@ -121,7 +121,7 @@ class HeadlessRender {
 
     bool is_time_over() const {
         return options_.time_limit && renderer_.samples() > 0 &&
-               seconds() + saving_seconds_ - job_.record.seconds >= *options_.time_limit;
+               seconds_since(start_) - measuring_seconds_ >= *options_.time_limit;
     }
 
     // The factor by which the sample count must grow to reach the target error, at the rate of random sampling.

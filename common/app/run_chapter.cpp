@@ -130,8 +130,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
 // Builds a job without a window. If `auto` chooses a backend that refuses the shader, the others have to run it.
 Build build_headless(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first, const Build* before) {
     const auto may_refuse = [&](Backend backend) {
-        return backend->may_refuse_shaders && device.description().supports(backend) &&
-               (!backend->suits || backend->suits(device, *job.scene));
+        return backend->may_refuse_shaders && is_suitable(backend, device, *job.scene);
     };
     job.may_be_refused = job.options.run.backend == "auto" && std::ranges::any_of(all_backends, may_refuse);
     if (!job.may_be_refused) return make_build(device, chapter, std::move(job), first, before);

@@ -162,8 +162,7 @@ Estimator recording(const Estimator& estimator) {
 
 PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
                            uvec2 image_size)
-    : device_(&device),
-      estimator_(estimator),
+    : estimator_(estimator),
       // The samples go into a single row of blocks, wherever the pixel is in the image.
       film_(device, image_size.x, BLOCK_HEIGHT),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),

@@ -52,7 +52,6 @@ class PathRecorder {
     RecordedPath record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample);
 
   private:
-    const Device* device_;
     Estimator estimator_;
     Film film_;
     Buffer parameters_, ray_counters_, events_;

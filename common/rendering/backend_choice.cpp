@@ -31,8 +31,7 @@ double measure_speed(Backend backend, const Device& device, const GpuScene& scen
 }
 
 bool is_candidate(const RenderJob& job, const Device& device, Backend backend) {
-    return device.description().supports(backend) && (!backend->may_refuse_shaders || job.may_be_refused) &&
-           (!backend->suits || backend->suits(device, *job.scene));
+    return (!backend->may_refuse_shaders || job.may_be_refused) && is_suitable(backend, device, *job.scene);
 }
 
 std::string cache_name(const RenderJob& job, const Device& device, const GpuScene& scene) {

@@ -88,14 +88,14 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
                    const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
       estimator_(estimator),
-      max_threads_per_pixel_(estimator.max_threads_per_pixel),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window) {
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
-    if (are_pixels_shared(parameters.image_size) && max_threads_per_pixel_ > 1 && acceleration_structure.can_share_pixels()) {
+    if (are_pixels_shared(parameters.image_size) && estimator.max_threads_per_pixel > 1 &&
+        acceleration_structure.can_share_pixels()) {
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
@@ -127,7 +127,7 @@ void Renderer::resume(const FilmImage& image) {
 std::vector<DispatchParameters> Renderer::steps_of_pass(uint32_t blocks, const FilmWindow& window) const {
     if (!samples_) return {{next_block_, 1, 0, pass_samples_, window.first_pixel}};
     std::vector<DispatchParameters> steps;
-    const uint32_t groups_per_block = std::min(enough_groups / blocks, max_threads_per_pixel_);
+    const uint32_t groups_per_block = std::min(enough_groups / blocks, estimator_.max_threads_per_pixel);
     for (uint32_t samples = finished_samples_; samples < pass_samples_;) {
         const uint32_t added = std::min(groups_per_block * samples_per_group, pass_samples_ - samples);
         samples += added;

@@ -54,7 +54,6 @@ class Renderer {
 
     const Device* device_;
     Estimator estimator_;
-    uint32_t max_threads_per_pixel_;
     Buffer parameters_;
     std::optional<Buffer> samples_;  // of shared pixels, until added to the film
     Buffer ray_counters_;

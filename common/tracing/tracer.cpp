@@ -93,6 +93,10 @@ std::optional<double> DeviceTracer::trace(std::span<const DispatchParameters> st
     });
 }
 
+bool is_suitable(Backend backend, const Device& device, const Scene& scene) {
+    return device.description().supports(backend) && (!backend->suits || backend->suits(device, scene));
+}
+
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
                                                                     const GpuScene& scene) {
     require_support(backend, device.description());

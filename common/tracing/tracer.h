@@ -67,6 +67,9 @@ class AccelerationStructure {
     virtual double build_seconds() const = 0;  // on the CPU or the device
 };
 
+// Whether the device lacks nothing for the backend, which may be the fastest one for the scene there.
+bool is_suitable(Backend backend, const Device& device, const Scene& scene);
+
 // Device and scene must outlive the result. Throws DeviceError if the device lacks something for the backend.
 std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device, const GpuScene& scene);
 
