@@ -98,10 +98,12 @@ std::string processor() {
     return {};
 }
 
-// Until its end, signals that would end the program at once wait for it, so that a compiler's files can be removed.
+// Until the end of the last one, signals that would end the program at once wait, so that compilers' files can be removed.
 class EndLater {
   public:
     EndLater() {
+        const std::lock_guard guard(lock);
+        if (users++ != 0) return;
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
             struct sigaction before {
             }, action{};
@@ -109,20 +111,24 @@ class EndLater {
             if (before.sa_handler != SIG_DFL) continue;
             action.sa_handler = [](int number) { wish = number; };
             sigaction(signal, &action, nullptr);
-            changed_.push_back(signal);
+            changed.push_back(signal);
         }
     }
     EndLater(const EndLater&) = delete;
     EndLater& operator=(const EndLater&) = delete;
     ~EndLater() {
-        for (const int signal : changed_) std::signal(signal, SIG_DFL);
+        const std::lock_guard guard(lock);
+        if (--users != 0) return;
+        for (const int signal : std::exchange(changed, {})) std::signal(signal, SIG_DFL);
         if (wish) raise(wish);
     }
     static bool is_wished() { return wish != 0; }
 
   private:
     static inline std::atomic<int> wish = 0;  // the signal
-    std::vector<int> changed_;
+    static inline std::mutex lock;
+    static inline int users = 0;  // threads that compile
+    static inline std::vector<int> changed;
 };
 
 // Runs a program with its output in `log`. False if it fails.

@@ -16,7 +16,8 @@ constexpr float default_coat_index = 1.5f;  // of plastic and lacquer
 
 constexpr uint64_t max_mtl_bytes = uint64_t{16} << 20;
 
-// How many numbers follow a keyword, and the largest sensible value; none may be negative.
+// How many numbers follow a keyword, and the largest sensible value; none may be negative. One number stands for three equal
+// ones.
 struct Numbers {
     size_t count;
     float largest;
@@ -49,11 +50,16 @@ struct Stated {
 };
 
 // Reads a statement with numbers.
-void read_numbers(const Statements& statement, Stated& material) {
+void read_numbers(const Statements& statement, Stated& material, std::set<std::string>& ignored) {
     const auto known = number_keywords.find(statement.keyword());
     const auto& [keyword, allowed] = *known;
     const std::string name(keyword);
-    const std::vector<std::string_view>& words = statement.words();
+    std::vector<std::string_view> words = statement.words();
+    if (keyword == "d" && !words.empty() && words[0] == "-halo") {
+        ignored.insert("-halo");
+        words.erase(words.begin());
+    }
+    if (words.size() == 1) words.resize(allowed.count, words[0]);
     if (words.size() < allowed.count)
         statement.fail(name + " needs " + (allowed.count == 1 ? "a number" : std::to_string(allowed.count) + " numbers"));
     vec3& values = material.numbers[keyword == "Kt" ? "Tf" : keyword];
@@ -98,7 +104,7 @@ std::vector<Stated> read_statements(Statements statements, const std::string& fi
             statements.fail("not a material file: it must start with newmtl");
         }
         if (number_keywords.contains(keyword))
-            read_numbers(statements, materials.back());
+            read_numbers(statements, materials.back(), ignored);
         else if (keyword == "map_Kd")
             read_texture_name(statements, materials.back(), ignored);
         else if (!other_keywords.contains(keyword))

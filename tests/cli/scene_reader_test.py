@@ -2,9 +2,12 @@
 
 import contextlib
 import copy
+import importlib
 import io
 import json
 import re
+import sys
+from unittest import mock
 
 from program import PROJECT, QUAD_MTL, QUAD_OBJ, ProgramTest  # first: it finds the tools
 from project import UserError
@@ -39,6 +42,12 @@ class SceneReaderTest(ProgramTest):
             value = (value ^ byte) * 0x100000001B3 % 2**64
         self.assertEqual(read_scene(model).hash, f"{value:x}")
 
+    def test_one_number_stands_for_three_and_halos_have_no_effect(self):
+        self.write("quad.mtl", "newmtl white\nKd 0.25\nd -halo 0.5\nNi 1.5\nTf 0.5\n")
+        (surface,), _ = self.read(QUAD_OBJ)
+        self.assertEqual(surface.material.diffuse.tolist(), [0.25] * 3)
+        self.assertEqual(surface.material.absorption.round(6).tolist(), [0.693147] * 3)
+
     def test_other_materials_than_those_of_the_mesh(self):
         """By name, or a single one for all of it."""
         self.write("model.obj", QUAD_OBJ)
@@ -47,6 +56,15 @@ class SceneReaderTest(ProgramTest):
             scene = self.write("scene.json", json.dumps({"meshes": [{"file": "model.obj", "materials": "more/other.mtl"}]}))
             (surface,) = read_scene(scene).surfaces
             self.assertEqual(surface.material.diffuse.tolist(), diffuse)
+
+    def test_a_reference_does_not_replace_the_probe_that_lights_it(self):
+        self.write("quad.obj", QUAD_OBJ)
+        probe = self.write("sky.exr", "kept")
+        scene = self.write("scene.json", json.dumps({"meshes": [{"file": "quad.obj"}], "background": {"light_probe": "sky.exr"}}))
+        with self.assertRaisesRegex(UserError, "sky.exr: would replace the scene's light probe"):
+            with mock.patch.dict(sys.modules, {"references.mitsuba_scene": mock.MagicMock()}):
+                importlib.import_module("references.make").make_reference(scene, probe, *[None] * 3, 4, 1)
+        self.assertEqual(probe.read_text(), "kept")
 
 
 # What the chapters read: for each key of a scene a path to it and another value, for each keyword of a material the lines before

@@ -153,6 +153,15 @@ TEST_F(MeshFile, MicrofacetsThatContradictThemselvesSaySo) {
     EXPECT_EQ(count_warnings(load_material("Tf 0.5 1 1"), "Tf"), 0u);
 }
 
+TEST_F(MeshFile, OneNumberStandsForThreeAndHalosHaveNoEffect) {
+    EXPECT_EQ(load_material("Kd 0.25").materials.at(0).diffuse_albedo, vec3(0.25f));
+    EXPECT_EQ(load_material("Kd 0.25 # grey\nKe 2").materials.at(0).emission, vec3(2));
+    const Scene halo = load_material("d -halo 0.5\nNi 1.5\nTf 0.5");
+    EXPECT_EQ(halo.materials.at(0).absorption, load_material("d 0.5\nNi 1.5\nTf 0.5 0.5 0.5").materials.at(0).absorption);
+    EXPECT_EQ(count_warnings(halo, "without effect here: -halo"), 1u);
+    EXPECT_USER_ERROR(load_material("d -halo"), "d needs a number");
+}
+
 TEST_F(MeshFile, MaterialFileNamesMayHaveSpaces) {
     folder.write("two words.mtl", "newmtl light grey\nKd 0.75 0.75 0.75\n");
     for (const char* name : {"two words.mtl", "two\\ words.mtl", "  two words.mtl "})
@@ -177,7 +186,6 @@ TEST_F(MeshFile, DamagedMaterialsNameFileAndLine) {
         {"Ns -3", "a.mtl:2: Ns"},
         {"d", "a.mtl:2: d needs a number"},
         {"d 1.5", "d \"1.5\": must be a number in [0,1]"},
-        {"d -halo 0.5", "\"-halo\""},
         {"Tr 2", "a.mtl:2: Tr"},
         {" newmtl# lass", "a.mtl:2: newmtl needs a name"},
         {"Tf 1 1 1.5", "a.mtl:2: Tf"},

@@ -51,6 +51,8 @@ def render_batches(scene, name, batches, samples_per_batch, seed):
 def make_reference(scene_file, output, width, height, max_path_length, samples, seed, keep=False):
     """Renders a scene, unless `keep` is set and the file is up to date. None means the scene's own setting."""
     scene = read_scene(scene_file)
+    if scene.light_probe and output.resolve() == scene.light_probe.resolve():
+        raise UserError(f"{output}: would replace the scene's light probe: choose another name")
     width, height = width or scene.width, height or scene.height
     max_path_length = scene.max_path_length if max_path_length is None else max_path_length
     batches = max(BATCHES, math.ceil(samples * width * height / MAX_BATCH_PATHS))

@@ -51,7 +51,9 @@ def read_mtl(path, texture_folder, files):
         if keyword == "newmtl":
             statements.append({"newmtl": name_after_keyword(line)})
         elif keyword in NUMBERS:
-            statements[-1]["Tf" if keyword == "Kt" else keyword] = to_floats(words[1:], NUMBERS[keyword])
+            numbers = words[2:] if words[1:2] == ["-halo"] else words[1:]  # it has no effect
+            count = NUMBERS[keyword]
+            statements[-1]["Tf" if keyword == "Kt" else keyword] = to_floats(numbers * count if len(numbers) == 1 else numbers, count)
         elif keyword == "map_Kd":
             name = name_after_keyword(line)
             statements[-1]["map_Kd"] = words[-1] if name.startswith("-") else name  # options have no effect
