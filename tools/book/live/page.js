@@ -51,7 +51,7 @@ live.page = (() => {
                 this.fail(error.message);
                 return;
             }
-            if (this.renderer.device.isSlow) this.note.textContent = "This browser draws without a GPU: everything works, but slowly.";
+            if (this.renderer.device.isSlow) this.note.textContent ||= "This browser draws without a GPU: everything works, but slowly.";
             this.canvas.addEventListener("webglcontextlost", event => {
                 event.preventDefault();
                 this.losses = (this.losses ?? 0) + 1;
