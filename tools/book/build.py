@@ -19,7 +19,7 @@ SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.j
 SECTIONS = {  # of the navigation; missing pages are left out
     "Chapters": [f"chapters/{CHAPTERS[number]}/README.md" for number in course()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
-    "Explore": ["docs/window.md", "docs/debugging.md", "docs/scenes.md"],
+    "Explore": ["docs/browser.md", "docs/does_it_run_here.md", "docs/window.md", "docs/debugging.md", "docs/scenes.md"],
     "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/extending.md", "docs/numerics.md", "docs/cluster.md", "CHANGELOG.md"],
     "Results": ["docs/results.md", "docs/measuring.md"],
     "For teachers": ["docs/teaching.md", "docs/grading/README.md", "docs/installing.md"],

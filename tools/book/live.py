@@ -1,7 +1,8 @@
 """The lab in the browser: what the pages of a book need to render its chapters.
 
 A line <!-- live: SCENE --> on a chapter's page becomes a frame in which the chapter renders this scene or those of its check. On
-other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
+other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. <!-- live: report --> becomes a button that
+tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
 """
 import base64
 import gzip
@@ -15,11 +16,13 @@ from array import array
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from book.code_blocks import take_out
 from project import CHAPTERS, ROOT, UserError, chapter_named, description, failure_text, original, program_file, read_json, run_program, scene_of
 
 HERE = Path(__file__).parent / "live"
 SCRIPTS = ["glsl.js", "verdict.js", "renderer.js", "editor.js", "page.js"]
 MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+))? -->$", re.MULTILINE)
+REPORT = "report"
 LARGEST = 2_500_000  # bytes of a scene on a page
 HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halves end at 65504 and lose digits below 6e-5
 SHADERS = {".glsl", ".h", ".frag"}
@@ -27,7 +30,7 @@ SHADERS = {".glsl", ".h", ".frag"}
 
 def frames_of(text, path):
     """{chapter: scene} of a page's markers."""
-    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text)}
+    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text) if marker[1] != REPORT}
 
 
 def chapter_of(marker, path):
@@ -41,8 +44,9 @@ def with_frames(text, path):
 
     def frame(marker):
         scripts = "".join(f'<script src="{folder}{name}"></script>' for name in ["sources.js", *SCRIPTS])
-        return (f'<link rel="stylesheet" href="{folder}live.css">\n<div class="live" data-chapter="{chapter_of(marker, path)}" '
-                f'data-folder="{folder}"><noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>{scripts}\n')
+        what = REPORT if marker[1] == REPORT else chapter_of(marker, path)
+        return (f'<link rel="stylesheet" href="{folder}live.css">\n<div class="live" data-chapter="{what}" data-folder="{folder}">'
+                f'<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>{scripts}\n')
 
     return MARKER.sub(frame, text)
 
@@ -103,15 +107,18 @@ def dumped(chapter, name, folder):
 
 
 def exercise_of(chapter, texts):
-    """The file of exercise 1 and its text with the placeholder, if the lines to be filled in are there."""
+    """The file of exercise 1 and its text with the placeholder; none in a student's tree, where that is the file's text."""
     exercise = description(chapter).get("exercise")
-    path = exercise and f"chapters/{chapter}/{exercise['file']}"
-    if not exercise or any(texts.get(path, "").count(exercise[key]) != 1 for key in ("first", "last")):
+    if not exercise:
         return None
-    text = texts[path]
-    begin, end = text.index(exercise["first"]), text.index(exercise["last"]) + len(exercise["last"])
-    indent = " " * (begin - text.rfind("\n", 0, begin) - 1)
-    return {"file": path, "text": text[:begin] + f"\n{indent}".join(exercise["placeholder"]) + text[end:]}
+    path = f"chapters/{chapter}/{exercise['file']}"
+    return {"file": path, "text": take_out(texts[path], exercise)[0]}
+
+
+def bugs_of(chapter):
+    """What each mistake of a chapter replaces in its shaders; a student's tree has none."""
+    file = ROOT / "chapters" / chapter / "mistakes.json"
+    return [{key: record[key] for key in ("find", "replace")} for record in (read_json(file) if file.exists() else []) if "file" not in record]
 
 
 def write(folder, frames):
@@ -126,7 +133,7 @@ def write(folder, frames):
             told = description(chapter)
             known = chapters.setdefault(chapter, {"title": told["title"], "strategies": told.get("strategies", []), "pictures": [],
                                                   "samples": told["check"]["samples"], "checked": told["check"]["references"],
-                                                  "exercise": exercise_of(chapter, texts)})
+                                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)})
             if sum(len(text) for text in files.values()) <= LARGEST:
                 known["pictures"].append(entry)
     (folder / "data").mkdir(parents=True)

@@ -53,6 +53,7 @@ live.page = (() => {
             }
             if (this.renderer.device.isSlow) this.note.textContent ||= "This browser draws without a GPU: everything works, but slowly.";
             this.canvas.addEventListener("webglcontextlost", event => {
+                if (Frame.active !== this) return;
                 event.preventDefault();
                 this.losses = (this.losses ?? 0) + 1;
                 this.fail(this.losses > 1 ? "The browser took the GPU away again. Reload the page, or use a smaller shader." : "The browser took the GPU away; starting again …");
@@ -66,6 +67,7 @@ live.page = (() => {
         }
 
         stop() {
+            Frame.active = null;
             if (this.renderer) ++this.renderer.run;
             clearTimeout(this.timer);
             this.verdict.textContent = "stopped: only one frame of a page renders at a time";
@@ -79,7 +81,7 @@ live.page = (() => {
         button(text, click) { return element("button", { type: "button", click }, text); }
 
         controls() {
-            const { pictures, strategies, exercise } = this.about, restart = () => this.restart();
+            const { pictures, strategies, exercise, bugs } = this.about, restart = () => this.restart();
             const lengthText = name => `${name.replace(/_\d+$/, "").replaceAll("_", " ")}, up to ${name.replace(/.*_/, "")} bounces`;
             let strategyLabel, lengthLabel = element("label", {}, "Bounces "), sceneLabel, viewLabel;
             [this.scene, sceneLabel] = this.select("Scene", pictures.map(({ name }, i) => [i, lengthText(name)]), () => { this.length.value = ""; restart(); });
@@ -92,10 +94,22 @@ live.page = (() => {
                                 ...(strategies.length > 1 ? [strategyLabel] : []), lengthLabel, this.pause, this.button("Restart", restart),
                                 this.button("Check", () => this.check()));
             if (exercise) bar.append(this.button("Start exercise 1", () => { this.editor.edit(exercise.text, exercise.file); }));
+            if (bugs.length) {
+                const numbers = [["", "none"], ...bugs.map((_, i) => [i, `number ${i + 1}`])];
+                const [list, label] = this.select("Bug to find", numbers, () => this.plant(bugs[list.value]));
+                bar.append(label);
+            }
             bar.append(this.button("Original text", () => this.editor.reset()), this.button("Download", () => this.editor.download()),
                        this.button("Open", () => this.editor.openFile()), this.button("Copy a link", () => this.copyLink()));
             if (document.fullscreenEnabled) bar.append(this.button("Full window", () => document.fullscreenElement ? document.exitFullscreen() : this.root.requestFullscreen()));
             return bar;
+        }
+
+        // Puts a mistake into the chapter's own text.
+        plant(bug) {
+            this.editor.reset();
+            const file = bug && this.editor.files.find(path => live.sources[path].split(bug.find).length === 2);
+            if (file) this.editor.edit(live.sources[file].replace(bug.find, () => bug.replace), file);
         }
 
         setPaused(isPaused) {
@@ -273,9 +287,56 @@ live.page = (() => {
         }
     }
 
+    // Tries chapters one after the other, and writes what a developer wants to know about the device.
+    class Report {
+        static chapters = ["next_event_estimation", "dielectrics", "light_probes"];
+        static patience = 120;  // seconds for a chapter
+
+        constructor(root) {
+            this.root = root;
+            this.text = element("textarea", { readonly: "", rows: "16", "aria-label": "the report" });
+            this.frames = element("div");
+            root.append(element("button", { type: "button", class: "live-start", click: () => this.run() }, "Try it"), this.text, this.frames);
+        }
+
+        say(line) { this.text.value += `${line}\n`; }
+
+        async run() {
+            this.text.value = "";
+            this.say(navigator.userAgent);
+            this.say(`screen ${screen.width} x ${screen.height}, ${navigator.hardwareConcurrency} threads`);
+            for (const name of Report.chapters) {
+                const chapter = Object.keys(live.chapters).find(folder => folder.endsWith(name));
+                if (chapter) await this.try(chapter);
+            }
+            this.say("done");
+        }
+
+        async try(chapter) {
+            const root = element("div", { "data-chapter": chapter, "data-folder": this.root.dataset.folder }), started = performance.now();
+            this.frames.replaceChildren(root);
+            const frame = root.frame = new Frame(root), seconds = () => (performance.now() - started) / 1000;
+            await frame.start();
+            if (frame.renderer && !this.isKnown) {
+                const { gl, parallel, device } = frame.renderer;
+                this.say(`device ${device.name}; textures up to ${gl.getParameter(gl.MAX_TEXTURE_SIZE)}; ${parallel ? "compiles" : "does not compile"} beside the page`);
+                this.isKnown = true;
+            }
+            const isOver = () => frame.latest?.verdict || frame.verdict.classList.contains("live-failed") || seconds() > Report.patience;
+            while (!isOver()) await live.rendering.pause(100);
+            this.say(`\n${chapter}: ${frame.verdict.textContent}`);
+            if (frame.times) this.say(`compiled in ${frame.times.compile.toFixed(0)} ms, first picture after ${frame.times.first.toFixed(2)} s; ${frame.numbers.textContent}`);
+            if (frame.editor.error.textContent) this.say(frame.editor.error.textContent);
+            if (frame.losses) this.say(`the browser took the GPU away ${frame.losses} times`);
+            frame.stop();
+            frame.renderer?.gl.getExtension("WEBGL_lose_context")?.loseContext();
+        }
+    }
+
     function init() {
         for (const root of document.querySelectorAll("div.live:empty, div.live:has(noscript)")) {
             root.replaceChildren();
+            if (root.dataset.chapter === "report") root.report = new Report(root);
             if (root.dataset.chapter in live.chapters) root.frame = new Frame(root);
         }
     }
