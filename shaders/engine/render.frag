@@ -28,6 +28,7 @@ const uint STUCK = 0x80000000u;
 uniform usampler2D film_before[3];
 uniform uint target_samples;
 uniform uint samples_per_pixel;  // the most that a pixel still lacks
+uniform bool is_preview;         // renders only the first 2 x 2 pixels of each block, which stand for the others
 layout(location = 0) out uvec4 film_words_0;
 layout(location = 1) out uvec4 film_words_1;
 layout(location = 2) out uvec4 film_words_2;
@@ -46,7 +47,8 @@ void main() {
     uvec2 block = position / uvec2(BLOCK_WIDTH, BLOCK_HEIGHT), corner = block * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT);
     uint pixel_index = position.y * parameters.image_size.x + position.x;
     dispatch = DispatchParameters(block.y * blocks_per_row + block.x, 1u, samples_per_pixel, target_samples, pixel_index);
-    render_pixel((position.y - corner.y) * BLOCK_WIDTH + position.x - corner.x);
+    bool is_left_out = is_preview && any(greaterThan(position - corner, uvec2(1u)));
+    if (!is_left_out) render_pixel((position.y - corner.y) * BLOCK_WIDTH + position.x - corner.x);
 
     uvec3 sum = floatBitsToUint(film[0].sum), compensation = floatBitsToUint(film[0].compensation);
     uvec3 difference = floatBitsToUint(film[0].difference);

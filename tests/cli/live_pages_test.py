@@ -150,6 +150,31 @@ class LivePagesTest(LivePages, unittest.TestCase):
         self.frame("[...frame.root.querySelectorAll('button')].find(button => button.textContent === 'Start exercise 1').click()")
         self.assertIn("// TODO", self.frame("frame.editor.field.value"))
 
+    def test_bugs_are_planted(self):
+        count = sum("file" not in record for record in read_json(PROJECT / "chapters" / CHAPTERS[3] / "mistakes.json"))
+        self.start(3)
+        for number in range(count):
+            self.frame(f"frame.plant(frame.about.bugs[{number}])")
+            self.assertEqual(self.frame("frame.editor.edited.length"), 1, f"bug {number + 1}")
+
+    def test_a_hidden_tab_pauses(self):
+        self.start(3, before="Object.defineProperty(document, 'hidden', { get: () => window.isHidden, configurable: true })")
+        self.wait("frame.film", "a picture")
+        self.browser.evaluate("window.isHidden = true")
+        time.sleep(1)
+        samples = self.frame("frame.renderer.samples")
+        time.sleep(2)
+        self.assertEqual(self.frame("frame.renderer.samples"), samples)
+        self.browser.evaluate("window.isHidden = false")
+        self.wait(f"frame.renderer.samples > {samples}", "more samples")
+
+    def test_the_view_of_surfaces_gives_no_verdict(self):
+        self.start(3)
+        self.frame("(frame.view.value = 'NORMALS', frame.viewChanged())")
+        self.wait("frame.film && frame.verdict.textContent.includes('surfaces')", "normals")
+        self.frame("(frame.view.value = 'picture', frame.viewChanged())")
+        self.wait("frame.latest?.verdict && frame.verdict.textContent.startsWith('agrees')", "the picture again")
+
     def test_fits_a_phone(self):
         self.browser.resize(NARROW)
         try:
@@ -181,6 +206,17 @@ class LivePages_all(LivePages, unittest.TestCase):
         for chapter in course():
             with self.subTest(chapter=chapter):
                 self.assert_agrees(chapter)
+
+    def test_the_page_that_tries_a_device(self):
+        self.browser.visit((self.site / "docs/does_it_run_here.html").as_uri())
+        self.browser.evaluate(f"{SMALL}; document.querySelector('.live-start').click()")
+        report, end = "", time.monotonic() + 4 * PATIENCE
+        while not report.rstrip().endswith("done"):
+            self.assertLess(time.monotonic(), end, report)
+            time.sleep(1)
+            report = self.browser.evaluate("document.querySelector('.live textarea').value")
+        self.assertEqual(report.count(": agrees with the reference"), 3, report)
+        self.assert_no_complaints()
 
     def test_the_check_passes_what_is_right(self):
         self.start(3)

@@ -46,11 +46,11 @@ live.Editor = (() => {
 
     return class Editor {
         // Calls changed() after each edit, and say(text) for what the reader should know.
-        constructor(chapter, changed, say) {
-            Object.assign(this, { chapter, changed, say });
+        constructor(chapter, changed, say, keepsTexts) {
+            Object.assign(this, { chapter, changed, say, keepsTexts });
             this.files = filesOf(chapter);
             this.texts = {};
-            for (const file of this.files) this.texts[file] = stored(file) ?? live.sources[file];
+            for (const file of this.files) this.texts[file] = (keepsTexts ? stored(file) : null) ?? live.sources[file];
             this.field = element("textarea", { spellcheck: "false", autocapitalize: "off", autocomplete: "off", wrap: "off", rows: "24",
                                                "aria-label": "the chapter's shader", input: () => this.edit(this.field.value) });
             this.tabs = element("div", { role: "tablist", "aria-label": "files of the chapter", class: "live-tabs", keydown: event => this.key(event) });
@@ -86,7 +86,7 @@ live.Editor = (() => {
             const wasEdited = this.texts[file] !== live.sources[file];
             this.texts[file] = text;
             const isEdited = text !== live.sources[file];
-            if (!store(file, isEdited ? text : undefined)) this.say("The browser keeps no text of this page: download it before you leave.");
+            if (this.keepsTexts && !store(file, isEdited ? text : undefined)) this.say("The browser keeps no text of this page: download it before you leave.");
             if (file !== this.file || wasEdited !== isEdited || this.field.value !== text) {
                 const { selectionStart, selectionEnd } = this.field;
                 this.open(file);
@@ -143,7 +143,7 @@ live.Editor = (() => {
         }
 
         async readLink() {
-            const code = /^#live=([\w=-]+)$/.exec(location.hash)?.[1];
+            const code = this.keepsTexts ? /^#live=([\w=-]+)$/.exec(location.hash)?.[1] : null;
             if (!code) return;
             try {
                 const bytes = Uint8Array.from(atob(code.replaceAll("-", "+").replaceAll("_", "/")), character => character.charCodeAt(0));

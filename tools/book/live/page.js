@@ -17,8 +17,9 @@ live.page = (() => {
     }
 
     class Frame {
-        constructor(root) {
-            this.root = root;
+        // `keepsTexts`: whether the reader's texts are read and stored.
+        constructor(root, keepsTexts = true) {
+            Object.assign(this, { root, keepsTexts });
             this.chapter = root.dataset.chapter;
             this.about = live.chapters[this.chapter];
             this.isPaused = false;
@@ -37,7 +38,7 @@ live.page = (() => {
             this.note = element("p", { class: "live-note", role: "status" });
             this.plot = element("div", { class: "live-plot" });
             this.results = element("div", { class: "live-results", role: "status" });
-            this.editor = new live.Editor(this.chapter, () => this.restartSoon(), text => { this.note.textContent = text; });
+            this.editor = new live.Editor(this.chapter, () => this.restartSoon(), text => { this.note.textContent = text; }, this.keepsTexts);
             await this.editor.readLink();
             this.root.replaceChildren(this.controls(),
                 element("div", { class: "live-columns" },
@@ -168,7 +169,7 @@ live.page = (() => {
 
         // Renders a picture; look(film, state) is called at powers of two. Returns whether it came to its end.
         async renderPicture(picture, target, look) {
-            const turn = this.turn = (this.turn ?? 0) + 1;
+            const turn = this.turn = (this.turn ?? 0) + 1, started = performance.now();
             ++this.renderer.run;
             const state = await this.prepare(picture);
             if (turn !== this.turn) return false;
@@ -177,18 +178,26 @@ live.page = (() => {
             const done = await this.renderer.render({
                 ...state, target, isPaused: () => this.isPaused || document.hidden,
                 shown: () => this.renderer.show({ scale: 1, isSrgb: this.view.value !== "NORMALS" }),
+                preview: film => {
+                    this.checkLoops(film, state);
+                    this.times ??= { compile: state.compileTime, first: performance.now() - started };
+                },
                 look: film => {
-                    if (film.stuck) {
-                        const { file, line } = state.translated.loop(film.stuck);
-                        ++this.renderer.run;
-                        throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end`);
-                    }
+                    this.checkLoops(film, state);
                     if (film.samples === verdict.nextSamples) verdict.add(film);
                     look(film, state, verdict);
                 }
             });
             this.renderer.gl.deleteProgram(state.program);
             return done && turn === this.turn;
+        }
+
+        // Throws if a loop had to be ended: then the samples are wrong.
+        checkLoops(film, state) {
+            if (!film.stuck) return;
+            const { file, line } = state.translated.loop(film.stuck);
+            ++this.renderer.run;
+            throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end`);
         }
 
         async restart() {
@@ -224,7 +233,6 @@ live.page = (() => {
             this.numbers.textContent = `${film.samples} samples a pixel, ${seconds.toFixed(1)} s, ${(film.rays / seconds / 1e6).toFixed(2)} million rays per second` +
                 (film.samples === 1 ? "" : hasReference ? `, error ${(100 * error).toPrecision(2)} %` : "") +
                 (film.invalid ? `; ${film.invalid} samples are infinite or no numbers: their pixels are magenta` : "");
-            this.times ??= { compile: state.compileTime, first: seconds };
             this.drawPlot();
             this.drawOverlay();
         }
@@ -309,13 +317,14 @@ live.page = (() => {
                 const chapter = Object.keys(live.chapters).find(folder => folder.endsWith(name));
                 if (chapter) await this.try(chapter);
             }
+            this.frames.replaceChildren();
             this.say("done");
         }
 
         async try(chapter) {
             const root = element("div", { "data-chapter": chapter, "data-folder": this.root.dataset.folder }), started = performance.now();
             this.frames.replaceChildren(root);
-            const frame = root.frame = new Frame(root), seconds = () => (performance.now() - started) / 1000;
+            const frame = root.frame = new Frame(root, false), seconds = () => (performance.now() - started) / 1000;
             await frame.start();
             if (frame.renderer && !this.isKnown) {
                 const { gl, parallel, device } = frame.renderer;
@@ -325,7 +334,7 @@ live.page = (() => {
             const isOver = () => frame.latest?.verdict || frame.verdict.classList.contains("live-failed") || seconds() > Report.patience;
             while (!isOver()) await live.rendering.pause(100);
             this.say(`\n${chapter}: ${frame.verdict.textContent}`);
-            if (frame.times) this.say(`compiled in ${frame.times.compile.toFixed(0)} ms, first picture after ${frame.times.first.toFixed(2)} s; ${frame.numbers.textContent}`);
+            if (frame.times) this.say(`compiled in ${frame.times.compile.toFixed(0)} ms, first picture after ${frame.times.first.toFixed(0)} ms; ${frame.numbers.textContent}`);
             if (frame.editor.error.textContent) this.say(frame.editor.error.textContent);
             if (frame.losses) this.say(`the browser took the GPU away ${frame.losses} times`);
             frame.stop();

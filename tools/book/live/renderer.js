@@ -17,6 +17,7 @@ uniform bool is_srgb;
 out vec4 colour;
 void main() {
     ivec2 size = textureSize(film_before[0], 0), place = ivec2(gl_FragCoord.x, float(size.y) - gl_FragCoord.y);
+    if (texelFetch(film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
     uvec4 a = texelFetch(film_before[0], place, 0), b = texelFetch(film_before[1], place, 0), c = texelFetch(film_before[2], place, 0);
     vec3 mean = (uintBitsToFloat(a.xyz) + uintBitsToFloat(uvec3(a.w, b.xy))) / float(max(c.y, 1u));
     vec3 shown = clamp(scale * mean, 0.0, 1.0);
@@ -210,8 +211,8 @@ void main() {
         }
 
         // Renders until `target()` samples are reached or another render starts. Calls `look(film)` at 1, 2, 4, … samples and the
-        // target; `isPaused()` is asked before each draw. Returns whether it was not replaced.
-        async render({ program, scene, parameters, size, target, isPaused, look, shown }) {
+        // target, and before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns whether it was not replaced.
+        async render({ program, scene, parameters, size, target, isPaused, preview = () => {}, look, shown }) {
             const run = ++this.run, { gl } = this;
             await this.load(scene);
             if (run !== this.run) return false;
@@ -225,14 +226,14 @@ void main() {
             this.isFirstPass = true;
             gl.useProgram(program);
             this.setStruct(program, "RenderParameters", "parameters", parameters);
-            let rows = 8, step = 1;
+            let rows = 8, step = 1, isPreview = true;
             while (this.samples < target()) {
                 const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1), next = Math.min(this.samples + step, look_at, target());
                 for (let row = 0; row < size[1];) {
                     while (isPaused() && run === this.run) await pause(50);
                     if (run !== this.run || gl.isContextLost()) return false;
                     const started = performance.now();
-                    this.draw(program, row, Math.min(rows, size[1] - row), next);
+                    this.draw(program, row, Math.min(rows, size[1] - row), next, isPreview);
                     await this.finished();
                     if (run !== this.run || gl.isContextLost()) return false;
                     row += rows;
@@ -244,15 +245,21 @@ void main() {
                     if (this.isFirstPass) shown();
                 }
                 this.films.reverse();
-                this.samples = next;
                 this.isFirstPass = false;
                 shown();
+                if (isPreview) {
+                    isPreview = false;
+                    preview(this.read());
+                    rows = Math.max(1, rows >> 3);
+                    continue;
+                }
+                this.samples = next;
                 if (next === look_at || next >= target()) look(this.read());
             }
             return true;
         }
 
-        draw(program, row, rows, target) {
+        draw(program, row, rows, target, isPreview) {
             const { gl, films, size, samples } = this;
             this.bindFilm(program, films[0]);
             for (const [unit, name, texture] of [[3, "web_arrays", this.arrays], [4, "light_probe", this.probe]]) {
@@ -262,6 +269,7 @@ void main() {
             }
             gl.uniform1ui(gl.getUniformLocation(program, "target_samples"), target);
             gl.uniform1ui(gl.getUniformLocation(program, "samples_per_pixel"), target - samples);
+            gl.uniform1i(gl.getUniformLocation(program, "is_preview"), isPreview ? 1 : 0);
             gl.bindFramebuffer(gl.FRAMEBUFFER, films[1].frame);
             gl.viewport(0, 0, ...size);
             gl.enable(gl.SCISSOR_TEST);
