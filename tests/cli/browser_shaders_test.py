@@ -23,6 +23,7 @@ FEATURES = {
     "probe": [STACK, "FEATURE_LIGHT_PROBE", "FEATURE_LIGHT_PROBE_CELLS", "FEATURE_LIGHT_TRIANGLES"],
     "microfacets": [STACK, "FEATURE_MICROFACETS", "FEATURE_MULTIPLE_SCATTERING", "FEATURE_LIGHT_TRIANGLES", "FEATURE_DIELECTRICS"],
 }
+FEATURES["everything"] = [STACK, "TEXTURE_COUNT 1", *sorted({name for text in live.shaders().values() for name in re.findall(r"\bFEATURE_\w+", text)})]
 NOTEBOOK = PROJECT / "notebook"
 
 

@@ -5,7 +5,11 @@ var live = globalThis.live ?? {};
 globalThis.live = live;
 
 live.glsl = (() => {
-    const TYPE_WORDS = { float: 1, uint: 1, int: 1, vec2: 2, vec3: 3, uvec2: 2, uvec3: 3, uvec4: 4, mat3: 9, mat4x3: 12 };
+    // The words of a scalar, vector or matrix, and nothing for other types.
+    function plainWords(type) {
+        const [, , rows, columns, rowsOfMatrix] = /^(float|u?int|[iu]?vec(\d)|mat(\d)(?:x(\d))?)$/.exec(type) ?? [];
+        return rows ? Number(rows) : columns ? columns * (rowsOfMatrix ?? columns) : /^(float|u?int)$/.test(type) ? 1 : undefined;
+    }
     const ERROR_HINTS = [
         [/wrong operand types|cannot convert|no operation/, "both sides need the same type: 2.0 * x instead of 2 * x, float(i) for an integer i"],
         [/syntax error|unexpected/, "is a semicolon or a bracket missing here or before?"],
@@ -96,7 +100,7 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         }
 
         wordsOf(type, count) {
-            const words = TYPE_WORDS[type] ?? this.structs[type]?.reduce((sum, [t, , n]) => sum + this.wordsOf(t, n), 0);
+            const words = plainWords(type) ?? this.structs[type]?.reduce((sum, [t, , n]) => sum + this.wordsOf(t, n), 0);
             if (words === undefined) throw new ShaderError(`there is no type ${type}`);
             return words * (count === undefined ? 1 : this.constants[count]);
         }
@@ -109,7 +113,6 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
 
         // The expression that reads a value of this type at word `at`, an expression.
         reader(type, at) {
-            if (type === "uvec4") return `web_texel(int((${at}) >> 2u))`;
             if (this.structs[type]) {
                 let first = 0;
                 const members = this.structs[type].map(([t, , n]) => {
@@ -119,16 +122,16 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
                 });
                 return `${type}(${members.join(", ")})`;
             }
-            const words = Array.from({ length: this.wordsOf(type) }, (_, i) => `${at} + ${i}u`);
-            if (type === "int") return `int(web_word(${at}))`;
-            if (/^u/.test(type)) return type === "uint" ? `web_word(${at})` : `${type}(${words.map(w => `web_word(${w})`).join(", ")})`;
-            return type === "float" ? `web_float(${at})` : `${type}(${words.map(w => `web_float(${w})`).join(", ")})`;
+            const read = /^[iu]/.test(type) ? "web_word" : "web_float";
+            return `${type}(${Array.from({ length: this.wordsOf(type) }, (_, i) => `${read}(${at} + ${i}u)`).join(", ")})`;
         }
 
         // Functions that read `name[i]` and, for a struct, its members.
         accessors(type, name, first) {
-            const stride = this.wordsOf(type), at = `${first}u + ${stride}u * i`, functions = [], struct = this.structs[type];
+            const at = `${first}u + ${this.wordsOf(type)}u * i`, functions = [], struct = this.structs[type];
             if (!struct?.some(([, , n]) => n !== undefined)) functions.push(`${type} ${name}_at(uint i) { return ${this.reader(type, at)}; }`);
+            // Arrays begin at a texel.
+            if (type === "uvec4") return `uvec4 ${name}_at(uint i) { return web_texel(int(${first / 4}u + i)); }`;
             let place = 0;
             for (const [t, member, n] of struct ?? []) {
                 const index = n === undefined ? "" : ", uint j", offset = n === undefined ? "" : ` + ${this.wordsOf(t)}u * j`;
