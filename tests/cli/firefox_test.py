@@ -54,6 +54,7 @@ class Firefox_all(Site, ProgramTest):
         server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), lambda *arguments: Server(*arguments, directory=str(self.site)))
         server.received = queue.Queue()
         threading.Thread(target=server.serve_forever, daemon=True).start()
+        self.addCleanup(server.server_close)
         self.addCleanup(server.shutdown)
         profile = self.folder / "profile"
         profile.mkdir()

@@ -163,6 +163,7 @@ live.page = (() => {
                 sources, main: "shaders/engine/render.frag", find: live.glsl.finder(sources, this.chapter, named), defines, scene,
                 isEstimator: file => file.startsWith("chapters/")
             });
+            this.numbers.textContent = "compiling …";
             const started = performance.now(), program = await this.renderer.compile(translated);
             return { program, scene, parameters, size, reference, translated, compileTime: performance.now() - started };
         }
@@ -175,7 +176,13 @@ live.page = (() => {
             if (turn !== this.turn) return false;
             this.state = state;
             const verdict = new live.statistics.LiveVerdict(state.reference, ...state.size);
-            const done = await this.renderer.render({
+            try {
+                return await this.draw(state, verdict, target, look, started) && turn === this.turn;
+            } finally { this.renderer.gl.deleteProgram(state.program); }
+        }
+
+        draw(state, verdict, target, look, started) {
+            return this.renderer.render({
                 ...state, target, isPaused: () => this.isPaused || document.hidden,
                 shown: () => this.renderer.show({ scale: 1, isSrgb: this.view.value !== "NORMALS" }),
                 preview: film => {
@@ -188,8 +195,6 @@ live.page = (() => {
                     look(film, state, verdict);
                 }
             });
-            this.renderer.gl.deleteProgram(state.program);
-            return done && turn === this.turn;
         }
 
         // Throws if a loop had to be ended: then the samples are wrong.
@@ -202,6 +207,7 @@ live.page = (() => {
 
         async restart() {
             clearTimeout(this.timer);
+            if (!this.renderer) return;
             const started = performance.now(), picture = this.about.pictures[this.scene.value];
             this.errors = [];
             this.film = null;
@@ -270,6 +276,7 @@ live.page = (() => {
 
         // The verdicts on the scenes of ./lab check, one after the other.
         async check() {
+            if (!this.renderer) return;
             const { checked, pictures, samples } = this.about, rows = [], enough = Math.max(samples, FIRST_VERDICT);
             clearTimeout(this.timer);
             this.setPaused(false);
@@ -343,7 +350,8 @@ live.page = (() => {
     }
 
     function init() {
-        for (const root of document.querySelectorAll("div.live:empty, div.live:has(noscript)")) {
+        for (const root of document.querySelectorAll("div.live")) {
+            if (root.frame || root.report) continue;  // each frame of a page brings this script
             root.replaceChildren();
             if (root.dataset.chapter === "report") root.report = new Report(root);
             if (root.dataset.chapter in live.chapters) root.frame = new Frame(root);

@@ -60,6 +60,7 @@ void main() {
     class Renderer {
         // Throws an Error that says what the reader can do.
         constructor(canvas) {
+            if (!globalThis.DecompressionStream) throw new Error("this browser is too old: update it");
             this.gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
             if (!this.gl) throw new Error("this browser offers no WebGL 2: update it, or switch graphics acceleration on in its settings");
             this.layout = new live.glsl.Layout(live.sources["shaders/interface.h"]);
