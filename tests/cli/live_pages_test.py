@@ -118,6 +118,12 @@ class LivePagesTest(LivePages, unittest.TestCase):
         self.assertIn("damaged", self.frame("frame.note.textContent"))
         self.assertNotIn("vec3(0.5)", self.frame("frame.editor.field.value"))
 
+    def test_another_tab_that_changes_the_text(self):
+        self.start(3)
+        key = f"path tracing lab: {ESTIMATOR}"
+        self.browser.evaluate(f"dispatchEvent(new StorageEvent('storage', {{ key: {json.dumps(key)} }}))")
+        self.assertIn("Another tab", self.frame("frame.note.textContent"))
+
     def test_texts_of_any_kind(self):
         self.start(3)
         self.frame("frame.editor.edit('\\uFEFF' + frame.editor.field.value.replaceAll('\\n', '\\r\\n'))")
