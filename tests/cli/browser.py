@@ -18,7 +18,9 @@ class Browser:
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a child may outlive the browser
         read_commands, self.commands = os.pipe()
         self.answers, write_answers = os.pipe()
-        command = [CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--remote-debugging-pipe",
+        # WebGL on the CPU, whatever GPU there is.
+        graphics = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+        command = [CHROMIUM, "--headless=new", "--no-sandbox", *graphics, "--no-first-run", "--remote-debugging-pipe",
                    "--host-resolver-rules=MAP * ~NOTFOUND", f"--user-data-dir={self.profile.name}", "about:blank"]
         # Chromium reads commands from descriptor 3 and writes answers to descriptor 4.
         shell = ["bash", "-c", f'exec 3<&{read_commands} 4>&{write_answers}; exec "$@"', "browser", *command]

@@ -162,6 +162,22 @@ Another is code of chapter 7.
         for page in (self.folder / "lab").rglob("*.md"):
             self.assertNotRegex(page.read_text(encoding="utf-8"), r"lab\s+(test|figures|handout|bug)\b|all\s+tests\s+named|NUMBER|FOLDER|SHADER", page)
 
+    def test_its_pages_give_nothing_away(self):
+        if not shutil.which("mkdocs"):
+            self.skipTest("needs MkDocs, which ./lab book installs")
+        result = self.handout(3, "pages", "--pages")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        site = self.folder / "pages"
+        secret = EXERCISES[CHAPTERS[2]]["last"]
+        texts = {path: path.read_text(encoding="utf-8") for pattern in ("*.html", "*.js") for path in site.rglob(pattern)}
+        self.assertEqual([path for path, text in texts.items() if secret in text or json.dumps(secret)[1:-1] in text], [])
+        sources = texts[site / "live/sources.js"]
+        self.assertIn("// TODO", sources)
+        self.assertNotIn("chapters/04_", sources)
+        self.assertNotIn('"find"', sources)
+        self.assertFalse((site / f"chapters/{CHAPTERS[3]}").exists())
+        self.assertIn('data-chapter="03_', texts[site / f"chapters/{CHAPTERS[2]}/index.html"])
+
     def test_commands_that_need_the_tests_say_so(self):
         self.assertEqual(self.handout(1, "lab").returncode, 0)
         help_text = subprocess.run(["./lab"], cwd=self.folder / "lab", capture_output=True, text=True, timeout=20).stdout

@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from book import search
+from book import live, search
 from book.pages import Page, source_page
 from project import CHAPTERS, ROOT, Parser, UserError, course, read_json, run_program, show_progress
 
@@ -19,7 +19,7 @@ SEARCH_INDEX, SEARCH_SCRIPT = "search/search_index.json", "search/search_index.j
 SECTIONS = {  # of the navigation; missing pages are left out
     "Chapters": [f"chapters/{CHAPTERS[number]}/README.md" for number in course()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
-    "Explore": ["docs/window.md", "docs/debugging.md", "docs/scenes.md"],
+    "Explore": ["docs/browser.md", "docs/does_it_run_here.md", "docs/window.md", "docs/debugging.md", "docs/scenes.md"],
     "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/extending.md", "docs/numerics.md", "docs/cluster.md", "CHANGELOG.md"],
     "Results": ["docs/results.md", "docs/measuring.md"],
     "For teachers": ["docs/teaching.md", "docs/grading/README.md", "docs/installing.md"],
@@ -51,12 +51,12 @@ def write(folder, path, text):
 
 
 def collect(folder, sections, is_teacher):
-    """Writes the pages, the files they link to, and their pictures, at the paths they have in the project. Returns the pages,
+    """Writes the pages, the files they link to, their pictures, and what their live frames need, at the paths they have in the project. Returns the pages,
     the names of the sources on the site, and what is to be found by name: {address: (name, explanation)}."""
     def is_included(path):
         return (ROOT / path).is_file() and (is_teacher or "solutions" not in Path(path).parts)
 
-    waiting, done, named = [Path(path) for _, paths in sections for path in paths], set(), {}
+    waiting, done, named, frames = [Path(path) for _, paths in sections for path in paths], set(), {}, {}
     while waiting:
         path = waiting.pop()
         if path in done:
@@ -68,12 +68,15 @@ def collect(folder, sections, is_teacher):
         page = Page(path, is_included)
         write(folder, path, page.text)
         waiting += page.linked
+        frames |= page.frames
         named |= {f"{path.with_suffix('.html')}#{name}": (name, text) for name, text in page.functions.items()}
         for picture in page.pictures:
             if not (ROOT / picture).is_file():
                 raise UserError(f"{path}: there is no picture {picture}")
             (folder / picture).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(ROOT / picture, folder / picture)
+    if frames:
+        live.write(folder / "live", frames)
     return sorted(path for path in done if path.suffix == ".md"), {f"{path}.html" for path in done if path.suffix != ".md"}, named
 
 

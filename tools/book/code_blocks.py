@@ -44,3 +44,19 @@ def fill(text, page):
         raise UserError(f"{page}: '{MARKER}' must be followed by FILE | first phrase | last phrase -->, a block in ``` and "
                         "<!-- end of code -->, a line each")
     return BLOCK.sub(filled, text)
+
+
+def find_once(text, piece, exercise):
+    if text.count(piece) != 1:
+        raise UserError(f"stale: {exercise['file']} has {text.count(piece)} places with {piece!r}")
+    return text.index(piece)
+
+
+def take_out(text, exercise):
+    """The shader with the placeholder instead of the solution, and the solution."""
+    begin = find_once(text, exercise["first"], exercise)
+    end = find_once(text, exercise["last"], exercise) + len(exercise["last"])
+    if begin >= end:
+        raise UserError(f"stale: {exercise['file']}: {exercise['last']!r} is before {exercise['first']!r}")
+    indent = " " * (begin - text.rindex("\n", 0, begin) - 1)
+    return text[:begin] + f"\n{indent}".join(exercise["placeholder"]) + text[end:], text[begin:end]

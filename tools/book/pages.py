@@ -3,6 +3,7 @@ import os
 import re
 from pathlib import Path
 
+from book import live
 from project import ROOT
 
 PICTURES = {".jpg", ".png", ".svg", ".gif", ".webp"}
@@ -23,7 +24,10 @@ class Page:
         """is_included(path) tells whether a page with this path may be linked."""
         self.path, self.is_included = Path(path), is_included
         self.linked = []  # pages and sources
-        text = re.sub(r"<!-- .*? -->\n?|^\[!\[.*\]\(\.\./\.\./actions/.*\n", "", (ROOT / path).read_text(encoding="utf-8"), flags=re.MULTILINE)  # no badges
+        text = (ROOT / path).read_text(encoding="utf-8")
+        self.frames = live.frames_of(text, self.path)  # {chapter: scene}
+        text = live.with_frames(text, self.path)
+        text = re.sub(r"<!-- .*? -->\n?|^\[!\[.*\]\(\.\./\.\./actions/.*\n", "", text, flags=re.MULTILINE)  # no badges
         text = text.replace("<details>", '<details markdown="1">')  # or MkDocs would leave its text unformatted
         self.pictures = [self.resolve(first or second) for first, second in PICTURE.findall(text) if "://" not in first + second]
         self.functions = {}  # of its tables: name and explanation

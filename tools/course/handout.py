@@ -11,6 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from book.code_blocks import take_out
 from check.grading import known_mistakes
 from course.pages import clean_pages
 from package.make import pack
@@ -32,22 +33,6 @@ def few(chapter):
 
 def exercise_of(chapter):
     return description(CHAPTERS[chapter]).get("exercise")
-
-
-def find_once(text, piece, exercise):
-    if text.count(piece) != 1:
-        raise UserError(f"stale: {exercise['file']} has {text.count(piece)} places with {piece!r}")
-    return text.index(piece)
-
-
-def take_out(text, exercise):
-    """The shader with the placeholder instead of the solution, and the solution."""
-    begin = find_once(text, exercise["first"], exercise)
-    end = find_once(text, exercise["last"], exercise) + len(exercise["last"])
-    if begin >= end:
-        raise UserError(f"stale: {exercise['file']}: {exercise['last']!r} is before {exercise['first']!r}")
-    indent = " " * (begin - text.rindex("\n", 0, begin) - 1)
-    return text[:begin] + f"\n{indent}".join(exercise["placeholder"]) + text[end:], text[begin:end]
 
 
 def write_handout(chapter, folder):
@@ -77,6 +62,15 @@ def write_handout(chapter, folder):
     clean_pages(folder, solution)
 
 
+def write_pages(chapter, folder):
+    """Writes the book of a student's tree."""
+    with tempfile.TemporaryDirectory() as temporary:
+        tree = Path(temporary) / "lab"
+        write_handout(chapter, tree)
+        run_to_end([sys.executable, "-B", tree / "tools", "book", "--output", folder.resolve()], f"chapter {chapter}: its pages",
+                   env=os.environ | {"LAB_BINARIES": str(BINARIES.resolve())})
+
+
 def verify(chapter, folder):
     """Verifies what the help says, for one chapter. The programs are those of this tree: only shaders differ."""
     tree = folder / f"handout_{chapter}"
@@ -99,6 +93,7 @@ def main():
     parser = Parser("./lab handout", __doc__)
     parser.add_argument("chapter", type=number(int, 1), nargs="?", metavar="N", help="the last chapter")
     parser.add_argument("folder", type=Path, nargs="?", metavar="DIR", help="to be made; must not exist")
+    parser.add_argument("--pages", action="store_true", help="write only the tree's pages, in which its chapters render: a site that works from a disk")
     parser.add_argument("--windows", action="store_true", help="write DIR.zip, with programs to unpack and run on Windows")
     parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
     options = parser.parse_intermixed_args()
@@ -111,6 +106,10 @@ def main():
         result = options.folder.with_name(options.folder.name + ".zip") if options.windows else options.folder
         if result.exists():
             raise UserError(f"{result} exists already: choose another name")
+        if options.pages:
+            write_pages(options.chapter, options.folder)
+            print(f"{options.folder / 'index.html'}: what students download there is what ./lab check {options.chapter} FILE grades")
+            return
         if options.windows:
             with tempfile.TemporaryDirectory() as folder:
                 write_handout(options.chapter, Path(folder) / "lab")

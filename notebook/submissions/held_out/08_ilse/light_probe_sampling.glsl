@@ -4,7 +4,7 @@ float get_background_density(vec3 direction) {
     if (!HAS_LIGHT_PROBE_CELLS) return 0.0;
     uvec2 count = get_probe_cell_count();
     vec2 position = get_probe_position(direction);
-    uvec2 cell = min(uvec2(fract(position.x) * count.x, position.y * count.y), count - 1u);
+    uvec2 cell = min(uvec2(vec2(fract(position.x), position.y) * vec2(count)), count - 1u);
     return get_probe_cell_density(cell.y * count.x + cell.x);
 }
 

@@ -4,7 +4,7 @@ float get_background_density(vec3 direction) {
     if (!HAS_LIGHT_PROBE_CELLS) return 0.0;
     uvec2 count = get_probe_cell_count();
     vec2 position = get_probe_position(direction);
-    uvec2 cell = min(uvec2(fract(position.x) * count.x, position.y * count.y), count - 1u);
+    uvec2 cell = min(uvec2(vec2(fract(position.x), position.y) * vec2(count)), count - 1u);
     return get_probe_cell_density(cell.y * count.x + cell.x);
 }
 
@@ -20,10 +20,10 @@ vec3 sample_light_probe_direction(inout uvec2 seed, out float density) {
     // 1 - cos θ = 2 sin² θ/2 instead, and mirror the lower half.
     bool is_lower = 2u * cell.y >= count.y;
     float row = float(is_lower ? count.y - 1u - cell.y : cell.y);
-    float edge = sin(0.5 * PI * row / count.y), next_edge = sin(0.5 * PI * (row + 1.0) / count.y);
+    float edge = sin(0.5 * PI * row / float(count.y)), next_edge = sin(0.5 * PI * (row + 1.0) / float(count.y));
     float one_minus_cos = 2.0 * mix(edge * edge, next_edge * next_edge, u.y);
     float sin_theta = sqrt(one_minus_cos * (2.0 - one_minus_cos));
-    float azimuth = 2.0 * PI * ((cell.x + u.x) / count.x - 0.5) - parameters.probe_rotation;
+    float azimuth = 2.0 * PI * ((float(cell.x) + u.x) / float(count.x) - 0.5) - parameters.probe_rotation;
     float height = is_lower ? one_minus_cos - 1.0 : 1.0 - one_minus_cos;
     return vec3(sin_theta * sin(azimuth), height, -sin_theta * cos(azimuth));
 }

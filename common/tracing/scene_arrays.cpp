@@ -1,0 +1,79 @@
+#include "tracing/scene_arrays.h"
+
+#include <numeric>
+
+namespace lab {
+
+std::string to_string(Strategy strategy) {
+    return strategy == Strategy::both ? "both" : strategy == Strategy::light ? "light" : "bounces";
+}
+
+SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets) {
+    const SceneFeatures features = features_of(scene);
+    defines_ = features.defines();
+    const auto add = [&](const char* name, uint32_t binding, const auto& data) {
+        buffers_.push_back({name, binding, std::as_bytes(std::span(data))});
+    };
+    add("positions", BINDING_POSITIONS, scene.positions);
+    add("triangles", BINDING_TRIANGLES, scene.triangles);
+    add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
+    add_lights(scene, strategy, samples_probe);
+    add("materials", BINDING_MATERIALS, lights_.materials);
+    if (features.microfacets && handles_microfacets) {
+        add("microfacets", BINDING_MICROFACETS, scene.microfacets);
+        defines_.emplace_back("FEATURE_MICROFACETS");
+        if (scene.multiple_scattering) defines_.emplace_back("FEATURE_MULTIPLE_SCATTERING");
+    }
+    if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);
+    if (features.textures) {
+        add("texture coordinates", BINDING_TEXTURE_COORDINATES, scene.texture_coordinates);
+        for (const Texture& texture : scene.textures) texture_sizes_.emplace_back(texture.width, texture.height);
+        add("sizes of textures", BINDING_TEXTURE_SIZES, texture_sizes_);
+        defines_.push_back("TEXTURE_COUNT " + std::to_string(scene.textures.size()));
+    }
+    if (features.transforms) add("instances", BINDING_INSTANCES, scene.instances);
+    if (features.double_sided) {
+        other_sides_.resize(scene.triangles.size());
+        std::iota(other_sides_.begin(), other_sides_.end(), 0u);
+        for (const auto& sides : scene.double_sided) {
+            other_sides_[sides.x] = sides.y;
+            other_sides_[sides.y] = sides.x;
+        }
+        add("other sides of triangles", BINDING_OTHER_SIDES, other_sides_);
+    }
+    add_images(scene);
+}
+
+void SceneArrays::add_lights(const Scene& scene, Strategy strategy, bool samples_probe) {
+    const SceneFeatures features = features_of(scene);
+    samples_probe = samples_probe && features.light_probe && strategy != Strategy::bounces;
+    const bool samples_triangles = features.area_lights && strategy != Strategy::bounces;
+    const float probe_probability = !samples_probe ? 0 : !samples_triangles ? 1 : LIGHT_PROBE_PROBABILITY;
+    lights_.materials = scene.materials;
+    if (samples_triangles) {
+        lights_ = build_light_table(scene, 1 - probe_probability);
+        buffers_.push_back({"light triangles", BINDING_LIGHT_TRIANGLES, std::as_bytes(std::span(lights_.triangles))});
+        defines_.emplace_back("FEATURE_LIGHT_TRIANGLES");
+    }
+    if (samples_probe) {
+        probe_cells_ = build_probe_table(*scene.light_probe, probe_probability);
+        buffers_.push_back({"cells of the light probe", BINDING_PROBE_CELLS, std::as_bytes(std::span(probe_cells_))});
+        defines_.emplace_back("FEATURE_LIGHT_PROBE_CELLS");
+    }
+}
+
+void SceneArrays::add_images(const Scene& scene) {
+    if (features_of(scene).textures)
+        for (const Texture& texture : scene.textures)
+            images_.push_back(
+                {"texture", BINDING_TEXTURES, std::as_bytes(std::span(texture.pixels)), texture.width, texture.height});
+    if (!features_of(scene).light_probe) return;
+    // Four channels, since few devices support images of three floats; 32 bits, since the sun exceeds the range of 16.
+    const Image& probe = *scene.light_probe;
+    probe_texels_.reserve(probe.pixels.size() / 3 * 4);
+    for (size_t i = 0; i < probe.pixels.size(); i += 3)
+        probe_texels_.insert(probe_texels_.end(), {probe.pixels[i], probe.pixels[i + 1], probe.pixels[i + 2], 1.0f});
+    images_.push_back({"light probe", BINDING_LIGHT_PROBE, std::as_bytes(std::span(probe_texels_)), probe.width, probe.height});
+}
+
+}  // namespace lab

@@ -1,0 +1,56 @@
+// What shaders read of a scene, as arrays on the host: GpuScene copies them to a device, dump_arrays writes them for browsers.
+// Arrays that the scene does not need are not there.
+#pragma once
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/features.h"
+#include "scene/light_table.h"
+#include "scene/scene.h"
+
+namespace lab {
+
+// How an estimator finds light: by light samples and bounces, weighted, or by only one of the two.
+enum class Strategy { both, light, bounces };
+inline constexpr std::array all_strategies{Strategy::both, Strategy::light, Strategy::bounces};
+std::string to_string(Strategy strategy);
+
+struct SceneArray {
+    const char* name;
+    uint32_t binding;
+    std::span<const std::byte> data;
+    uint32_t width = 0, height = 0;  // of an image
+};
+
+class SceneArrays {
+  public:
+    // Builds tables to sample lights from, unless only bounces find them; a light probe gets one if the estimator samples it.
+    // Materials have microfacets if the estimator handles them. The scene must outlive the result.
+    SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets);
+    SceneArrays(const SceneArrays&) = delete;
+    SceneArrays& operator=(const SceneArrays&) = delete;
+
+    // Positions and triangles come first.
+    const std::vector<SceneArray>& buffers() const { return buffers_; }
+    // Textures of four bytes a texel, then the light probe of four floats a texel.
+    const std::vector<SceneArray>& images() const { return images_; }
+    // What makes shaders/world/scene.glsl declare exactly these.
+    const std::vector<std::string>& defines() const { return defines_; }
+
+  private:
+    void add_lights(const Scene& scene, Strategy strategy, bool samples_probe);
+    void add_images(const Scene& scene);
+
+    std::vector<SceneArray> buffers_, images_;
+    std::vector<std::string> defines_;
+    // What the scene itself does not hold.
+    LightTable lights_;
+    std::vector<ProbeCell> probe_cells_;
+    std::vector<uvec2> texture_sizes_;
+    std::vector<uint32_t> other_sides_;
+    std::vector<float> probe_texels_;
+};
+
+}  // namespace lab

@@ -1,0 +1,19 @@
+// Translates shaders for WebGL as a page does: node translate.js LIVE_FOLDER < JSON, with {sources, jobs: [{file, chapter, texts,
+// defines}]}. `texts` replaces or adds sources. A job of which the translation itself fails gets the message as its text.
+"use strict";
+const fs = require("fs");
+require(`${process.argv[2]}/glsl.js`);
+
+const { sources, jobs } = JSON.parse(fs.readFileSync(0, "utf8"));
+const texture = { binding: new live.glsl.Layout(sources["shaders/interface.h"]).constants.BINDING_TEXTURES, first: 0, width: 1, height: 1 };
+for (const { file, chapter, texts, defines } of jobs) {
+    const all = { ...sources, ...texts };
+    let text;
+    try {
+        ({ text } = live.glsl.translate({
+            sources: all, main: "shaders/engine/render.frag", find: live.glsl.finder(all, chapter), defines,
+            scene: { buffers: [], images: [texture] }, isEstimator: path => path.startsWith("chapters/")
+        }));
+    } catch (error) { text = `#error ${error.message}\n`; }
+    fs.writeFileSync(file, text);
+}

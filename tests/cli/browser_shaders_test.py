@@ -1,0 +1,103 @@
+"""Every estimator of the course is also a shader of WebGL 2: GLSL ES 3.00, which is stricter than what other ways compile."""
+
+import json
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from tools_path import PROJECT, TOOLS  # first: it finds the others
+from book import live
+from course.mistakes import bugs_of, complete, plant, records, shader_of
+from project import CHAPTERS, course, read_json, shaders_of, text_of
+
+NODE, VALIDATOR = shutil.which("node"), shutil.which("glslangValidator")
+STACK = "BVH_STACK_SIZE 32"
+# What scenes may have: the Cornell box, meshes with everything, a sky, and rough materials.
+FEATURES = {
+    "lamps": [STACK, "FEATURE_LIGHT_TRIANGLES"],
+    "meshes": [STACK, "FEATURE_TRANSFORMS", "FEATURE_VERTEX_NORMALS", "FEATURE_TEXTURES", "TEXTURE_COUNT 1", "FEATURE_LIGHT_TRIANGLES",
+               "FEATURE_DOUBLE_SIDED", "FEATURE_SPECULAR", "FEATURE_DIELECTRICS", "FEATURE_ABSORPTION"],
+    "probe": [STACK, "FEATURE_LIGHT_PROBE", "FEATURE_LIGHT_PROBE_CELLS", "FEATURE_LIGHT_TRIANGLES"],
+    "microfacets": [STACK, "FEATURE_MICROFACETS", "FEATURE_MULTIPLE_SCATTERING", "FEATURE_LIGHT_TRIANGLES", "FEATURE_DIELECTRICS"],
+}
+FEATURES["everything"] = [STACK, "TEXTURE_COUNT 1", *sorted({name for text in live.shaders().values() for name in re.findall(r"\bFEATURE_\w+", text)})]
+NOTEBOOK = PROJECT / "notebook"
+
+
+def path_of(file):
+    return file.relative_to(PROJECT).as_posix()
+
+
+def mistakes():
+    """Each mistake of the chapters and the engine: (chapter, name, {path: text})."""
+    everything = records()
+    for chapter, those in everything.items():
+        for record in those:
+            record = complete(record, everything)
+            file = shader_of(chapter, record)
+            if file.suffix == ".glsl" and "solutions" not in file.parts:
+                name = f"mistake {record['name']}"
+                yield chapter or 10, name, {path_of(file): plant(text_of(file), record["find"], record["replace"], name)}
+
+
+def others():
+    """What students and variants wrote, where there is a notebook: the same, with one text for each file they hand in."""
+    for folder in NOTEBOOK.glob("submissions/*/*/"):
+        chapter = read_json(folder / "submission.json")["chapter"]
+        own = {file.name: file for file in reversed(shaders_of(chapter))}
+        yield chapter, path_of(folder), {path_of(own.get(file.name, PROJECT / "chapters" / CHAPTERS[chapter] / file.name)): text_of(file)
+                                         for file in folder.glob("*.glsl")}
+    for file in NOTEBOOK.glob("variants/*/variants.json"):
+        for variant in read_json(file):
+            own = PROJECT / "chapters" / file.parent.name / variant.get("shader", "path_trace.glsl")
+            yield int(file.parent.name[:2]), f"variant {variant['file']}", {path_of(own): text_of(file.parent / variant["file"])}
+
+
+@unittest.skipUnless(NODE and VALIDATOR, "needs nodejs and glslang-tools, which ./lab test installs")
+class ShadersInBrowserTest(unittest.TestCase):
+    def errors(self, texts, features=tuple(FEATURES)):
+        """The errors of (chapter, name, changed texts), by name and features."""
+        with tempfile.TemporaryDirectory() as folder:
+            jobs = {str(Path(folder) / f"{i}_{feature}.frag"): (chapter, name, changed, feature)
+                    for i, (chapter, name, changed) in enumerate(texts) for feature in features}
+            task = {"sources": live.shaders(), "jobs": [{"file": file, "chapter": CHAPTERS[chapter], "texts": changed, "defines": FEATURES[feature]}
+                                                        for file, (chapter, _, changed, feature) in jobs.items()]}
+            subprocess.run([NODE, PROJECT / "tests/browser/translate.js", TOOLS / "book/live"], input=json.dumps(task), text=True, check=True)
+            output = subprocess.run([VALIDATOR, *jobs], capture_output=True, text=True).stdout
+        self.assertGreater(len(jobs), 0)
+        found, file = {}, None
+        for line in output.splitlines():
+            file = line if line in jobs else file
+            if line.startswith("ERROR: "):
+                found.setdefault(f"{jobs[file][1]}, {jobs[file][3]}", line)
+        return found
+
+    def test_every_chapter_compiles(self):
+        self.assertEqual(self.errors((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), {})
+
+    def test_solutions_and_exercises_compile(self):
+        texts = [(int(file.parts[-3][:2]), path_of(file), {f"chapters/{file.parts[-3]}/path_trace.glsl": text_of(file)})
+                 for file in PROJECT.glob("chapters/*/solutions/*.glsl")]
+        exercises = {chapter: live.exercise_of(CHAPTERS[chapter], live.shaders()) for chapter in course()}
+        texts += [(chapter, f"exercise {chapter}", {e["file"]: e["text"]}) for chapter, e in exercises.items() if e]
+        self.assertEqual(self.errors(texts), {})
+
+    def test_mistakes_compile(self):
+        self.assertEqual(self.errors(mistakes(), ["meshes", "probe"]), {})
+
+    @unittest.skipUnless(NOTEBOOK.exists(), "there is no notebook")
+    def test_what_students_wrote_compiles(self):
+        self.assertEqual(self.errors(others(), ["meshes", "probe"]), {})
+
+    def test_what_only_other_ways_compile_is_refused(self):
+        file = f"chapters/{CHAPTERS[1]}/path_trace.glsl"
+        for wrong in ("float x = 1;", "float y = 2.0 * 3;", 'float ω = 1.0;', '#include "missing.glsl"'):
+            text = f"{text_of(PROJECT / file)}\n{wrong}\n"
+            self.assertEqual(len(self.errors([(1, wrong, {file: text})], ["lamps"])), 1, wrong)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,238 @@
+"""The book's live frames in headless Chromium: verdicts, errors at the reader's line, loops that do not end, and what browsers forbid."""
+
+import json
+import re
+import time
+import unittest
+
+from book_test import INSPECT, NARROW, WIDE, Site  # first: it finds the others
+from browser import CHROMIUM, Browser
+from project import CHAPTERS, chapter_named, course, read_json
+from tools_path import PROJECT
+
+FRAME = "document.querySelector('.live').frame"
+ESTIMATOR = f"chapters/{CHAPTERS[3]}/path_trace.glsl"
+# The pictures of a page have 128 instead of 256 pixels a row: a CPU draws these.
+SMALL = """for (const { pictures } of Object.values(live.chapters)) for (const { parameters } of pictures) {
+    const place = new live.glsl.Layout(live.sources["shaders/interface.h"]).offsetOf("RenderParameters", "image_size");
+    parameters[place] /= 2;
+    parameters[place + 1] /= 2;
+}"""
+PATIENCE = 120  # seconds
+
+
+@unittest.skipUnless(CHROMIUM, "needs Chromium, which ./lab test installs")
+class LivePages(Site):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.browser = cls.enterClassContext(Browser())
+        cls.browser.resize(WIDE)
+
+    def frame(self, expression):
+        return self.browser.evaluate(f"(frame => {expression})({FRAME})")
+
+    def wait(self, condition, what):
+        """Waits until the expression about `frame` is true."""
+        end = time.monotonic() + PATIENCE
+        while not self.frame(condition):
+            self.assertLess(time.monotonic(), end, f"{what}: {self.frame('frame.verdict?.textContent')} {self.frame('frame.editor?.error.textContent')}")
+            time.sleep(0.1)
+
+    def start(self, chapter, fragment="", before=""):
+        self.browser.visit("about:blank")
+        self.browser.visit((self.site / f"chapters/{CHAPTERS[chapter]}/index.html").as_uri() + fragment)
+        self.browser.evaluate(f"{SMALL}; {before}; document.querySelector('.live-start').click()")
+        self.wait("frame.editor && frame.verdict.textContent !== 'starting …'" if not before else "true", "start")
+
+    def edit(self, old, new):
+        """Edits the chapter's estimator as a reader does."""
+        self.frame(f"""(() => {{ const field = frame.editor.field, text = field.value.replace({json.dumps(old)}, {json.dumps(new)});
+            if (text === field.value) throw new Error("nothing changed");
+            field.value = text; field.dispatchEvent(new Event("input")); }})()""")
+
+    def error(self):
+        self.wait("frame.editor.error.textContent", "an error")
+        return self.frame("frame.editor.error.firstChild.textContent")
+
+    def assert_no_complaints(self):
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual([url for url in self.browser.loaded() if not re.match("file:|data:|about:|blob:", url)], [])
+
+    def assert_agrees(self, chapter):
+        self.start(chapter)
+        self.wait("frame.latest?.verdict", "a verdict")
+        self.assertRegex(self.frame("frame.latest.text"), "^agrees with the reference: a bias above [0-9.]+ % would show by now$")
+        self.assert_no_complaints()
+
+
+class LivePagesTest(LivePages, unittest.TestCase):
+    def tearDown(self):
+        self.browser.evaluate("localStorage.clear()")
+
+    def test_chapters_agree_with_their_references(self):
+        for chapter in (1, 3, 8, 10):
+            with self.subTest(chapter=chapter):
+                self.assert_agrees(chapter)
+
+    def test_a_mistake_is_biased(self):
+        self.start(3)
+        self.edit("throughput *= PI * get_brdf(s, omega);", "throughput *= 1.1 * PI * get_brdf(s, omega);")
+        self.wait("frame.latest?.verdict && frame.editor.edited.length", "a verdict")
+        self.assertRegex(self.frame("frame.latest.text"), "^biased: red .*% ±")
+        self.assert_no_complaints()
+
+    def test_errors_are_at_the_readers_line(self):
+        text = (PROJECT / ESTIMATOR).read_text(encoding="utf-8")
+        line = 1 + text[:text.index("vec3 throughput")].count("\n")
+        self.start(3)
+        for wrong, message in (("vec3 throughput = vec3(1.0)", "syntax error"), ("vec3 throughput = 1;", "cannot convert|constructor|="),
+                               ("vec3 throughput = vec3(ω);", "ASCII"), ('#include "missing.glsl"', "cannot find the include file")):
+            self.edit("vec3 throughput = vec3(1.0);", wrong)
+            error = self.error()
+            shift = 1 if message == "syntax error" else 0  # the compiler notices in the next line
+            self.assertRegex(error, rf"^{re.escape(ESTIMATOR)}:({line}|{line + shift}): .*({message})")
+            self.edit(wrong, "vec3 throughput = vec3(1.0);")
+            self.wait("!frame.editor.error.textContent && frame.film", "the picture")
+
+    def test_a_loop_that_does_not_end(self):
+        for loop in ("while (true) { radiance.r += 0.0; }", "for (;;) radiance.r += 0.0;", "do { radiance.r += 0.0; } while (true);"):
+            self.start(3)
+            self.edit("vec3 throughput = vec3(1.0);", f"vec3 throughput = vec3(1.0); {loop}")
+            self.assertRegex(self.error(), r"path_trace\.glsl:\d+: this loop does not end")
+            self.assertFalse(self.frame("frame.renderer.gl.isContextLost()"))
+            self.browser.evaluate("localStorage.clear()")
+
+    def test_texts_are_kept_and_shared(self):
+        self.start(3)
+        self.edit("vec3 radiance = vec3(0.0);", "vec3 radiance = vec3(0.5);")
+        link = self.browser.evaluate(f"{FRAME}.editor.link()")
+        self.start(3)
+        self.assertIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+        self.frame("frame.editor.reset()")
+        self.start(3)
+        self.assertNotIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+        self.start(3, "#" + link.partition("#")[2])
+        self.assertIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+        self.start(3, "#live=damaged")
+        self.assertIn("damaged", self.frame("frame.note.textContent"))
+        self.assertNotIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+
+    def test_another_tab_that_changes_the_text(self):
+        self.start(3)
+        key = f"path tracing lab: {ESTIMATOR}"
+        self.browser.evaluate(f"dispatchEvent(new StorageEvent('storage', {{ key: {json.dumps(key)} }}))")
+        self.assertIn("Another tab", self.frame("frame.note.textContent"))
+
+    def test_texts_of_any_kind(self):
+        self.start(3)
+        self.frame("frame.editor.edit('\\uFEFF' + frame.editor.field.value.replaceAll('\\n', '\\r\\n'))")
+        self.wait("frame.film && frame.editor.edited.length", "a picture of a text from Windows")
+        self.frame("frame.editor.edit('x'.repeat(1000000))")
+        self.assertIn("longer than any shader", self.error())
+
+    def test_where_storage_is_forbidden(self):
+        self.start(3)
+        self.browser.evaluate("Storage.prototype.setItem = () => { throw new Error('forbidden'); }; Storage.prototype.removeItem = Storage.prototype.setItem")
+        self.edit("vec3 radiance = vec3(0.0);", "vec3 radiance = vec3(0.5);")
+        self.assertIn("keeps no text", self.frame("frame.note.textContent"))
+
+    def test_a_lost_context_starts_again_once(self):
+        self.start(3)
+        self.frame("(frame.loss = frame.renderer.gl.getExtension('WEBGL_lose_context')).loseContext()")
+        self.wait("frame.losses === 1", "the loss")
+        self.frame("frame.film = null")
+        self.frame("frame.loss.restoreContext()")
+        self.wait("frame.film", "a new picture")
+        self.frame("frame.loss.loseContext()")
+        self.wait("frame.losses === 2 && frame.verdict.textContent.includes('again')", "the message")
+
+    def test_without_webgl(self):
+        self.start(3, before="HTMLCanvasElement.prototype.getContext = () => null")
+        self.wait("frame.verdict?.textContent.includes('no WebGL 2')", "the message")
+        for name in ("Restart", "Check"):
+            self.frame(f"[...frame.root.querySelectorAll('button')].find(button => button.textContent === '{name}').click()")
+        self.assert_no_complaints()
+
+    def test_exercises_start_from_the_placeholder(self):
+        self.start(3)
+        self.frame("[...frame.root.querySelectorAll('button')].find(button => button.textContent === 'Start exercise 1').click()")
+        self.assertIn("// TODO", self.frame("frame.editor.field.value"))
+
+    def test_bugs_are_planted(self):
+        count = sum("file" not in record for record in read_json(PROJECT / "chapters" / CHAPTERS[3] / "mistakes.json"))
+        self.start(3)
+        for number in range(count):
+            self.frame(f"frame.plant(frame.about.bugs[{number}])")
+            self.assertEqual(self.frame("frame.editor.edited.length"), 1, f"bug {number + 1}")
+
+    def test_a_hidden_tab_pauses(self):
+        self.start(3, before="Object.defineProperty(document, 'hidden', { get: () => window.isHidden, configurable: true })")
+        self.wait("frame.film", "a picture")
+        self.browser.evaluate("window.isHidden = true")
+        time.sleep(1)
+        samples = self.frame("frame.renderer.samples")
+        time.sleep(2)
+        self.assertEqual(self.frame("frame.renderer.samples"), samples)
+        self.browser.evaluate("window.isHidden = false")
+        self.wait(f"frame.renderer.samples > {samples}", "more samples")
+
+    def test_the_view_of_surfaces_gives_no_verdict(self):
+        self.start(3)
+        self.frame("(frame.view.value = 'NORMALS', frame.viewChanged())")
+        self.wait("frame.film && frame.verdict.textContent.includes('surfaces')", "normals")
+        self.frame("(frame.view.value = 'picture', frame.viewChanged())")
+        self.wait("frame.latest?.verdict && frame.verdict.textContent.startsWith('agrees')", "the picture again")
+
+    def test_fits_a_phone(self):
+        self.browser.resize(NARROW)
+        try:
+            self.start(3)
+            self.wait("frame.latest?.verdict", "a verdict")
+            self.assertEqual(self.browser.evaluate(INSPECT)["wide"], [])
+            unnamed = "[...frame.root.querySelectorAll('button, select, input, textarea')].filter(e => !e.labels?.length && !e.ariaLabel && !e.textContent.trim()).length"
+            self.assertEqual(self.frame(unnamed), 0)
+        finally:
+            self.browser.resize(WIDE)
+
+    def test_pages_are_small(self):
+        for chapter in course():
+            folder = self.site / "live"
+            about = json.loads(re.search(r"^live\.chapters = (.*);$", (folder / "sources.js").read_text(encoding="utf-8"), re.MULTILINE)[1])[CHAPTERS[chapter]]
+            scripts = sum(file.stat().st_size for file in folder.glob("*.*"))
+            for picture in about["pictures"]:
+                size = scripts + sum((folder / "data" / f"{picture[key]}.js").stat().st_size for key in ("scene", "reference"))
+                self.assertLess(size, 600_000 if picture["name"].startswith("cornell_box") else 2_500_000, f"chapter {chapter}, {picture['name']}")
+
+    def test_every_chapter_has_a_frame(self):
+        for chapter in course():
+            page = (self.site / f"chapters/{CHAPTERS[chapter]}/index.html").read_text(encoding="utf-8")
+            self.assertIn(f'data-chapter="{CHAPTERS[chapter]}"', page, "a line <!-- live: SCENE --> in its README.md")
+
+
+class LivePages_all(LivePages, unittest.TestCase):
+    def test_every_chapter_agrees_with_its_reference(self):
+        for chapter in course():
+            with self.subTest(chapter=chapter):
+                self.assert_agrees(chapter)
+
+    def test_the_page_that_tries_a_device(self):
+        self.browser.visit((self.site / "docs/does_it_run_here.html").as_uri())
+        self.browser.evaluate(f"{SMALL}; document.querySelector('.live-start').click()")
+        report, end = "", time.monotonic() + 4 * PATIENCE
+        while not report.rstrip().endswith("done"):
+            self.assertLess(time.monotonic(), end, report)
+            time.sleep(1)
+            report = self.browser.evaluate("document.querySelector('.live textarea').value")
+        self.assertEqual(report.count(": agrees with the reference"), 3, report)
+        self.assert_no_complaints()
+
+    def test_the_check_passes_what_is_right(self):
+        self.start(3)
+        self.frame("void frame.check()")
+        self.wait("frame.results.textContent.includes('./lab check')", "the check")
+        self.assertIn("Correct on all scenes", self.frame("frame.results.textContent"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,102 @@
+// Writes what a browser needs to render a scene as a chapter does: the arrays that a GPU gets, our hierarchy, the parameters and
+// the reference. FILE.json says where each array of FILE.bin begins; all numbers have 32 bits.
+//     dump_arrays FILE CHAPTER SCENE OPTIONS
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/backends.h"
+#include "error.h"
+#include "platform.h"
+#include "rendering/scene_reference.h"
+#include "rendering/settings.h"
+#include "tracing/bvh.h"
+
+namespace {
+
+using namespace lab;
+using nlohmann::json;
+
+constexpr uint32_t width = 256;  // about that of the pictures
+
+class Dump {
+  public:
+    explicit Dump(const std::string& file) : text_(file + ".json"), words_(file + ".bin", std::ios::binary) {}
+
+    template <typename T>
+    void add(const char* list, json entry, const T& data) {
+        const auto bytes = std::as_bytes(std::span(data));
+        entry["first"] = size_;
+        entry["count"] = bytes.size() / 4;
+        // Texels of the browser's texture have four words.
+        const std::vector<char> padding((16 - bytes.size() % 16) % 16);
+        words_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        words_.write(padding.data(), static_cast<std::streamsize>(padding.size()));
+        size_ += (bytes.size() + padding.size()) / 4;
+        content[list].push_back(std::move(entry));
+    }
+
+    void close() {
+        text_ << content.dump();
+        text_.close();
+        words_.close();
+        if (!text_ || !words_) throw UserError("the arrays could not be written: is there room in the folder?");
+    }
+
+    json content = json::object();
+
+  private:
+    std::ofstream text_, words_;
+    size_t size_ = 0;  // words so far
+};
+
+// The picture of this scene that has a reference for the wanted path length.
+RenderParameters verdict_parameters(const Chapter& chapter, const Scene& scene, Options options) {
+    options.image.width = options.image.height = width;
+    const auto settings = settings_for_verdict(scene, make_parameters(chapter, scene, options));
+    if (!settings) throw UserError(scene.file.string() + ": has no reference");
+    options.image.width = settings->image_size.x;
+    options.image.height = settings->image_size.y;
+    options.light.max_path_length = settings->max_path_length;
+    return make_parameters(chapter, scene, options);
+}
+
+void dump(const std::string& file, const Chapter& chapter, const Options& options) {
+    const Scene scene = load_scene(options.scene.file, options.scene.specular);
+    const RenderParameters parameters = verdict_parameters(chapter, scene, options);
+    const auto reference = find_reference(scene, parameters);
+    if (const auto* why_not = std::get_if<std::string>(&reference)) throw UserError(scene.file.string() + ": " + *why_not);
+    const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets);
+    const Bvh bvh = build_bvh(world_triangles(scene));
+
+    Dump dump(file);
+    dump.content = {{"defines", arrays.defines()}, {"images", json::array()}};
+    dump.content["defines"].push_back("BVH_STACK_SIZE " + std::to_string(bvh.stack_size()));
+    for (const SceneArray& array : arrays.buffers()) dump.add("buffers", {{"binding", array.binding}}, array.data);
+    dump.add("buffers", {{"binding", BINDING_BVH_NODES}}, std::span<const BvhNode>(bvh.nodes));
+    dump.add("buffers", {{"binding", BINDING_BVH_TRIANGLES}}, std::span<const BvhTriangle>(bvh.triangles));
+    for (const SceneArray& image : arrays.images())
+        dump.add("images", {{"binding", image.binding}, {"width", image.width}, {"height", image.height}}, image.data);
+    dump.add("parameters", json::object(), std::span(&parameters, 1));
+    const auto& [mean, variance, attributes] = std::get<Reference>(reference);
+    for (const Image* image : {&mean, &*variance})
+        dump.add("reference", {{"width", mean.width}, {"height", mean.height}, {"samples", attributes.at("samples")}},
+                 image->pixels);
+    dump.close();
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+    lab::prepare_program();
+    try {
+        if (argument_count < 4) throw lab::UserError("dump_arrays needs FILE CHAPTER SCENE OPTIONS");
+        const lab::Chapter chapter = lab::load_chapter(arguments[2]);
+        const auto options = lab::parse_options(chapter, lab::all_backends, {arguments + 3, arguments + argument_count});
+        if (options) dump(arguments[1], chapter, *options);
+        return 0;
+    } catch (const std::exception& error) {
+        std::cerr << "error: " << error.what() << "\n";
+        return 1;
+    }
+}

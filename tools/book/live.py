@@ -1,0 +1,145 @@
+"""The lab in the browser: what the pages of a book need to render its chapters.
+
+A line <!-- live: SCENE --> on a chapter's page becomes a frame in which the chapter renders this scene or those of its check. On
+other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. <!-- live: report --> becomes a button that
+tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
+"""
+import base64
+import gzip
+import hashlib
+import json
+import re
+import shutil
+import struct
+import tempfile
+from array import array
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from book.code_blocks import take_out
+from project import CHAPTERS, ROOT, UserError, chapter_named, description, failure_text, original, program_file, read_json, run_program, scene_of
+
+HERE = Path(__file__).parent / "live"
+SCRIPTS = ["glsl.js", "verdict.js", "renderer.js", "editor.js", "page.js"]
+MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+))? -->$", re.MULTILINE)
+REPORT = "report"
+LARGEST = 2_500_000  # bytes of a scene on a page
+HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halves end at 65504 and lose digits below 6e-5
+SHADERS = {".glsl", ".h", ".frag"}
+
+
+def frames_of(text, path):
+    """{chapter: scene} of a page's markers."""
+    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text) if marker[1] != REPORT}
+
+
+def chapter_of(marker, path):
+    """The chapter that a marker names, or else the one whose page it is on."""
+    return chapter_named(marker[2]) if marker[2] else path.parent.name
+
+
+def with_frames(text, path):
+    """The text of a page with frames, as HTML, in place of its markers."""
+    folder = "../" * (len(path.parts) - 1) + "live/"
+
+    def frame(marker):
+        scripts = "".join(f'<script src="{folder}{name}"></script>' for name in ["sources.js", *SCRIPTS])
+        what = REPORT if marker[1] == REPORT else chapter_of(marker, path)
+        return (f'<link rel="stylesheet" href="{folder}live.css">\n<div class="live" data-chapter="{what}" data-folder="{folder}">'
+                f'<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>{scripts}\n')
+
+    return MARKER.sub(frame, text)
+
+
+def shaders():
+    """The texts of all shaders that a browser may include: of the engine, the world and the chapters."""
+    files = [file for room in ("shaders", "chapters") for file in sorted((ROOT / room).rglob("*")) if file.suffix in SHADERS]
+    return {file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8") for file in files
+            if not {"solutions", "variants"} & set(file.parts)}
+
+
+def pictures_of(chapter, scene):
+    """The names of the references that a chapter's frame offers: those of the page's scene, the longest paths first, then its check's."""
+    names = sorted((file.stem for file in (ROOT / "assets/references").glob(f"{scene}_*.exr") if scene_of(file.stem) == scene),
+                   key=lambda name: -length_of(name))
+    if not names:
+        raise UserError(f"chapters/{chapter}/README.md: live: {scene}: this scene has no reference")
+    return list(dict.fromkeys(names + description(chapter)["check"]["references"]))
+
+
+def length_of(reference):
+    return int(reference.rpartition("_")[2])
+
+
+def packed(data):
+    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
+
+
+def halves(numbers):
+    """Numbers of at least 0 as 16-bit floats, and the factor that they have been divided by."""
+    scale = max(max(numbers), 1e-30) / HALF_LARGEST
+    return struct.pack(f"<{len(numbers)}e", *(number / scale for number in numbers)), scale
+
+
+def dumped(chapter, name, folder):
+    """A picture's entry, and the scripts that it loads: {file name: text}."""
+    file = Path(folder) / f"{chapter}_{name}"
+    if not program_file("dump_arrays").is_file():
+        raise UserError("dump_arrays is not built: ./lab book builds it")
+    estimator = CHAPTERS[original(int(chapter[:2]))]  # the program may be that of a tree without the copy
+    process = run_program([program_file("dump_arrays"), file, estimator, scene_of(name), "--max-path-length", length_of(name)])
+    if process.returncode != 0:
+        raise UserError(f"{chapter}: {failure_text(process)}")
+    content, words = read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
+
+    def words_of(entry):
+        return words[4 * entry["first"]:4 * (entry["first"] + entry["count"])]
+
+    (parameters,), references = content.pop("parameters"), content.pop("reference")
+    mean, variance = (array("f", words_of(entry)) for entry in references)
+    (means, mean_scale), (deviations, deviation_scale) = halves(mean), halves([number**0.5 for number in variance])
+    reference = {"width": references[0]["width"], "height": references[0]["height"], "samples": float(references[0]["samples"]),
+                 "scales": [mean_scale, deviation_scale], "packed": packed(means + deviations)}
+    arrays = content | {"packed": packed(words[:4 * parameters["first"]])}
+    scene = f"{scene_of(name)}_{hashlib.sha256(json.dumps(arrays).encode()).hexdigest()[:8]}"
+    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": list(array("I", words_of(parameters)))}
+    return entry, {key: f"live.data[{json.dumps(key)}] = {json.dumps(value)};\n" for key, value in ((scene, arrays), (entry["reference"], reference))}
+
+
+def exercise_of(chapter, texts):
+    """The file of exercise 1 and its text with the placeholder; none in a student's tree, where that is the file's text."""
+    exercise = description(chapter).get("exercise")
+    if not exercise:
+        return None
+    path = f"chapters/{chapter}/{exercise['file']}"
+    return {"file": path, "text": take_out(texts[path], exercise)[0]}
+
+
+def bugs_of(chapter):
+    """What each mistake of a chapter replaces in its shaders; a student's tree has none."""
+    file = ROOT / "chapters" / chapter / "mistakes.json"
+    return [{key: record[key] for key in ("find", "replace")} for record in (read_json(file) if file.exists() else []) if "file" not in record]
+
+
+def write(folder, frames):
+    """Writes the folder `live` of a site. `frames`: {chapter: scene} of its pages."""
+    texts, chapters, scripts = shaders(), {}, {}
+    with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
+        jobs = {(chapter, name): pool.submit(dumped, chapter, name, temporary)
+                for chapter, scene in frames.items() for name in pictures_of(chapter, scene)}
+        for (chapter, name), job in jobs.items():
+            entry, files = job.result()
+            scripts |= files
+            told = description(chapter)
+            known = chapters.setdefault(chapter, {"title": told["title"], "strategies": told.get("strategies", []), "pictures": [],
+                                                  "samples": told["check"]["samples"], "checked": told["check"]["references"],
+                                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)})
+            if sum(len(text) for text in files.values()) <= LARGEST:
+                known["pictures"].append(entry)
+    (folder / "data").mkdir(parents=True)
+    for name, text in scripts.items():
+        (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")
+    (folder / "sources.js").write_text(f"var live = globalThis.live ?? {{}};\nlive.data = {{}};\nlive.sources = {json.dumps(texts)};\n"
+                                       f"live.chapters = {json.dumps(chapters)};\n", encoding="utf-8")
+    for name in [*SCRIPTS, "live.css"]:
+        shutil.copy(HERE / name, folder / name)

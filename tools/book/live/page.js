@@ -1,0 +1,362 @@
+// The live frame of a chapter's page: picture, verdict, error over samples, and the controls.
+"use strict";
+var live = globalThis.live ?? {};
+globalThis.live = live;
+
+live.page = (() => {
+    const { element } = live, { Renderer, loadData, unpackReference } = live.rendering;
+    const TYPING = 600;  // milliseconds after the last key until the picture starts again
+    const MOST_SAMPLES = 4096, FIRST_VERDICT = 16;
+    const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
+                    ALBEDO: "albedo", NORMALS: "normals" };
+
+    // Red for positive, blue for negative, white for 0; saturated at 1.
+    function signedColour(x) {
+        x = Math.min(Math.max(x, -1), 1);
+        return [1 + Math.min(x, 0), 1 - Math.abs(x), 1 - Math.max(x, 0)].map(part => Math.round(255 * part));
+    }
+
+    class Frame {
+        // `keepsTexts`: whether the reader's texts are read and stored.
+        constructor(root, keepsTexts = true) {
+            Object.assign(this, { root, keepsTexts });
+            this.chapter = root.dataset.chapter;
+            this.about = live.chapters[this.chapter];
+            this.isPaused = false;
+            root.append(element("button", { type: "button", class: "live-start", click: () => this.start() }, `Render this chapter here`),
+                        element("p", {}, "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
+                                "The pictures are noisy at first, and the fan may start."));
+        }
+
+        async start() {
+            Frame.active?.stop();
+            Frame.active = this;
+            this.canvas = element("canvas", { width: "256", height: "256", role: "img", "aria-label": "the picture as it renders" });
+            this.overlay = element("canvas", { class: "live-overlay", "aria-hidden": "true" });
+            this.verdict = element("p", { class: "live-verdict", role: "status", "aria-live": "polite" }, "starting …");
+            this.numbers = element("p", { class: "live-numbers" });
+            this.note = element("p", { class: "live-note", role: "status" });
+            this.plot = element("div", { class: "live-plot" });
+            this.results = element("div", { class: "live-results", role: "status" });
+            this.editor = new live.Editor(this.chapter, () => this.restartSoon(), text => { this.note.textContent = text; }, this.keepsTexts);
+            await this.editor.readLink();
+            this.root.replaceChildren(this.controls(),
+                element("div", { class: "live-columns" },
+                    element("div", { class: "live-picture" }, element("div", { class: "live-canvases" }, this.canvas, this.overlay),
+                            this.verdict, this.plot, this.numbers, this.note),
+                    this.editor.root), this.results);
+            this.root.classList.add("live-running");
+            try {
+                this.renderer = new Renderer(this.canvas);
+            } catch (error) {
+                this.fail(error.message);
+                return;
+            }
+            if (this.renderer.device.isSlow) this.note.textContent ||= "This browser draws without a GPU: everything works, but slowly.";
+            this.canvas.addEventListener("webglcontextlost", event => {
+                if (Frame.active !== this) return;
+                event.preventDefault();
+                this.losses = (this.losses ?? 0) + 1;
+                this.fail(this.losses > 1 ? "The browser took the GPU away again. Reload the page, or use a smaller shader." : "The browser took the GPU away; starting again …");
+            });
+            this.canvas.addEventListener("webglcontextrestored", () => {
+                if (this.losses > 1) return;
+                this.renderer.make();
+                this.restart();
+            });
+            this.restart();
+        }
+
+        stop() {
+            Frame.active = null;
+            if (this.renderer) ++this.renderer.run;
+            clearTimeout(this.timer);
+            this.verdict.textContent = "stopped: only one frame of a page renders at a time";
+        }
+
+        select(label, options, changed) {
+            const list = element("select", { change: () => changed() }, ...options.map(([value, text]) => element("option", { value }, text)));
+            return [list, element("label", {}, `${label} `, list)];
+        }
+
+        button(text, click) { return element("button", { type: "button", click }, text); }
+
+        controls() {
+            const { pictures, strategies, exercise, bugs } = this.about, restart = () => this.restart();
+            const lengthText = name => `${name.replace(/_\d+$/, "").replaceAll("_", " ")}, up to ${name.replace(/.*_/, "")} bounces`;
+            let strategyLabel, lengthLabel = element("label", {}, "Bounces "), sceneLabel, viewLabel;
+            [this.scene, sceneLabel] = this.select("Scene", pictures.map(({ name }, i) => [i, lengthText(name)]), () => { this.length.value = ""; restart(); });
+            [this.view, viewLabel] = this.select("Show", Object.entries(VIEWS), () => this.viewChanged());
+            [this.strategy, strategyLabel] = this.select("Light by", strategies.map(name => [name, { both: "both", light: "light samples", bounces: "bounces" }[name]]), restart);
+            this.length = element("input", { type: "number", min: "0", max: "100", step: "1", placeholder: "as above", change: restart });
+            lengthLabel.append(this.length);
+            this.pause = this.button("Pause", () => this.setPaused(!this.isPaused));
+            const bar = element("div", { class: "live-controls", role: "group", "aria-label": "controls of the picture" }, sceneLabel, viewLabel,
+                                ...(strategies.length > 1 ? [strategyLabel] : []), lengthLabel, this.pause, this.button("Restart", restart),
+                                this.button("Check", () => this.check()));
+            if (exercise) bar.append(this.button("Start exercise 1", () => { this.editor.edit(exercise.text, exercise.file); }));
+            if (bugs.length) {
+                const numbers = [["", "none"], ...bugs.map((_, i) => [i, `number ${i + 1}`])];
+                const [list, label] = this.select("Bug to find", numbers, () => this.plant(bugs[list.value]));
+                bar.append(label);
+            }
+            bar.append(this.button("Original text", () => this.editor.reset()), this.button("Download", () => this.editor.download()),
+                       this.button("Open", () => this.editor.openFile()), this.button("Copy a link", () => this.copyLink()));
+            if (document.fullscreenEnabled) bar.append(this.button("Full window", () => document.fullscreenElement ? document.exitFullscreen() : this.root.requestFullscreen()));
+            return bar;
+        }
+
+        // Puts a mistake into the chapter's own text.
+        plant(bug) {
+            this.editor.reset();
+            const file = bug && this.editor.files.find(path => live.sources[path].split(bug.find).length === 2);
+            if (file) this.editor.edit(live.sources[file].replace(bug.find, () => bug.replace), file);
+        }
+
+        setPaused(isPaused) {
+            this.isPaused = isPaused;
+            this.pause.textContent = isPaused ? "Go on" : "Pause";
+        }
+
+        async copyLink() {
+            const link = await this.editor.link();
+            history.replaceState(null, "", link);
+            try { await navigator.clipboard.writeText(link); this.note.textContent = "The link is copied: it contains your text."; }
+            catch { this.note.textContent = "The address of this page now contains your text: copy it from there."; }
+            if (link.length > 8000) this.note.textContent += " It is long, and some programs cut long links: rather download the text.";
+        }
+
+        restartSoon() {
+            clearTimeout(this.timer);
+            this.timer = setTimeout(() => this.restart(), TYPING);
+        }
+
+        fail(message) {
+            this.verdict.className = "live-verdict live-failed";
+            this.verdict.textContent = message;
+        }
+
+        get isView() { return /^[A-Z]/.test(this.view.value); }  // of surfaces instead of radiance
+
+        viewChanged() {
+            if (this.isView || this.shownView !== this.view.value && /^[A-Z]/.test(this.shownView ?? "")) this.restart();
+            else if (this.film) this.drawOverlay();
+            this.shownView = this.view.value;
+        }
+
+        // Loads a picture's data and compiles the reader's texts for it. Returns what Renderer.render() needs; throws ShaderErrors.
+        async prepare(picture) {
+            const { folder } = this.root.dataset, tooLong = this.editor.tooLong;
+            if (tooLong) throw new live.glsl.ShaderError(`${tooLong}:1: the text is longer than any shader needs: is it the right file?`);
+            const [scene, packed] = await Promise.all([loadData(folder, picture.scene), loadData(folder, picture.reference)]);
+            const reference = picture.unpacked ??= await unpackReference(packed);
+            const parameters = Uint32Array.from(picture.parameters), words = this.renderer.layout;
+            const size = [parameters[words.offsetOf("RenderParameters", "image_size")], parameters[words.offsetOf("RenderParameters", "image_size") + 1]];
+            if (this.length.value !== "") parameters[words.offsetOf("RenderParameters", "max_path_length")] = Math.min(Math.max(Math.round(this.length.value), 0), 100);
+            const defines = [...scene.defines], named = {};
+            if (this.strategy.value) defines.push(`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`);
+            if (this.isView) {
+                defines.push(`VIEW_${this.view.value}`);
+                Object.assign(named, { "path_trace.glsl": "shaders/observation/view.glsl", "sample_loop.glsl": "shaders/engine/sample_loop.glsl" });
+            }
+            const sources = this.editor.sources, translated = live.glsl.translate({
+                sources, main: "shaders/engine/render.frag", find: live.glsl.finder(sources, this.chapter, named), defines, scene,
+                isEstimator: file => file.startsWith("chapters/")
+            });
+            this.numbers.textContent = "compiling …";
+            const started = performance.now(), program = await this.renderer.compile(translated);
+            return { program, scene, parameters, size, reference, translated, compileTime: performance.now() - started };
+        }
+
+        // Renders a picture; look(film, state) is called at powers of two. Returns whether it came to its end.
+        async renderPicture(picture, target, look) {
+            const turn = this.turn = (this.turn ?? 0) + 1, started = performance.now();
+            ++this.renderer.run;
+            const state = await this.prepare(picture);
+            if (turn !== this.turn) return false;
+            this.state = state;
+            const verdict = new live.statistics.LiveVerdict(state.reference, ...state.size);
+            try {
+                return await this.draw(state, verdict, target, look, started) && turn === this.turn;
+            } finally { this.renderer.gl.deleteProgram(state.program); }
+        }
+
+        draw(state, verdict, target, look, started) {
+            return this.renderer.render({
+                ...state, target, isPaused: () => this.isPaused || document.hidden,
+                shown: () => this.renderer.show({ scale: 1, isSrgb: this.view.value !== "NORMALS" }),
+                preview: film => {
+                    this.checkLoops(film, state);
+                    this.times ??= { compile: state.compileTime, first: performance.now() - started };
+                },
+                look: film => {
+                    this.checkLoops(film, state);
+                    if (film.samples === verdict.nextSamples) verdict.add(film);
+                    look(film, state, verdict);
+                }
+            });
+        }
+
+        // Throws if a loop had to be ended: then the samples are wrong.
+        checkLoops(film, state) {
+            if (!film.stuck) return;
+            const { file, line } = state.translated.loop(film.stuck);
+            ++this.renderer.run;
+            throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end`);
+        }
+
+        async restart() {
+            clearTimeout(this.timer);
+            if (!this.renderer) return;
+            const started = performance.now(), picture = this.about.pictures[this.scene.value];
+            this.errors = [];
+            this.film = null;
+            this.drawOverlay();
+            this.results.replaceChildren();
+            try {
+                await this.renderPicture(picture, () => MOST_SAMPLES, (film, state, verdict) => this.show(film, state, verdict, started));
+            } catch (error) { this.report(error); }
+        }
+
+        report(error) {
+            if (error instanceof live.glsl.ShaderError) {
+                this.editor.showError(error.message);
+                this.fail("the shader has an error: see below the text");
+            } else this.fail(error.message);
+        }
+
+        show(film, state, verdict, started) {
+            this.editor.showError("");
+            this.film = film;
+            this.latest = verdict;
+            const seconds = (performance.now() - started) / 1000, { means, error } = live.statistics.relativeError(film, state.reference);
+            this.means = means;
+            const hasReference = !this.isView && this.length.value === "";
+            const isBiased = verdict.verdict?.isBiased;
+            this.verdict.className = "live-verdict" + (!hasReference || !verdict.verdict ? "" : isBiased ? " live-biased" : " live-agrees");
+            this.verdict.textContent = this.isView ? "this view shows surfaces, not light" : !hasReference ? "no verdict: there is no reference for this path length" : verdict.text;
+            if (hasReference) this.errors.push([film.samples, error]);
+            this.numbers.textContent = `${film.samples} samples a pixel, ${seconds.toFixed(1)} s, ${(film.rays / seconds / 1e6).toFixed(2)} million rays per second` +
+                (film.samples === 1 ? "" : hasReference ? `, error ${(100 * error).toPrecision(2)} %` : "") +
+                (film.invalid ? `; ${film.invalid} samples are infinite or no numbers: their pixels are magenta` : "");
+            this.drawPlot();
+            this.drawOverlay();
+        }
+
+        // What is not the picture itself: differences, the verdict's map, noise. One pixel of the overlay is one of the reference or a tile.
+        drawOverlay() {
+            const { film, state, overlay, latest } = this, view = this.view.value;
+            overlay.hidden = !film || !["difference", "bias", "noise"].includes(view) || view === "bias" && !latest.verdict;
+            if (overlay.hidden) return;
+            const { reference } = state, mean = reference.mean.reduce((sum, r) => sum + r, 0) / reference.mean.length;
+            const paint = (width, height, value) => {
+                [overlay.width, overlay.height] = [width, height];
+                const image = new ImageData(width, height);
+                for (let i = 0; i < width * height; ++i) image.data.set([...signedColour(value(i)), 255], 4 * i);
+                overlay.getContext("2d").putImageData(image, 0, 0);
+            };
+            const channels = (values, i) => (values[3 * i] + values[3 * i + 1] + values[3 * i + 2]) / 3;
+            if (view === "difference") paint(reference.width, reference.height, i => 2 * (channels(this.means, i) - channels(reference.mean, i)) / (channels(reference.mean, i) + 0.1 * mean));
+            if (view === "noise") paint(film.width, film.height, i => Math.abs(channels(film.differences, i)) / (Math.abs(channels(film.sums, i)) + 0.1 * mean * film.samples));
+            if (view === "bias") paint(...latest.tiles, i => latest.verdict.map[i] / 5);
+        }
+
+        drawPlot() {
+            const points = this.errors.filter(([samples, error]) => samples >= 2 && error > 0);
+            if (points.length < 2) { this.plot.replaceChildren(); return; }
+            const x = samples => 34 + 21 * Math.log2(samples), largest = Math.max(...points.map(([, error]) => error));
+            const y = error => 8 + 80 * Math.log(largest / error) / Math.log(largest / Math.min(...points.map(([, e]) => e), largest / 8));
+            const [first, last] = [points[0], points.at(-1)], percent = error => `${(100 * error).toPrecision(2)} %`;
+            const line = points.map(([samples, error]) => `${x(samples).toFixed(1)},${y(error).toFixed(1)}`).join(" ");
+            this.plot.innerHTML = `<svg viewBox="0 0 300 110" role="img" aria-label="error against samples: ${percent(first[1])} after ${first[0]}, ${percent(last[1])} after ${last[0]}">` +
+                `<polyline points="${line}"/>` + points.map(([samples, error]) => `<circle cx="${x(samples)}" cy="${y(error)}" r="2.5"/>`).join("") +
+                `<text x="2" y="${y(first[1]) + 4}">${percent(first[1])}</text><text x="2" y="${y(last[1]) + 4}">${percent(last[1])}</text>` +
+                `<text x="${x(first[0])}" y="106" text-anchor="middle">${first[0]}</text><text x="${x(last[0])}" y="106" text-anchor="middle">${last[0]}</text></svg>`;
+        }
+
+        // The verdicts on the scenes of ./lab check, one after the other.
+        async check() {
+            if (!this.renderer) return;
+            const { checked, pictures, samples } = this.about, rows = [], enough = Math.max(samples, FIRST_VERDICT);
+            clearTimeout(this.timer);
+            this.setPaused(false);
+            this.view.value = "picture";
+            this.length.value = "";
+            this.errors = [];
+            for (const name of checked) {
+                const picture = pictures.find(p => p.name === name);
+                if (!picture) { rows.push([name, "is too large for a page: ./lab check renders it"]); continue; }
+                this.scene.value = pictures.indexOf(picture);
+                let last;
+                try {
+                    const started = performance.now(), target = () => last && last.verdict && last.verdict.samples >= enough ? 0 : MOST_SAMPLES;
+                    const done = await this.renderPicture(picture, target, (film, state, verdict) => { last = verdict; this.show(film, state, verdict, started); });
+                    if (!done) return;
+                } catch (error) { this.report(error); return; }
+                rows.push([name, last.text]);
+                this.results.replaceChildren(element("table", {}, ...rows.map(row => element("tr", {}, ...row.map(cell => element("td", {}, cell))))));
+            }
+            const isBiased = rows.some(([, text]) => text.startsWith("biased"));
+            this.results.prepend(element("p", {}, element("strong", {}, isBiased ? "Biased: the estimator is wrong on a scene." : "Correct on all scenes, as far as these samples tell."),
+                                 " ./lab check says more: where a bias begins, and how noisy the estimator is."));
+        }
+    }
+
+    // Tries chapters one after the other, and writes what a developer wants to know about the device.
+    class Report {
+        static chapters = ["next_event_estimation", "dielectrics", "light_probes"];
+        static patience = 120;  // seconds for a chapter
+
+        constructor(root) {
+            this.root = root;
+            this.text = element("textarea", { readonly: "", rows: "16", "aria-label": "the report" });
+            this.frames = element("div");
+            root.append(element("button", { type: "button", class: "live-start", click: () => this.run() }, "Try it"), this.text, this.frames);
+        }
+
+        say(line) { this.text.value += `${line}\n`; }
+
+        async run() {
+            this.text.value = "";
+            this.say(navigator.userAgent);
+            this.say(`screen ${screen.width} x ${screen.height}, ${navigator.hardwareConcurrency} threads`);
+            for (const name of Report.chapters) {
+                const chapter = Object.keys(live.chapters).find(folder => folder.endsWith(name));
+                if (chapter) await this.try(chapter);
+            }
+            this.frames.replaceChildren();
+            this.say("done");
+        }
+
+        async try(chapter) {
+            const root = element("div", { "data-chapter": chapter, "data-folder": this.root.dataset.folder }), started = performance.now();
+            this.frames.replaceChildren(root);
+            const frame = root.frame = new Frame(root, false), seconds = () => (performance.now() - started) / 1000;
+            await frame.start();
+            if (frame.renderer && !this.isKnown) {
+                const { gl, parallel, device } = frame.renderer;
+                this.say(`device ${device.name}; textures up to ${gl.getParameter(gl.MAX_TEXTURE_SIZE)}; ${parallel ? "compiles" : "does not compile"} beside the page`);
+                this.isKnown = true;
+            }
+            const isOver = () => frame.latest?.verdict || frame.verdict.classList.contains("live-failed") || seconds() > Report.patience;
+            while (!isOver()) await live.rendering.pause(100);
+            this.say(`\n${chapter}: ${frame.verdict.textContent}`);
+            if (frame.times) this.say(`compiled in ${frame.times.compile.toFixed(0)} ms, first picture after ${frame.times.first.toFixed(0)} ms; ${frame.numbers.textContent}`);
+            if (frame.editor.error.textContent) this.say(frame.editor.error.textContent);
+            if (frame.losses) this.say(`the browser took the GPU away ${frame.losses} times`);
+            frame.stop();
+            frame.renderer?.gl.getExtension("WEBGL_lose_context")?.loseContext();
+        }
+    }
+
+    function init() {
+        for (const root of document.querySelectorAll("div.live")) {
+            if (root.frame || root.report) continue;  // each frame of a page brings this script
+            root.replaceChildren();
+            if (root.dataset.chapter === "report") root.report = new Report(root);
+            if (root.dataset.chapter in live.chapters) root.frame = new Frame(root);
+        }
+    }
+    if (document.readyState === "loading") addEventListener("DOMContentLoaded", init); else init();
+    return { Frame };
+})();

@@ -1,0 +1,291 @@
+// Renders a scene with WebGL 2: a texture of 32-bit words holds its arrays, and three more hold the film, twelve words a pixel.
+"use strict";
+var live = globalThis.live ?? {};
+globalThis.live = live;
+
+live.rendering = (() => {
+    const WIDTH = 2048;  // texels of the arrays' texture, which every device allows
+    const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
+    const FULL_SCREEN = `#version 300 es
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
+    const DISPLAY = `#version 300 es
+precision highp float;
+precision highp int;
+uniform highp usampler2D film_before[3];
+uniform float scale;
+uniform bool is_srgb;
+out vec4 colour;
+void main() {
+    ivec2 size = textureSize(film_before[0], 0), place = ivec2(gl_FragCoord.x, float(size.y) - gl_FragCoord.y);
+    if (texelFetch(film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
+    uvec4 a = texelFetch(film_before[0], place, 0), b = texelFetch(film_before[1], place, 0), c = texelFetch(film_before[2], place, 0);
+    vec3 mean = (uintBitsToFloat(a.xyz) + uintBitsToFloat(uvec3(a.w, b.xy))) / float(max(c.y, 1u));
+    vec3 shown = clamp(scale * mean, 0.0, 1.0);
+    vec3 curved = mix(12.92 * shown, 1.055 * pow(shown, vec3(1.0 / 2.4)) - 0.055, greaterThan(shown, vec3(0.0031308)));
+    colour = vec4(c.z > 0u ? vec3(1.0, 0.0, 1.0) : is_srgb ? curved : shown, 1.0);
+}`;
+
+    const pause = milliseconds => new Promise(resolve => setTimeout(resolve, milliseconds));
+
+    async function unpack(base64) {
+        const bytes = Uint8Array.from(atob(base64), character => character.charCodeAt(0));
+        const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+        return new Response(stream).arrayBuffer();
+    }
+
+    // Loads live/data/NAME.js once; a page from the disk may load scripts, but no other files.
+    function loadData(folder, name) {
+        if (live.data[name]) return Promise.resolve(live.data[name]);
+        return new Promise((resolve, reject) => {
+            const script = document.createElement("script");
+            script.src = `${folder}data/${name}.js`;
+            script.onload = () => live.data[name] ? resolve(live.data[name]) : reject(new Error(`${name}.js is damaged`));
+            script.onerror = () => reject(new Error(`${name}.js is missing: the folder "live" belongs beside these pages`));
+            document.head.append(script);
+        });
+    }
+
+    function floatOfHalf(half) {
+        const exponent = half >> 10 & 31, fraction = half & 1023;  // none is negative
+        return exponent === 0 ? fraction * 2 ** -24 : (1 + fraction / 1024) * 2 ** (exponent - 15);
+    }
+
+    async function unpackReference({ width, height, samples, scales, packed }) {
+        const halves = new Uint16Array(await unpack(packed)), count = 3 * width * height;
+        const mean = Float64Array.from(halves.subarray(0, count), half => scales[0] * floatOfHalf(half));
+        const variance = Float64Array.from(halves.subarray(count), half => (scales[1] * floatOfHalf(half)) ** 2);
+        return { width, height, samples, mean, variance };
+    }
+
+    class Renderer {
+        // Throws an Error that says what the reader can do.
+        constructor(canvas) {
+            if (!globalThis.DecompressionStream) throw new Error("this browser is too old: update it");
+            this.gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
+            if (!this.gl) throw new Error("this browser offers no WebGL 2: update it, or switch graphics acceleration on in its settings");
+            this.layout = new live.glsl.Layout(live.sources["shaders/interface.h"]);
+            this.run = 0;  // the number of the current render: an earlier one that finds another number ends
+            this.make();
+        }
+
+        // What has to be made again after the browser has taken the context away.
+        make() {
+            const { gl } = this;
+            this.parallel = gl.getExtension("KHR_parallel_shader_compile");
+            this.display = this.link(FULL_SCREEN, DISPLAY);
+            this.arrays = gl.createTexture();
+            this.probe = gl.createTexture();
+            this.films = [];
+            this.loaded = null;
+        }
+
+        // The name of the device, and whether a program draws in place of one.
+        get device() {
+            const info = this.gl.getExtension("WEBGL_debug_renderer_info");
+            const name = String(this.gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : this.gl.RENDERER));
+            return { name, isSlow: /swiftshader|llvmpipe|softpipe|basic render|software/i.test(name) };
+        }
+
+        link(vertex, fragment) {
+            const { gl } = this, program = gl.createProgram();
+            for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+                const shader = gl.createShader(kind);
+                gl.shaderSource(shader, text);
+                gl.compileShader(shader);
+                gl.attachShader(program, shader);
+            }
+            gl.linkProgram(program);
+            return program;
+        }
+
+        // Compiles a translated shader. Throws a ShaderError with the place in the reader's files.
+        async compile(translated) {
+            const { gl, parallel } = this, program = this.link(FULL_SCREEN, translated.text);
+            while (parallel && !gl.isContextLost() && !gl.getProgramParameter(program, parallel.COMPLETION_STATUS_KHR)) await pause(5);
+            if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
+                const logs = gl.getAttachedShaders(program).map(shader => gl.getShaderInfoLog(shader) ?? "");
+                gl.deleteProgram(program);
+                throw new live.glsl.ShaderError(live.glsl.readableError(logs.find(log => log.trim()) ?? gl.getProgramInfoLog(program) ?? "", translated.place));
+            }
+            return program;
+        }
+
+        // Copies a scene's arrays to the device.
+        async load(scene) {
+            if (this.loaded === scene) return;
+            const { gl } = this, words = new Uint32Array(await unpack(scene.packed)), height = Math.ceil(words.length / 4 / WIDTH);
+            const texels = new Uint32Array(4 * WIDTH * height);
+            texels.set(words);
+            this.image(this.arrays, gl.RGBA32UI, WIDTH, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
+            const probe = scene.images.find(image => image.binding === this.layout.constants.BINDING_LIGHT_PROBE);
+            if (probe) {
+                const values = new Float32Array(words.buffer, 4 * probe.first, probe.count);
+                this.image(this.probe, gl.RGBA32F, probe.width, probe.height, gl.RGBA, gl.FLOAT, values);
+            }
+            this.loaded = scene;
+        }
+
+        image(texture, format, width, height, layout, type, data) {
+            const { gl } = this;
+            gl.activeTexture(gl.TEXTURE0);
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.texImage2D(gl.TEXTURE_2D, 0, format, width, height, 0, layout, type, data);
+            for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+        }
+
+        // An empty film. Two take turns, since a shader cannot write what it reads.
+        makeFilm(width, height) {
+            const { gl } = this, frame = gl.createFramebuffer(), textures = [0, 1, 2].map(() => gl.createTexture());
+            gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+            textures.forEach((texture, i) => {
+                this.image(texture, gl.RGBA32UI, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null);
+                gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, texture, 0);
+            });
+            gl.disable(gl.SCISSOR_TEST);
+            gl.drawBuffers([0, 1, 2].map(i => gl.COLOR_ATTACHMENT0 + i));
+            for (let i = 0; i < 3; ++i) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
+            return { frame, textures };
+        }
+
+        // Sets the members of a uniform struct from words. Returns the words behind it.
+        setStruct(program, type, name, words) {
+            const { gl } = this, place = gl.getUniformLocation(program, name), numbers = words.slice(0, 4);
+            const floats = new Float32Array(numbers.buffer);
+            switch (type) {
+                case "float": gl.uniform1f(place, floats[0]); break;
+                case "vec3": gl.uniform3fv(place, floats.subarray(0, 3)); break;
+                case "int": gl.uniform1i(place, numbers[0] | 0); break;
+                case "uint": gl.uniform1ui(place, numbers[0]); break;
+                case "uvec2": gl.uniform2uiv(place, numbers.subarray(0, 2)); break;
+                default:
+                    for (const [t, member] of this.layout.structs[type]) words = this.setStruct(program, t, `${name}.${member}`, words);
+                    return words;
+            }
+            return words.subarray(this.layout.wordsOf(type));
+        }
+
+        bindFilm(program, film) {
+            const { gl } = this;
+            gl.useProgram(program);
+            film.textures.forEach((texture, i) => {
+                gl.activeTexture(gl.TEXTURE0 + i);
+                gl.bindTexture(gl.TEXTURE_2D, texture);
+            });
+            gl.uniform1iv(gl.getUniformLocation(program, "film_before"), [0, 1, 2]);
+        }
+
+        // Shows the latest picture. `display`: {scale, isSrgb}.
+        show({ scale, isSrgb }) {
+            const { gl, size, films, isFirstPass } = this;
+            if (!films.length || gl.isContextLost()) return;
+            if (gl.canvas.width !== size[0] || gl.canvas.height !== size[1]) [gl.canvas.width, gl.canvas.height] = size;
+            gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+            gl.disable(gl.SCISSOR_TEST);
+            gl.viewport(0, 0, ...size);
+            this.bindFilm(this.display, films[isFirstPass ? 1 : 0]);
+            gl.uniform1f(gl.getUniformLocation(this.display, "scale"), scale);
+            gl.uniform1i(gl.getUniformLocation(this.display, "is_srgb"), isSrgb ? 1 : 0);
+            gl.drawArrays(gl.TRIANGLES, 0, 3);
+        }
+
+        // The film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a stuck loop.
+        read() {
+            const { gl, size: [width, height], films } = this, count = width * height;
+            gl.bindFramebuffer(gl.FRAMEBUFFER, films[0].frame);
+            const [a, b, c] = [0, 1, 2].map(i => {
+                const words = new Uint32Array(4 * count);
+                gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
+                gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
+                return words;
+            });
+            const film = { width, height, samples: this.samples, sums: new Float64Array(3 * count), differences: new Float64Array(3 * count),
+                           rays: 0, invalid: 0, stuck: 0 };
+            const [x, y, z] = [a, b, c].map(words => new Float32Array(words.buffer));
+            for (let p = 0; p < count; ++p) {
+                const i = 4 * p, j = 3 * p;
+                film.sums.set([x[i] + x[i + 3], x[i + 1] + y[i], x[i + 2] + y[i + 1]], j);
+                film.differences.set([y[i + 2], y[i + 3], z[i]], j);
+                film.invalid += c[i + 2];
+                if (c[i + 3] >>> 31) film.stuck = c[i + 3] & 0x7fffffff; else film.rays += c[i + 3];
+            }
+            return film;
+        }
+
+        // Renders until `target()` samples are reached or another render starts. Calls `look(film)` at 1, 2, 4, … samples and the
+        // target, and before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns whether it was not replaced.
+        async render({ program, scene, parameters, size, target, isPaused, preview = () => {}, look, shown }) {
+            const run = ++this.run, { gl } = this;
+            await this.load(scene);
+            if (run !== this.run) return false;
+            this.size = size;
+            for (const film of this.films) {
+                film.textures.forEach(texture => gl.deleteTexture(texture));
+                gl.deleteFramebuffer(film.frame);
+            }
+            this.films = [this.makeFilm(...size), this.makeFilm(...size)];
+            this.samples = 0;
+            this.isFirstPass = true;
+            gl.useProgram(program);
+            this.setStruct(program, "RenderParameters", "parameters", parameters);
+            let rows = 8, step = 1, isPreview = true;
+            while (this.samples < target()) {
+                const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1), next = Math.min(this.samples + step, look_at, target());
+                for (let row = 0; row < size[1];) {
+                    while (isPaused() && run === this.run) await pause(50);
+                    if (run !== this.run || gl.isContextLost()) return false;
+                    const started = performance.now();
+                    this.draw(program, row, Math.min(rows, size[1] - row), next, isPreview);
+                    await this.finished();
+                    if (run !== this.run || gl.isContextLost()) return false;
+                    row += rows;
+                    const time = performance.now() - started;
+                    if (time < SHORT && rows < size[1]) rows *= 2;
+                    else if (time < SHORT && row >= size[1]) step *= 2;
+                    else if (time > LONG && step > 1) step = Math.ceil(step / 2);
+                    else if (time > LONG) rows = Math.max(1, Math.floor(rows / 2));
+                    if (this.isFirstPass) shown();
+                }
+                this.films.reverse();
+                this.isFirstPass = false;
+                shown();
+                if (isPreview) {
+                    isPreview = false;
+                    preview(this.read());
+                    rows = Math.max(1, rows >> 3);
+                    continue;
+                }
+                this.samples = next;
+                if (next === look_at || next >= target()) look(this.read());
+            }
+            return true;
+        }
+
+        draw(program, row, rows, target, isPreview) {
+            const { gl, films, size, samples } = this;
+            this.bindFilm(program, films[0]);
+            for (const [unit, name, texture] of [[3, "web_arrays", this.arrays], [4, "light_probe", this.probe]]) {
+                gl.activeTexture(gl.TEXTURE0 + unit);
+                gl.bindTexture(gl.TEXTURE_2D, texture);
+                gl.uniform1i(gl.getUniformLocation(program, name), unit);
+            }
+            gl.uniform1ui(gl.getUniformLocation(program, "target_samples"), target);
+            gl.uniform1ui(gl.getUniformLocation(program, "samples_per_pixel"), target - samples);
+            gl.uniform1i(gl.getUniformLocation(program, "is_preview"), isPreview ? 1 : 0);
+            gl.bindFramebuffer(gl.FRAMEBUFFER, films[1].frame);
+            gl.viewport(0, 0, ...size);
+            gl.enable(gl.SCISSOR_TEST);
+            gl.scissor(0, row, size[0], rows);
+            gl.drawArrays(gl.TRIANGLES, 0, 3);
+        }
+
+        // Waits until the device has done everything so far.
+        async finished() {
+            const { gl } = this, fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+            gl.flush();
+            while (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) await pause(0);
+            gl.deleteSync(fence);
+        }
+    }
+
+    return { Renderer, loadData, unpackReference, pause };
+})();
