@@ -139,7 +139,6 @@ def open_window(bug, scene, program, options):
 def sanitize(bug, program, options):
     """Prints what the sanitizer finds first."""
     tree = Path(program).parents[1]
-    (tree / "common").symlink_to(ROOT / "common")  # compiled with the shader
     scene = bug.mistake.get("sanitizer", "").split() if not options.scene else []
     command = [program, *(scene or [find_scene(options.scene or SCENES[bug.chapter][1][0])[0]]), "--headless", "--quiet", "--sanitize",
                "--width=64", "--height=64", f"--samples={options.samples or 16}", *(["--device", options.device] if options.device else [])]
