@@ -17,7 +17,7 @@ SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_pro
     add("positions", BINDING_POSITIONS, scene.positions);
     add("triangles", BINDING_TRIANGLES, scene.triangles);
     add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
-    add_lights(scene, strategy, samples_probe);
+    add_lights(scene, features, strategy, samples_probe);
     add("materials", BINDING_MATERIALS, lights_.materials);
     if (features.microfacets && handles_microfacets) {
         add("microfacets", BINDING_MICROFACETS, scene.microfacets);
@@ -41,11 +41,10 @@ SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_pro
         }
         add("other sides of triangles", BINDING_OTHER_SIDES, other_sides_);
     }
-    add_images(scene);
+    add_images(scene, features);
 }
 
-void SceneArrays::add_lights(const Scene& scene, Strategy strategy, bool samples_probe) {
-    const SceneFeatures features = features_of(scene);
+void SceneArrays::add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe) {
     samples_probe = samples_probe && features.light_probe && strategy != Strategy::bounces;
     const bool samples_triangles = features.area_lights && strategy != Strategy::bounces;
     const float probe_probability = !samples_probe ? 0 : !samples_triangles ? 1 : LIGHT_PROBE_PROBABILITY;
@@ -62,12 +61,12 @@ void SceneArrays::add_lights(const Scene& scene, Strategy strategy, bool samples
     }
 }
 
-void SceneArrays::add_images(const Scene& scene) {
-    if (features_of(scene).textures)
+void SceneArrays::add_images(const Scene& scene, const SceneFeatures& features) {
+    if (features.textures)
         for (const Texture& texture : scene.textures)
             images_.push_back(
                 {"texture", BINDING_TEXTURES, std::as_bytes(std::span(texture.pixels)), texture.width, texture.height});
-    if (!features_of(scene).light_probe) return;
+    if (!features.light_probe) return;
     // Four channels, since few devices support images of three floats; 32 bits, since the sun exceeds the range of 16.
     const Image& probe = *scene.light_probe;
     probe_texels_.reserve(probe.pixels.size() / 3 * 4);

@@ -40,8 +40,8 @@ class SceneArrays {
     const std::vector<std::string>& defines() const { return defines_; }
 
   private:
-    void add_lights(const Scene& scene, Strategy strategy, bool samples_probe);
-    void add_images(const Scene& scene);
+    void add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe);
+    void add_images(const Scene& scene, const SceneFeatures& features);
 
     std::vector<SceneArray> buffers_, images_;
     std::vector<std::string> defines_;

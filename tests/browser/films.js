@@ -8,8 +8,7 @@
         for (const [chapter, { pictures: [picture] }] of Object.entries(live.chapters)) {
             const scene = await loadData("/live/", picture.scene), parameters = Uint32Array.from(picture.parameters), { sources } = live;
             const place = renderer.layout.offsetOf("RenderParameters", "image_size"), size = [parameters[place], parameters[place + 1]];
-            const translated = live.glsl.translate({ sources, main: "shaders/engine/render.frag", find: live.glsl.finder(sources, chapter),
-                                                     defines: scene.defines, scene, isEstimator: path => path.startsWith("chapters/") });
+            const translated = live.glsl.translate({ sources, chapter, defines: scene.defines, scene });
             let film;
             await renderer.render({ program: await renderer.compile(translated), scene, parameters, size, target: () => samples, isPaused: () => false,
                                     shown() {}, look(latest) { film = latest; } });

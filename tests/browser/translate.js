@@ -7,12 +7,10 @@ require(`${process.argv[2]}/glsl.js`);
 const { sources, jobs } = JSON.parse(fs.readFileSync(0, "utf8"));
 const texture = { binding: new live.glsl.Layout(sources["shaders/interface.h"]).constants.BINDING_TEXTURES, first: 0, width: 1, height: 1 };
 for (const { file, chapter, texts, defines } of jobs) {
-    const all = { ...sources, ...texts };
     let text;
     try {
         ({ text } = live.glsl.translate({
-            sources: all, main: "shaders/engine/render.frag", find: live.glsl.finder(all, chapter), defines,
-            scene: { buffers: [], images: [texture] }, isEstimator: path => path.startsWith("chapters/")
+            sources: { ...sources, ...texts }, chapter, defines, scene: { buffers: [], images: [texture] }
         }));
     } catch (error) { text = `#error ${error.message}\n`; }
     fs.writeFileSync(file, text);

@@ -7,7 +7,8 @@ import unittest
 
 from book_test import INSPECT, NARROW, WIDE, Site  # first: it finds the others
 from browser import CHROMIUM, Browser
-from project import CHAPTERS, chapter_named, course, read_json
+from course.mistakes import bugs_of
+from project import CHAPTERS, course
 from tools_path import PROJECT
 
 FRAME = "document.querySelector('.live').frame"
@@ -44,6 +45,9 @@ class LivePages(Site):
         self.browser.visit((self.site / f"chapters/{CHAPTERS[chapter]}/index.html").as_uri() + fragment)
         self.browser.evaluate(f"{SMALL}; {before}; document.querySelector('.live-start').click()")
         self.wait("frame.editor && frame.verdict.textContent !== 'starting …'" if not before else "true", "start")
+
+    def click(self, name):
+        self.frame(f"[...frame.root.querySelectorAll('button')].find(button => button.textContent === '{name}').click()")
 
     def edit(self, old, new):
         """Edits the chapter's estimator as a reader does."""
@@ -151,18 +155,17 @@ class LivePagesTest(LivePages, unittest.TestCase):
         self.start(3, before="HTMLCanvasElement.prototype.getContext = () => null")
         self.wait("frame.verdict?.textContent.includes('no WebGL 2')", "the message")
         for name in ("Restart", "Check"):
-            self.frame(f"[...frame.root.querySelectorAll('button')].find(button => button.textContent === '{name}').click()")
+            self.click(name)
         self.assert_no_complaints()
 
     def test_exercises_start_from_the_placeholder(self):
         self.start(3)
-        self.frame("[...frame.root.querySelectorAll('button')].find(button => button.textContent === 'Start exercise 1').click()")
+        self.click("Start exercise 1")
         self.assertIn("// TODO", self.frame("frame.editor.field.value"))
 
     def test_bugs_are_planted(self):
-        count = sum("file" not in record for record in read_json(PROJECT / "chapters" / CHAPTERS[3] / "mistakes.json"))
         self.start(3)
-        for number in range(count):
+        for number in range(len(bugs_of(3))):
             self.frame(f"frame.plant(frame.about.bugs[{number}])")
             self.assertEqual(self.frame("frame.editor.edited.length"), 1, f"bug {number + 1}")
 

@@ -116,9 +116,11 @@ def exercise_of(chapter, texts):
 
 
 def bugs_of(chapter):
-    """What each mistake of a chapter replaces in its shaders; a student's tree has none."""
-    file = ROOT / "chapters" / chapter / "mistakes.json"
-    return [{key: record[key] for key in ("find", "replace")} for record in (read_json(file) if file.exists() else []) if "file" not in record]
+    """What each bug of a chapter replaces in its shaders, in the order of ./lab bug. A student's tree has neither bugs nor that command."""
+    if not (ROOT / "tools/course").exists():
+        return []
+    from course import mistakes
+    return [{key: bug.mistake[key] for key in ("find", "replace")} for bug in mistakes.bugs_of(int(chapter[:2]))]
 
 
 def write(folder, frames):
@@ -129,13 +131,13 @@ def write(folder, frames):
                 for chapter, scene in frames.items() for name in pictures_of(chapter, scene)}
         for (chapter, name), job in jobs.items():
             entry, files = job.result()
-            scripts |= files
             told = description(chapter)
             known = chapters.setdefault(chapter, {"title": told["title"], "strategies": told.get("strategies", []), "pictures": [],
                                                   "samples": told["check"]["samples"], "checked": told["check"]["references"],
                                                   "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)})
             if sum(len(text) for text in files.values()) <= LARGEST:
                 known["pictures"].append(entry)
+                scripts |= files
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")

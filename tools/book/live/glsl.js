@@ -152,31 +152,30 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         return -1;
     }
 
-    // Replaces uses of a buffer, `name[i]` and `name[i].member[j]`, by calls of its accessors.
-    function replaceUses(text, name, struct) {
+    // Replaces each `name[index]`: `replacement(index, end)` returns the text instead, and the place behind what it stands for.
+    function replaceIndexed(text, name, replacement) {
         const use = new RegExp(`\\b${name}\\s*\\[`, "g");
         let result = "", done = 0;
         for (let match; (match = use.exec(text));) {
-            const end = closing(text, use.lastIndex - 1);
+            const start = use.lastIndex, end = closing(text, start - 1);
             if (end < 0) break;
-            const index = replaceUses(text.slice(use.lastIndex, end - 1), name, struct);
-            const member = /^\s*\.\s*(\w+)/.exec(text.slice(end));
-            const found = member && struct?.find(([, m]) => m === member[1]);
-            let next = end, call = `${name}_at(uint(${index}))`;
-            if (found) {
-                next = end + member[0].length;
-                const indices = [`uint(${index})`];
-                if (found[2] !== undefined && text[next] === "[") {
-                    const close = closing(text, next);
-                    indices.push(`uint(${text.slice(next + 1, close - 1)})`);
-                    next = close;
-                }
-                call = `${name}_${found[1]}_at(${indices.join(", ")})`;
-            }
-            result += text.slice(done, match.index) + call;
+            const [other, next] = replacement(text.slice(start, end - 1), end);
+            result += text.slice(done, match.index) + other;
             done = use.lastIndex = next;
         }
         return result + text.slice(done);
+    }
+
+    // Replaces uses of a buffer, `name[i]` and `name[i].member[j]`, by calls of its accessors.
+    function replaceUses(text, name, struct) {
+        return replaceIndexed(text, name, (inside, end) => {
+            const index = `uint(${replaceUses(inside, name, struct)})`, member = /^\s*\.\s*(\w+)/.exec(text.slice(end));
+            const found = member && struct?.find(([, m]) => m === member[1]);
+            if (!found) return [`${name}_at(${index})`, end];
+            const next = end + member[0].length, close = found[2] !== undefined && text[next] === "[" ? closing(text, next) : next;
+            const indices = close === next ? index : `${index}, uint(${text.slice(next + 1, close - 1)})`;
+            return [`${name}_${found[1]}_at(${indices})`, close];
+        });
     }
 
     // Asks is_loop_stuck() in the condition of each loop. `placeOf(line)` returns the number of a place in an estimator's file, or 0.
@@ -198,14 +197,15 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
 
     const emptyLines = text => text.replace(/[^\n]/g, "");
 
-    // Translates what `main` includes. `scene`: buffers and images as dump_arrays writes them.
+    // Translates a chapter's program. `scene`: buffers and images as dump_arrays writes them; `named`: as finder() takes them.
     // Returns the text, a function from its line numbers to places, and the places of loops.
-    function translate({ sources, main, find, defines, scene, isEstimator }) {
-        const layout = new Layout(sources["shaders/interface.h"]), { lines, places } = expand(sources, main, find);
+    function translate({ sources, chapter, named, defines, scene }) {
+        const layout = new Layout(sources["shaders/interface.h"]);
+        const { lines, places } = expand(sources, "shaders/engine/render.frag", finder(sources, chapter, named));
         const bindings = name => scene.buffers.find(buffer => buffer.binding === layout.constants[name]) ?? { first: 0, count: 0 };
         let text = lines.join("\n") + "\n";
         text = text.replace(/^[ \t]*#[ \t]*(version|extension|line)\b.*$/gm, "");
-        text = limitLoops(text, line => isEstimator(places[line - 1].file) ? line : 0);
+        text = limitLoops(text, line => places[line - 1].file.startsWith("chapters/") ? line : 0);
 
         const readable = [], written = [];
         const block = /layout\(scalar[^)]*?(?:binding = (\w+))?\)\s*(readonly buffer|writeonly buffer|buffer|uniform)\s+\w+\s*\{\s*(\w+) (\w+)(\[\])?;\s*\};/g;
@@ -225,7 +225,7 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
             text = replaceUses(text, name, struct);
         }
         // A fragment has one pixel.
-        for (const name of written) text = replaceIndex(text, name);
+        for (const name of written) text = replaceIndexed(text, name, (_, end) => [name, end]);
 
         const textures = scene.images.filter(image => image.binding === layout.constants.BINDING_TEXTURES);
         const widths = textures.map(image => image.width), firsts = textures.map(image => image.first);
@@ -247,18 +247,6 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         return { text: head + text, place: line => places[line - headLines - 1], loop: line => places[line - 1] };
     }
 
-    function replaceIndex(text, name) {
-        const use = new RegExp(`\\b${name}\\s*\\[`, "g");
-        let result = "", done = 0;
-        for (let match; (match = use.exec(text));) {
-            const end = closing(text, use.lastIndex - 1);
-            if (end < 0) break;
-            result += text.slice(done, match.index) + name;
-            done = use.lastIndex = end;
-        }
-        return result + text.slice(done);
-    }
-
     // A compiler's message as "file:line: message (hint)", the first error only.
     function readableError(log, place) {
         const match = /^ERROR: [^:\n]*:(\d+): (.*)$/m.exec(log);
@@ -278,5 +266,5 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
             : [includer.replace(/[^/]*$/, ""), "shaders/", "chapters/"].map(folder => folder + name).find(path => path in sources);
     }
 
-    return { translate, finder, readableError, Layout, ShaderError };
+    return { translate, readableError, Layout, ShaderError };
 })();

@@ -10,6 +10,8 @@ live.page = (() => {
     const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
                     ALBEDO: "albedo", NORMALS: "normals" };
 
+    const isOfSurfaces = view => /^[A-Z]/.test(view ?? "");  // instead of radiance
+
     // Red for positive, blue for negative, white for 0; saturated at 1.
     function signedColour(x) {
         x = Math.min(Math.max(x, -1), 1);
@@ -136,10 +138,10 @@ live.page = (() => {
             this.verdict.textContent = message;
         }
 
-        get isView() { return /^[A-Z]/.test(this.view.value); }  // of surfaces instead of radiance
+        get isView() { return isOfSurfaces(this.view.value); }
 
         viewChanged() {
-            if (this.isView || this.shownView !== this.view.value && /^[A-Z]/.test(this.shownView ?? "")) this.restart();
+            if (this.isView || this.shownView !== this.view.value && isOfSurfaces(this.shownView)) this.restart();
             else if (this.film) this.drawOverlay();
             this.shownView = this.view.value;
         }
@@ -150,19 +152,16 @@ live.page = (() => {
             if (tooLong) throw new live.glsl.ShaderError(`${tooLong}:1: the text is longer than any shader needs: is it the right file?`);
             const [scene, packed] = await Promise.all([loadData(folder, picture.scene), loadData(folder, picture.reference)]);
             const reference = picture.unpacked ??= await unpackReference(packed);
-            const parameters = Uint32Array.from(picture.parameters), words = this.renderer.layout;
-            const size = [parameters[words.offsetOf("RenderParameters", "image_size")], parameters[words.offsetOf("RenderParameters", "image_size") + 1]];
-            if (this.length.value !== "") parameters[words.offsetOf("RenderParameters", "max_path_length")] = Math.min(Math.max(Math.round(this.length.value), 0), 100);
+            const parameters = Uint32Array.from(picture.parameters), placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
+            const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)];
+            if (this.length.value !== "") parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(this.length.value), 0), 100);
             const defines = [...scene.defines], named = {};
             if (this.strategy.value) defines.push(`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`);
             if (this.isView) {
                 defines.push(`VIEW_${this.view.value}`);
                 Object.assign(named, { "path_trace.glsl": "shaders/observation/view.glsl", "sample_loop.glsl": "shaders/engine/sample_loop.glsl" });
             }
-            const sources = this.editor.sources, translated = live.glsl.translate({
-                sources, main: "shaders/engine/render.frag", find: live.glsl.finder(sources, this.chapter, named), defines, scene,
-                isEstimator: file => file.startsWith("chapters/")
-            });
+            const translated = live.glsl.translate({ sources: this.editor.sources, chapter: this.chapter, named, defines, scene });
             this.numbers.textContent = "compiling …";
             const started = performance.now(), program = await this.renderer.compile(translated);
             return { program, scene, parameters, size, reference, translated, compileTime: performance.now() - started };

@@ -65,6 +65,17 @@ live.statistics = (() => {
         return `${value.startsWith("-") ? "" : "+"}${value} % ± ${(100 * halfWidth).toFixed(digits)} %`;
     }
 
+    // The means of a film of so many samples, with its pixels averaged to the reference's.
+    function meansOf(film, reference, samples) {
+        const scale = film.width / reference.width, part = 1 / (scale * scale * samples);
+        const means = new Float64Array(3 * reference.width * reference.height);
+        for (let y = 0, i = 0; y < film.height; ++y)
+            for (let x = 0; x < film.width; ++x, i += 3)
+                for (let c = 0; c < 3; ++c)
+                    means[3 * (Math.floor(y / scale) * reference.width + Math.floor(x / scale)) + c] += part * film.sums[i + c];
+        return means;
+    }
+
     // A film is {width, height, samples, sums}, three sums a pixel; a reference {width, height, samples, mean, variance}.
     class LiveVerdict {
         constructor(reference, width, height) {
@@ -79,15 +90,7 @@ live.statistics = (() => {
         }
 
         add(film) {
-            const { scale, reference } = this, differences = new Float64Array(3 * reference.width * reference.height);
-            const part = 1 / (scale * scale * this.nextSamples);
-            for (let y = 0, i = 0; y < film.height; ++y)
-                for (let x = 0; x < film.width; ++x, i += 3) {
-                    const j = 3 * (Math.floor(y / scale) * reference.width + Math.floor(x / scale));
-                    for (let c = 0; c < 3; ++c) differences[j + c] += part * film.sums[i + c];
-                }
-            for (let i = 0; i < differences.length; ++i) differences[i] -= reference.mean[i];
-            this.differences = differences;
+            this.differences = meansOf(film, this.reference, this.nextSamples).map((mean, i) => mean - this.reference.mean[i]);
             this.samples = this.nextSamples;
             this.nextSamples *= 2;
             this.test();
@@ -169,12 +172,7 @@ live.statistics = (() => {
 
     // The relative error of common/statistics/error_metrics.cpp, after the film's pixels are averaged to the reference's.
     function relativeError(film, reference) {
-        const scale = film.width / reference.width, part = 1 / (scale * scale * film.samples);
-        const means = new Float64Array(reference.mean.length);
-        for (let y = 0, i = 0; y < film.height; ++y)
-            for (let x = 0; x < film.width; ++x, i += 3)
-                for (let c = 0; c < 3; ++c)
-                    means[3 * (Math.floor(y / scale) * reference.width + Math.floor(x / scale)) + c] += part * film.sums[i + c];
+        const means = meansOf(film, reference, film.samples);
         const mean = reference.mean.reduce((sum, r) => sum + r, 0) / means.length;
         let error = 0, uncertainty = 0;
         means.forEach((value, i) => {
