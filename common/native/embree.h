@@ -96,9 +96,9 @@ class EmbreeTracer final : public RayTracer {
     size_t bytes() const override { return bytes_ + places_.size() * sizeof(Place); }
 
   private:
-    // Embree multiplies three lengths, which must neither overflow nor underflow: it gets a scene whose coordinates are up to 2^36,
-    // so that their products stay below 2^127 and triangles may be smaller by twenty powers of ten. As a power of two, this factor
-    // changes no digit.
+    // Embree multiplies three lengths, which must neither overflow nor underflow: it gets a scene whose coordinates are up to
+    // 2^36, so that their products stay below 2^127 and triangles may be smaller by twenty powers of ten. As a power of two, this
+    // factor changes no digit.
     static float unit_for(const Triangle* triangles, size_t count) {
         float largest = 0;
         for (size_t i = 0; i < count; ++i)

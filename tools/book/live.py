@@ -116,11 +116,10 @@ def exercise_of(chapter, texts):
 
 
 def bugs_of(chapter):
-    """What each bug of a chapter replaces in its shaders, in the order of ./lab bug. A student's tree has neither bugs nor that command."""
-    if not (ROOT / "tools/course").exists():
-        return []
-    from course import mistakes
-    return [{key: bug.mistake[key] for key in ("find", "replace")} for bug in mistakes.bugs_of(int(chapter[:2]))]
+    """What each bug of a chapter replaces in its shaders, in the order of ./lab bug; one with two names counts once. A student's tree has none."""
+    file = ROOT / "chapters" / chapter / "mistakes.json"
+    pieces = [(record["find"], record["replace"]) for record in (read_json(file) if file.exists() else []) if "file" not in record]
+    return [{"find": find, "replace": replace} for find, replace in dict.fromkeys(pieces)]
 
 
 def write(folder, frames):
