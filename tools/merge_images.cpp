@@ -18,9 +18,9 @@ int main(int argument_count, char** arguments) {
         app.parse(argument_count, arguments);
         lab::check_writable(output, {".exr"});
         const lab::FilmFile merged = lab::merge_films(parts);
-        lab::write_film(output, merged.image, merged.record);
-        std::printf("%s: samples %u to %u\n", output.string().c_str(), merged.record.first_sample,
-                    merged.record.first_sample + merged.image.min_samples() - 1);
+        lab::write_film(output, merged.image, merged.header);
+        std::printf("%s: samples %u to %u\n", output.string().c_str(), merged.header.first_sample,
+                    merged.header.first_sample + merged.image.min_samples() - 1);
         return 0;
     } catch (const CLI::CallForHelp&) {
         std::cout << app.help();

@@ -55,10 +55,7 @@ class Progress {
 class HeadlessRender {
   public:
     explicit HeadlessRender(Build& build)
-        : job_(build.job),
-          options_(job_.options.run),
-          renderer_(*build.renderer),
-          acceleration_structure_(*build.acceleration_structure) {
+        : job_(build.job), options_(job_.options.run), renderer_(*build.renderer), scene_backend_(*build.scene_backend) {
         if (!options_.reference.empty()) {
             reference_ = read_reference(options_.reference);
             const uvec2 size(reference_->mean.width, reference_->mean.height);
@@ -83,7 +80,7 @@ class HeadlessRender {
             sample();
         } catch (const std::exception& error) {
             // Only the last snapshot is left.
-            keep_after(error, snapshot_, [&] { write_outputs(); });
+            write_after_failure(error, snapshot_, [&] { write_outputs(); });
         }
         if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
@@ -99,7 +96,7 @@ class HeadlessRender {
         Progress progress(job_.samples, renderer_.samples(), options_.quiet);
         uint32_t done = snapshot_.min_samples();
         while (done < job_.samples && !is_interrupted()) {
-            const uint32_t next = next_look(done, job_.samples, growth());
+            const uint32_t next = next_sample_count(done, job_.samples, growth());
             bool more = true;
             while (more && !is_interrupted() && !is_time_over()) {
                 more = renderer_.advance(next);
@@ -117,7 +114,7 @@ class HeadlessRender {
     }
 
     // Rendering time as the user sees it, earlier runs included.
-    double seconds() const { return job_.record.seconds + seconds_since(start_) - measuring_seconds_ - saving_seconds_; }
+    double seconds() const { return job_.header.seconds + seconds_since(start_) - measuring_seconds_ - saving_seconds_; }
 
     bool is_time_over() const {
         return options_.time_limit && renderer_.samples() > 0 &&
@@ -157,9 +154,9 @@ class HeadlessRender {
     void take_snapshot() {
         const double seconds_so_far = seconds();
         snapshot_ = renderer_.film().read();
-        record_ = job_.record;
-        record_.seconds = seconds_so_far;
-        record_.rays += renderer_.rays();
+        header_ = job_.header;
+        header_.seconds = seconds_so_far;
+        header_.rays += renderer_.rays();
     }
 
     void add_row(uint32_t samples) {
@@ -168,10 +165,10 @@ class HeadlessRender {
         const double cpu_start = processor_seconds();
         take_snapshot();
         rows_.push_back({.samples = samples,
-                         .seconds = record_.seconds,
+                         .seconds = header_.seconds,
                          .device_seconds = renderer_.device_seconds(),
                          .cpu_seconds = cpu_start - unmeasured_cpu_seconds_,
-                         .rays = record_.rays,
+                         .rays = header_.rays,
                          .mean = snapshot_.mean_radiance(),
                          .difference = snapshot_.mean_difference(),
                          .error = find_error()});
@@ -188,10 +185,10 @@ class HeadlessRender {
         if (!options_.report.empty()) files.push_back(options_.report);
         write_each(files, [&](const std::filesystem::path& file) {
             if (file == options_.report)
-                write_report(file, snapshot_, record_, acceleration_structure_,
-                             reference_ ? ErrorSource::reference : ErrorSource::halves, rows_);
+                write_report(file, snapshot_, header_, scene_backend_, reference_ ? ErrorSource::reference : ErrorSource::halves,
+                             rows_);
             else
-                write_picture(file, snapshot_, record_, job_.options);
+                write_picture(file, snapshot_, header_, job_.options);
         });
     }
 
@@ -208,7 +205,7 @@ class HeadlessRender {
 
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
-        const double new_seconds = record_.seconds - job_.record.seconds;
+        const double new_seconds = header_.seconds - job_.header.seconds;
         const bool shows_radiance = !job_.options.image.view;
         const std::optional<ErrorMetrics> error = find_error();
         // Pixels are independent. Against a reference the error would include bias.
@@ -221,8 +218,8 @@ class HeadlessRender {
         std::printf("time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
                     short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
         std::printf("acceleration   structure of %s bytes, built in %s\n",
-                    short_number(static_cast<double>(acceleration_structure_.bytes())).c_str(),
-                    duration_text(acceleration_structure_.build_seconds()).c_str());
+                    short_number(static_cast<double>(scene_backend_.bytes())).c_str(),
+                    duration_text(scene_backend_.build_seconds()).c_str());
         if (error && shows_radiance)
             std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n", 100 * error->rel_rmse,
                         reference_ ? "against the reference" : "estimated");
@@ -234,10 +231,10 @@ class HeadlessRender {
     const RenderJob& job_;
     const RunOptions& options_;
     Renderer& renderer_;
-    const AccelerationStructure& acceleration_structure_;
+    const SceneBackend& scene_backend_;
     std::optional<Reference> reference_;
     FilmImage snapshot_;  // read back last
-    FilmRecord record_;   // of that snapshot
+    FilmHeader header_;   // of that snapshot
     std::vector<ReportRow> rows_;
     Clock::time_point start_ = Clock::now();  // of rendering
     Clock::time_point last_save_;             // when it ended

@@ -116,7 +116,7 @@ bool run_in_window(Window& window, const Chapter& chapter, const RenderJob& job)
 
 void print_start(const Chapter& chapter, const Device& device, const Build& build) {
     const RenderJob& job = build.job;
-    std::cout << chapter.name << ", " << job.record.scene << ", " << size_text(job.parameters.image_size) << ", " << job.samples
+    std::cout << chapter.name << ", " << job.header.scene << ", " << size_text(job.parameters.image_size) << ", " << job.samples
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
     if (chapter.unlimited_path_length && !job.options.light.max_path_length)
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
@@ -154,7 +154,7 @@ void debug_pixel(Build& build, uvec2 pixel) {
     }
     const FilmImage film = build.renderer->film().read();
     const vec3 sum = film.pixels[size_t{pixel.y} * size.x + pixel.x].sum;
-    std::printf("pixel          %u,%u sample %u: %g %g %g\n", pixel.x, pixel.y, build.job.record.first_sample, sum.r, sum.g,
+    std::printf("pixel          %u,%u sample %u: %g %g %g\n", pixel.x, pixel.y, build.job.header.first_sample, sum.r, sum.g,
                 sum.b);
 }
 

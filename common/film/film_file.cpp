@@ -25,11 +25,11 @@ T number(const ExrFile& exr, const std::string& name, const std::filesystem::pat
 }
 
 // The text attributes.
-constexpr std::pair<const char*, std::string FilmRecord::*> texts[] = {
-    {"chapter", &FilmRecord::chapter},       {"scene", &FilmRecord::scene},
-    {"scene_hash", &FilmRecord::scene_hash}, {"estimator_hash", &FilmRecord::estimator_hash},
-    {"settings", &FilmRecord::settings},     {"backend", &FilmRecord::backend},
-    {"device", &FilmRecord::device}};
+constexpr std::pair<const char*, std::string FilmHeader::*> texts[] = {
+    {"chapter", &FilmHeader::chapter},       {"scene", &FilmHeader::scene},
+    {"scene_hash", &FilmHeader::scene_hash}, {"estimator_hash", &FilmHeader::estimator_hash},
+    {"settings", &FilmHeader::settings},     {"backend", &FilmHeader::backend},
+    {"device", &FilmHeader::device}};
 
 std::string to_text(double value) {
     char buffer[32];
@@ -65,13 +65,13 @@ void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
 
 }  // namespace
 
-void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record) {
+void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmHeader& header) {
     ExrFile exr{.image = image.mean(), .channels = {}, .attributes = {}};
     const uint32_t samples = image.min_samples();
-    exr.attributes = {{"seed", std::to_string(record.seed)}, {"first_sample", std::to_string(record.first_sample)},
+    exr.attributes = {{"seed", std::to_string(header.seed)}, {"first_sample", std::to_string(header.first_sample)},
                       {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
-                      {"rays", std::to_string(record.rays)}, {"seconds", to_text(record.seconds)}};
-    for (const auto& [name, text] : texts) exr.attributes[name] = record.*text;
+                      {"rays", std::to_string(header.rays)}, {"seconds", to_text(header.seconds)}};
+    for (const auto& [name, text] : texts) exr.attributes[name] = header.*text;
     for (int channel = 0; channel < 3; ++channel)
         for (const auto& pixel : image.pixels)
             exr.channels[differences[static_cast<size_t>(channel)]].push_back(
@@ -89,15 +89,15 @@ FilmFile read_film(const std::filesystem::path& file) {
     ExrFile exr = read_exr(file);
     if (!exr.is_complete) throw UserError(file.string() + ": lacks pixels of its display window: render again");
     FilmFile film;
-    for (const auto& [name, text] : texts) film.record.*text = exr.attributes[name];
-    film.record.seed = number<uint32_t>(exr, "seed", file);
-    film.record.first_sample = number<uint32_t>(exr, "first_sample", file);
-    film.record.rays = number<uint64_t>(exr, "rays", file);
-    film.record.seconds = number<double>(exr, "seconds", file);
+    for (const auto& [name, text] : texts) film.header.*text = exr.attributes[name];
+    film.header.seed = number<uint32_t>(exr, "seed", file);
+    film.header.first_sample = number<uint32_t>(exr, "first_sample", file);
+    film.header.rays = number<uint64_t>(exr, "rays", file);
+    film.header.seconds = number<double>(exr, "seconds", file);
     const auto require = [&](bool condition, const char* what) {
         if (!condition) throw UserError(file.string() + ": " + what + ": render again");
     };
-    require(film.record.seconds >= 0 && std::isfinite(film.record.seconds), "its seconds are negative or not finite");
+    require(film.header.seconds >= 0 && std::isfinite(film.header.seconds), "its seconds are negative or not finite");
     const size_t count = size_t{exr.image.width} * exr.image.height;
     const auto samples = number<uint32_t>(exr, "samples", file);
     const auto further_samples = counts(exr, "further_samples", count, file);
@@ -115,7 +115,7 @@ FilmFile read_film(const std::filesystem::path& file) {
         for (size_t i = begin; i < end; ++i) {
             FilmPixel& pixel = film.image.pixels[i];
             const uint64_t samples_of_pixel = uint64_t{samples} + further_samples[i];
-            require(samples_of_pixel <= UINT32_MAX && film.record.first_sample + samples_of_pixel <= uint64_t{1} << 32,
+            require(samples_of_pixel <= UINT32_MAX && film.header.first_sample + samples_of_pixel <= uint64_t{1} << 32,
                     "has more samples than there are random numbers");
             pixel.sample_count = static_cast<uint32_t>(samples_of_pixel);
             pixel.invalid_count = invalid[i];
@@ -138,18 +138,18 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
                             value_b + "'");
     };
     require("size", size_text({a.image.width, a.image.height}), size_text({b.image.width, b.image.height}));
-    require("chapter", a.record.chapter, b.record.chapter);
-    require("seed", std::to_string(a.record.seed), std::to_string(b.record.seed));
-    require("settings", a.record.settings, b.record.settings);
-    require("scene hash", a.record.scene_hash, b.record.scene_hash);
-    require("shader hash", a.record.estimator_hash, b.record.estimator_hash);
+    require("chapter", a.header.chapter, b.header.chapter);
+    require("seed", std::to_string(a.header.seed), std::to_string(b.header.seed));
+    require("settings", a.header.settings, b.header.settings);
+    require("scene hash", a.header.scene_hash, b.header.scene_hash);
+    require("shader hash", a.header.estimator_hash, b.header.estimator_hash);
 }
 
 // Adds a film to the sum of other parts of the same render.
 static void add(FilmFile& sum, const FilmFile& part) {
     // If a part starts at an odd sample of the whole, its halves are swapped.
-    const uint32_t first_sample = std::min(sum.record.first_sample, part.record.first_sample);
-    const auto sign_of = [&](const FilmFile& film) { return (film.record.first_sample - first_sample) % 2 == 0 ? 1.0f : -1.0f; };
+    const uint32_t first_sample = std::min(sum.header.first_sample, part.header.first_sample);
+    const auto sign_of = [&](const FilmFile& film) { return (film.header.first_sample - first_sample) % 2 == 0 ? 1.0f : -1.0f; };
     const float sign_of_sum = sign_of(sum), sign_of_part = sign_of(part);
     in_parallel(sum.image.pixels.size(), 1 << 16, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
@@ -161,11 +161,11 @@ static void add(FilmFile& sum, const FilmFile& part) {
             pixel.invalid_count += added.invalid_count;
         }
     });
-    sum.record.first_sample = first_sample;
-    sum.record.rays += part.record.rays;
-    sum.record.seconds += part.record.seconds;
-    if (sum.record.backend != part.record.backend) sum.record.backend = "several";
-    if (sum.record.device != part.record.device) sum.record.device = "several";
+    sum.header.first_sample = first_sample;
+    sum.header.rays += part.header.rays;
+    sum.header.seconds += part.header.seconds;
+    if (sum.header.backend != part.header.backend) sum.header.backend = "several";
+    if (sum.header.device != part.header.device) sum.header.device = "several";
 }
 
 FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
@@ -180,7 +180,7 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
         FilmFile part = read_film(file);
         if (!part.image.has_equal_sample_counts())
             throw UserError(file.string() + " is an unfinished render: finish it with --resume first");
-        const uint64_t begin = part.record.first_sample;
+        const uint64_t begin = part.header.first_sample;
         ranges.push_back({begin, begin + part.image.min_samples(), file.string()});
         if (ranges.size() == 1) {
             merged = std::move(part);

@@ -9,7 +9,7 @@
 namespace lab {
 
 // How a film was made, as string attributes of the EXR.
-struct FilmRecord {
+struct FilmHeader {
     std::string chapter;
     std::string scene;           // file name
     std::string scene_hash;      // of all its files
@@ -27,11 +27,11 @@ struct FilmRecord {
 // holds what pixels have beyond it. The channels `difference.R`, … hold the contribution of a pixel's first, third, … sample to
 // the picture minus that of the others: for an even number of samples its absolute value is the standard error. The channel
 // `invalid_samples` counts invalid samples, if any.
-void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record);
+void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmHeader& header);
 
 struct FilmFile {
     FilmImage image;
-    FilmRecord record;
+    FilmHeader header;
 };
 
 // Throws UserError if write_film() did not write the file.

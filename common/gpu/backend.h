@@ -8,7 +8,7 @@
 
 namespace lab {
 
-class AccelerationStructure;
+class SceneBackend;
 class Device;
 class GpuScene;
 struct DeviceDescription;
@@ -27,7 +27,7 @@ struct BackendRow {
     // Whether the device has room for the scene, and it may be the fastest there; null: always.
     bool (*suits)(const Device& device, const Scene& scene) = nullptr;
     // Device and scene must outlive the result. Throws DeviceError if there is no room.
-    std::unique_ptr<AccelerationStructure> (*build)(const Device& device, const GpuScene& scene);
+    std::unique_ptr<SceneBackend> (*build)(const Device& device, const GpuScene& scene);
 };
 
 using Backend = const BackendRow*;

@@ -123,7 +123,7 @@ class NativeTracer : public Tracer {
     native::Bindings bindings_;
 };
 
-class NativeBackend : public AccelerationStructure {
+class NativeBackend : public SceneBackend {
   public:
     NativeBackend(const GpuScene& scene, std::span<const BvhTriangle> triangles)
         : scene_(scene), tree_(triangles), triangles_(scene, triangles) {
@@ -173,7 +173,7 @@ class NativeBackend : public AccelerationStructure {
     native::Texture probe_{};
 };
 
-std::unique_ptr<AccelerationStructure> build(const Device&, const GpuScene& scene) {
+std::unique_ptr<SceneBackend> build(const Device&, const GpuScene& scene) {
     return std::make_unique<NativeBackend>(scene, world_triangles(scene.scene()));
 }
 

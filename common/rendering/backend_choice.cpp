@@ -15,8 +15,8 @@ namespace {
 // Samples per second of the device, for an image of at most 128 x 128 pixels.
 double measure_speed(Backend backend, const Device& device, const GpuScene& scene, const Estimator& estimator,
                      const RenderParameters& parameters) {
-    const auto structure = build_acceleration_structure(backend, device, scene);
-    Renderer renderer(device, *structure, estimator, parameters);
+    const auto scene_backend = build_scene_backend(backend, device, scene);
+    Renderer renderer(device, *scene_backend, estimator, parameters);
     renderer.set_dispatch_seconds(0.02);
     renderer.advance(UINT32_MAX);  // the first dispatch also warms up the device
     const double first_samples = renderer.samples();

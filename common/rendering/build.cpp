@@ -8,8 +8,8 @@ namespace {
 
 // Records what the job runs on: "several" if it continues a run on something else.
 void record_device(RenderJob& job, const std::string& device, const std::string& backend) {
-    job.record.device = !job.resumed || job.resumed->record.device == device ? device : "several";
-    job.record.backend = !job.resumed || job.resumed->record.backend == backend ? backend : "several";
+    job.header.device = !job.resumed || job.resumed->header.device == device ? device : "several";
+    job.header.backend = !job.resumed || job.resumed->header.backend == backend ? backend : "several";
 }
 
 }  // namespace
@@ -40,14 +40,14 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
         build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options),
                                                      chapter.light_probe_sampling, chapter.microfacets);
         build.backend = choose_backend(wanted, device, *build.gpu_scene);
-        build.acceleration_structure = build_acceleration_structure(build.backend, device, *build.gpu_scene);
+        build.scene_backend = build_scene_backend(build.backend, device, *build.gpu_scene);
     } else {
         build.gpu_scene = before->gpu_scene;
         build.backend = before->backend;
-        build.acceleration_structure = before->acceleration_structure;
+        build.scene_backend = before->scene_backend;
     }
     record_device(build.job, device.description().name, to_string(build.backend));
-    build.renderer = std::make_unique<Renderer>(device, *build.acceleration_structure, wanted.estimator, wanted.parameters);
+    build.renderer = std::make_unique<Renderer>(device, *build.scene_backend, wanted.estimator, wanted.parameters);
     if (wanted.resumed) build.renderer->resume(wanted.resumed->image);
     return build;
 }

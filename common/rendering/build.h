@@ -9,7 +9,7 @@ struct Build {
     RenderJob job;
     std::shared_ptr<const GpuScene> gpu_scene;
     Backend backend = nullptr;
-    std::shared_ptr<const AccelerationStructure> acceleration_structure;
+    std::shared_ptr<const SceneBackend> scene_backend;
     std::unique_ptr<Renderer> renderer;
 };
 

@@ -11,10 +11,10 @@
 
 namespace lab {
 
-void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record, const Options& options) {
+void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmHeader& header, const Options& options) {
     const std::string ending = lower_case_extension(file);
     if (ending == ".exr")
-        write_film(file, film, record);
+        write_film(file, film, header);
     else if (ending == ".hdr")
         write_hdr(file, film.mean());
     else if (ending == ".png")
@@ -34,7 +34,7 @@ static std::string keep(const FilmImage& film, const std::function<void()>& writ
     return ": the outputs hold " + std::to_string(film.min_samples()) + " samples a pixel; --resume continues";
 }
 
-void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write) {
+void write_after_failure(const std::exception& error, const FilmImage& film, const std::function<void()>& write) {
     const Failure failure = failure_of(error);
     if (failure.exit_code != 3) throw;
     const std::string message = failure.message + keep(film, write);
@@ -100,20 +100,20 @@ std::string to_csv(const json& rows) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationStructure& acceleration_structure, ErrorSource source, const std::vector<ReportRow>& rows) {
-    json report{{"chapter", record.chapter},
-                {"scene", record.scene},
-                {"scene_hash", record.scene_hash},
-                {"settings", record.settings},
+void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmHeader& header,
+                  const SceneBackend& scene_backend, ErrorSource source, const std::vector<ReportRow>& rows) {
+    json report{{"chapter", header.chapter},
+                {"scene", header.scene},
+                {"scene_hash", header.scene_hash},
+                {"settings", header.settings},
                 {"width", image.width},
                 {"height", image.height},
-                {"backend", record.backend},
-                {"device", record.device},
-                {"seed", record.seed},
-                {"first_sample", record.first_sample},
-                {"acceleration_structure_bytes", acceleration_structure.bytes()},
-                {"acceleration_structure_seconds", acceleration_structure.build_seconds()},
+                {"backend", header.backend},
+                {"device", header.device},
+                {"seed", header.seed},
+                {"first_sample", header.first_sample},
+                {"acceleration_structure_bytes", scene_backend.bytes()},
+                {"acceleration_structure_seconds", scene_backend.build_seconds()},
                 {"invalid_samples", image.invalid_samples()},
                 {"error_source", source == ErrorSource::reference ? "reference" : "halves"},
                 {"rows", json::array()}};

@@ -13,11 +13,11 @@
 namespace lab {
 
 // Writes the film in the format given by the file's extension. --view and --exposure affect PNG and JPG only.
-void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmRecord& record, const Options& options);
+void write_picture(const std::filesystem::path& file, const FilmImage& film, const FilmHeader& header, const Options& options);
 
 // After a failure of device or memory: calls write() to keep the last snapshot, then throws DeviceFailure with the cause and what
 // was kept, or after EndlessWork ends the program. Rethrows other errors.
-[[noreturn]] void keep_after(const std::exception& error, const FilmImage& film, const std::function<void()>& write);
+[[noreturn]] void write_after_failure(const std::exception& error, const FilmImage& film, const std::function<void()>& write);
 
 // Writes all files even if some fail, then throws the first UserError.
 void write_each(const std::vector<std::filesystem::path>& files, const std::function<void(const std::filesystem::path&)>& write);
@@ -37,7 +37,7 @@ struct ReportRow {
 enum class ErrorSource { reference, halves };
 
 // Writes .json or .csv.
-void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmRecord& record,
-                  const AccelerationStructure& acceleration_structure, ErrorSource source, const std::vector<ReportRow>& rows);
+void write_report(const std::filesystem::path& file, const FilmImage& image, const FilmHeader& header,
+                  const SceneBackend& scene_backend, ErrorSource source, const std::vector<ReportRow>& rows);
 
 }  // namespace lab

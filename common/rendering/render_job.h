@@ -14,7 +14,7 @@ struct RenderJob {
     std::shared_ptr<const Scene> scene;
     RenderParameters parameters{};
     uint32_t samples = 0;  // target per pixel
-    FilmRecord record = {};
+    FilmHeader header = {};
     std::optional<FilmFile> resumed = {};  // the run that this one continues
     bool may_be_refused = false;           // for "auto": the caller is prepared for a backend that refuses the shader
 };
@@ -22,7 +22,7 @@ struct RenderJob {
 // The sample count at which a render next computes its error: more by the factor `growth`, but by at least an eighth, at most a
 // doubling, and never beyond the target. So checks are few and cheap. Checking after every dispatch would not only take time:
 // where a few bright samples decide, it would favour pictures that happen to have few of them so far.
-uint32_t next_look(uint32_t samples, uint32_t target, double growth = 2);
+uint32_t next_sample_count(uint32_t samples, uint32_t target, double growth = 2);
 
 // Prepares everything that needs no device, so that mistakes show early. Throws UserError for scenes that the chapter cannot
 // render, and for options that contradict each other or the run that --resume continues.

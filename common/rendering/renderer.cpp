@@ -84,7 +84,7 @@ std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
     return needs;
 }
 
-Renderer::Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
+Renderer::Renderer(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator,
                    const RenderParameters& parameters, std::span<const Binding> further_bindings, size_t max_film_window)
     : device_(&device),
       estimator_(estimator),
@@ -94,14 +94,13 @@ Renderer::Renderer(const Device& device, const AccelerationStructure& accelerati
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
-    if (are_pixels_shared(parameters.image_size) && estimator.max_threads_per_pixel > 1 &&
-        acceleration_structure.can_share_pixels()) {
+    if (are_pixels_shared(parameters.image_size) && estimator.max_threads_per_pixel > 1 && scene_backend.can_share_pixels()) {
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
-    tracer_ = acceleration_structure.make_tracer(configured, bindings);
+    tracer_ = scene_backend.make_tracer(configured, bindings);
 }
 
 uint32_t Renderer::block_count() const { return count_blocks({film_.width(), film_.height()}); }

@@ -24,7 +24,7 @@ class Renderer {
 
     // Device and acceleration structure must outlive the renderer. `further_bindings` belong to the estimator; `max_film_window`
     // is passed to Film.
-    Renderer(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
+    Renderer(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator,
              const RenderParameters& parameters, std::span<const Binding> further_bindings = {},
              size_t max_film_window = SIZE_MAX);
 

@@ -30,7 +30,7 @@ class DeviceTracer : public Tracer {
 
 // A scene's tree and the tracers for it. Backends add their shaders.
 template <typename Tree, typename TreeTracer>
-class SceneTree : public AccelerationStructure {
+class SceneTree : public SceneBackend {
   public:
     SceneTree(const Device& device, const GpuScene& scene, Tree tree) : device_(device), scene_(scene), tree_(std::move(tree)) {}
 

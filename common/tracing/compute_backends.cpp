@@ -43,14 +43,14 @@ bool has_room(const Device& device, const Scene& scene) try {
     return false;
 }
 
-std::unique_ptr<AccelerationStructure> build_compute(const Device& device, const GpuScene& scene) {
+std::unique_ptr<SceneBackend> build_compute(const Device& device, const GpuScene& scene) {
     GpuBvh::require_room(device, scene.scene());
     GpuBvh bvh(device, build_bvh(world_triangles(scene.scene())));
     auto defines = bvh.defines();
     return std::make_unique<ComputeBackend<GpuBvh>>(device, scene, std::move(bvh), std::move(defines));
 }
 
-std::unique_ptr<AccelerationStructure> build_query(const Device& device, const GpuScene& scene) {
+std::unique_ptr<SceneBackend> build_query(const Device& device, const GpuScene& scene) {
     HardwareBvh bvh(device, scene);
     return std::make_unique<ComputeBackend<HardwareBvh>>(device, scene, std::move(bvh),
                                                          std::vector<std::string>{"BACKEND_QUERY"});

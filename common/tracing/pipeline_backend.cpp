@@ -117,7 +117,7 @@ class PipelineBackend : public SceneTree<HardwareBvh, PipelineTracer> {
     }
 };
 
-std::unique_ptr<AccelerationStructure> build_pipeline(const Device& device, const GpuScene& scene) {
+std::unique_ptr<SceneBackend> build_pipeline(const Device& device, const GpuScene& scene) {
     return std::make_unique<PipelineBackend>(device, scene, HardwareBvh(device, scene));
 }
 

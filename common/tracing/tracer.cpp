@@ -97,8 +97,7 @@ bool is_suitable(Backend backend, const Device& device, const Scene& scene) {
     return device.description().supports(backend) && (!backend->suits || backend->suits(device, scene));
 }
 
-std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device,
-                                                                    const GpuScene& scene) {
+std::unique_ptr<SceneBackend> build_scene_backend(Backend backend, const Device& device, const GpuScene& scene) {
     require_support(backend, device.description());
     return backend->build(device, scene);
 }

@@ -54,9 +54,9 @@ class Tracer {
 };
 
 // A scene's acceleration structure, shared by its tracers.
-class AccelerationStructure {
+class SceneBackend {
   public:
-    virtual ~AccelerationStructure() = default;
+    virtual ~SceneBackend() = default;
     // The shaders that make_tracer() compiles, main program first.
     virtual std::vector<ShaderSource> shaders(const Estimator& estimator) const = 0;
     // `bindings`: render parameters, film, ray counters, and samples of shared pixels, if threads shall share pixels. Throws
@@ -71,6 +71,6 @@ class AccelerationStructure {
 bool is_suitable(Backend backend, const Device& device, const Scene& scene);
 
 // Device and scene must outlive the result. Throws DeviceError if the device lacks something for the backend.
-std::unique_ptr<AccelerationStructure> build_acceleration_structure(Backend backend, const Device& device, const GpuScene& scene);
+std::unique_ptr<SceneBackend> build_scene_backend(Backend backend, const Device& device, const GpuScene& scene);
 
 }  // namespace lab

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "rendering/numbers_text.h"
-#include "viewer/inside_drawing.h"
+#include "viewer/inspection_drawing.h"
 #include "viewer/text.h"
 
 namespace lab {
@@ -54,7 +54,7 @@ std::string half_label(const Session& session, const Session& other) {
     std::string label = std::filesystem::path(session.chapter().name).filename().string();
     std::replace(label.begin(), label.end(), '_', ' ');  // allows line breaks
     if (session.chapter().name != other.chapter().name) return label;
-    const std::string flags = session.build().job.record.settings + " --", others = other.build().job.record.settings + " --";
+    const std::string flags = session.build().job.header.settings + " --", others = other.build().job.header.settings + " --";
     for (size_t from = 0, to; (to = flags.find(" --", from)) != std::string::npos; from = to + 1)
         if (others.find(flags.substr(from, to - from) + " --") == std::string::npos)
             label += "\n" + flags.substr(from, to - from);

@@ -13,7 +13,7 @@
 #include "rendering/render_job.h"
 #include "rendering/settings.h"
 #include "scene/features.h"
-#include "viewer/inside_drawing.h"
+#include "viewer/inspection_drawing.h"
 #include "viewer/text.h"
 
 namespace lab {
@@ -62,13 +62,13 @@ void draw_chapter_option(const ChapterOption& option, const RenderParameters& pa
 }
 
 void draw_progress(const Session& session, double frames_per_second) {
-    const FilmRecord& record = session.build().job.record;
+    const FilmHeader& header = session.build().job.header;
     const double rendered = session.seconds(), seconds = std::max(rendered, 1e-9), samples = session.samples();
     ImGui::TextWrapped("%s", session.chapter().title.c_str());
-    ImGui::TextWrapped("%s, backend %s", record.device.c_str(), record.backend.c_str());
+    ImGui::TextWrapped("%s, backend %s", header.device.c_str(), header.backend.c_str());
     ImGui::Separator();
     const std::string target =
-        session.target_samples() < UINT32_MAX - record.first_sample ? " of " + std::to_string(session.target_samples()) : "";
+        session.target_samples() < UINT32_MAX - header.first_sample ? " of " + std::to_string(session.target_samples()) : "";
     text_in_words(samples_text(samples) + target + " samples per pixel in " + duration_text(rendered));
     text_in_words("per second: " + short_number(samples / seconds) + " samples, " +
                   short_number(static_cast<double>(session.rays()) / seconds) + " rays, " +

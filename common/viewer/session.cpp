@@ -247,11 +247,11 @@ void Session::take_snapshots(uint32_t samples, double seconds) {
     if (!is_for_error) return;
     if (const auto error = estimate_error(film)) snapshot_error_ = error->rel_rmse;
     snapshot_ = std::move(film);
-    snapshot_record_ = record(seconds);
+    snapshot_header_ = header(seconds);
 }
 
 uint32_t Session::target_samples() const {
-    return options_.appearance.sample_count.value_or(UINT32_MAX - build_->job.record.first_sample);
+    return options_.appearance.sample_count.value_or(UINT32_MAX - build_->job.header.first_sample);
 }
 
 double Session::samples() const { return reduction_ == 1 ? build_->renderer->samples() : 0; }
@@ -267,24 +267,24 @@ void Session::save(const std::vector<std::filesystem::path>& files) {
         while (build_->renderer->advance(1)) {
         }
     }
-    write(files, build_->renderer->film().read(), record(seconds_));
+    write(files, build_->renderer->film().read(), header(seconds_));
 }
 
-void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmRecord& record) const {
+void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmHeader& header) const {
     Options options = build_->job.options;
     options.appearance = options_.appearance;
-    write_each(files, [&](const std::filesystem::path& file) { write_picture(file, film, record, options); });
+    write_each(files, [&](const std::filesystem::path& file) { write_picture(file, film, header, options); });
 }
 
-FilmRecord Session::record(double seconds) const {
-    FilmRecord record = build_->job.record;
-    record.seconds += seconds;
-    record.rays += rays();
-    return record;
+FilmHeader Session::header(double seconds) const {
+    FilmHeader header = build_->job.header;
+    header.seconds += seconds;
+    header.rays += rays();
+    return header;
 }
 
 void Session::keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const {
-    keep_after(error, snapshot_, [&] { write(files, snapshot_, snapshot_record_); });
+    write_after_failure(error, snapshot_, [&] { write(files, snapshot_, snapshot_header_); });
 }
 
 uint64_t hash_of(const std::set<std::filesystem::path>& files) {

@@ -87,7 +87,7 @@ class Session {
     // Writes the current picture in the formats given by the files' extensions.
     void save(const std::vector<std::filesystem::path>& files);
     const FilmImage& last_snapshot() const { return snapshot_; }
-    // After a failure: calls keep_after() with the last snapshot.
+    // After a failure: calls write_after_failure() with the last snapshot.
     [[noreturn]] void keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const;
 
   private:
@@ -99,8 +99,8 @@ class Session {
     void render(double seconds);
     void take_snapshots(uint32_t samples, double seconds);
     std::variant<LiveVerdict, std::string> find_verdict() const;
-    void write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmRecord& record) const;
-    FilmRecord record(double seconds) const;  // after this many seconds of rendering
+    void write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmHeader& header) const;
+    FilmHeader header(double seconds) const;  // after this many seconds of rendering
     uint32_t find_reduction(double seconds) const;
     void take_back(const std::string& why);
 
@@ -125,7 +125,7 @@ class Session {
     double paths_per_second_ = 0;  // camera paths, measured
     double seconds_ = 0;
     FilmImage snapshot_;  // at the last power of two
-    FilmRecord snapshot_record_;
+    FilmHeader snapshot_header_;
     std::variant<LiveVerdict, std::string> verdict_ = "the render goes on from an earlier one";
     std::optional<VerdictSettings> verdict_settings_;
     std::optional<double> snapshot_error_;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "viewer/inside_drawing.h"
+#include "viewer/inspection_drawing.h"
 
 namespace lab {
 namespace {

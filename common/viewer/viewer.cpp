@@ -37,7 +37,7 @@ Viewer::Viewer(Window& window, const Device& device, const Chapter& chapter, con
     : window_(window),
       screen_(device, window),
       session_(device, chapter, build_while_waiting(window, screen_, device, chapter, job)),
-      inside_panel_(device),
+      inspection_panel_(device),
       comparison_(device) {}
 
 bool Viewer::frame() {
@@ -55,11 +55,11 @@ bool Viewer::frame() {
     for (const auto& file : window_.dropped_files()) session_.open_scene(file);
     if (shows_controls_) {
         const Session* beside = comparison_.is_active() ? &comparison_.second() : nullptr;
-        inside_panel_.draw(session_, beside, beside ? comparison_.split : 1, picture_rectangle(), path_rectangle(),
-                           0.15 * budget);
+        inspection_panel_.draw(session_, beside, beside ? comparison_.split : 1, picture_rectangle(), path_rectangle(),
+                               0.15 * budget);
         draw_halves(comparison_, session_, picture_rectangle());
         controls_.draw(session_, camera_control_, controls_rectangle(), frames_per_second_, [&] {
-            inside_panel_.draw_controls(session_);
+            inspection_panel_.draw_controls(session_);
             draw_controls(comparison_, session_);
         });
     }
@@ -91,11 +91,11 @@ Rectangle Viewer::path_rectangle() const {
     const glm::ivec2 window(screen_.size());
     if (shows_controls_ && is_narrow()) {  // over the controls
         Rectangle whole = controls_rectangle();
-        if (!inside_panel_.inspection().selection()) whole.size.y = 0;
+        if (!inspection_panel_.inspection().selection()) whole.size.y = 0;
         return whole;
     }
     const int left = shows_controls_ ? controls_.width() : 0;
-    const int height = shows_controls_ ? std::min(inside_panel_.height(), window.y * 2 / 5) : 0;
+    const int height = shows_controls_ ? std::min(inspection_panel_.height(), window.y * 2 / 5) : 0;
     return {{left, window.y - height}, {window.x - left, height}};
 }
 
@@ -147,7 +147,7 @@ void Viewer::handle_keys() {
     if (window_.was_key_pressed(GLFW_KEY_SPACE)) session_.is_paused = !session_.is_paused;
     if (window_.was_key_pressed(GLFW_KEY_R)) session_.restart();
     if (window_.was_key_pressed(GLFW_KEY_F)) session_.reset_camera();
-    if (window_.was_key_pressed(GLFW_KEY_T)) inside_panel_.show_next_overlay();
+    if (window_.was_key_pressed(GLFW_KEY_T)) inspection_panel_.show_next_overlay();
 }
 
 void run_viewer(Window& window, const Device& device, const Chapter& chapter, const RenderJob& job) {

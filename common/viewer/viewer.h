@@ -6,7 +6,7 @@
 #include "viewer/camera_control.h"
 #include "viewer/comparison.h"
 #include "viewer/controls.h"
-#include "viewer/inside_panel.h"
+#include "viewer/inspection_panel.h"
 #include "viewer/screen.h"
 #include "viewer/session.h"
 
@@ -23,7 +23,7 @@ class Viewer {
     Session& session() { return session_; }
     Screen& screen() { return screen_; }
     const Controls& controls() const { return controls_; }
-    const InsidePanel& inside_panel() const { return inside_panel_; }
+    const InspectionPanel& inspection_panel() const { return inspection_panel_; }
     Comparison& comparison() { return comparison_; }
     Rectangle picture_rectangle() const;  // in the window
     Rectangle path_rectangle() const;     // panel below for the selected path; of height 0 without one
@@ -40,7 +40,7 @@ class Viewer {
     CameraControl camera_control_;
     std::shared_ptr<const Scene> fitted_scene_;  // that the camera's speed was adapted to
     Controls controls_;
-    InsidePanel inside_panel_;
+    InspectionPanel inspection_panel_;
     Comparison comparison_;
     bool shows_controls_ = true;
     double interface_seconds_ = 0.01;  // per frame, smoothed

@@ -14,7 +14,7 @@ from threading import Lock
 import project
 from check import grading
 from check.diagnosis import observe
-from check.experiments import experiments_of, measure
+from check.experiments import experiments_of, pictures, together
 from check.names import ratios_of
 from course.mistakes import catalogue, own_shader
 from project import CHAPTERS, Parser, add_device_options, number, read_json, write_json
@@ -84,7 +84,8 @@ class Workshop:
         """What the chapter's own shader shows in an experiment, as lists."""
         # Not one picture of more samples: the spread of its pixels would tell more of what they show and less of their noise.
         with Batch() as batch:
-            sights = measure(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, batch, repeats=OWN_PICTURES)
+            sights = [together(seen) for seen in pictures(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, batch,
+                                                          repeats=OWN_PICTURES)]
         return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
 
     def shown(self, bug, expected, before):

@@ -15,7 +15,7 @@ from threading import Lock
 
 from check import grading
 from check.diagnosis import diagnose, verdict_with
-from check.experiments import experiments_of, known_sights, measure
+from check.experiments import experiments_of, known_sights, pictures, together
 from check.facts import readings
 from learning.learn import digest, own_text
 from project import CHAPTERS, Parser, UserError, add_device_options, commit, number, read_json, write_json
@@ -44,7 +44,8 @@ def untrue(chapter, file, found, those):
             experiment = experiments_of(chapter)[name]
             if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
                 continue
-            anew = readings(experiment.points, measure(program, experiment.points, those, SEED, batch, repeats=PICTURES), known_sights(known[name]))
+            sights = [together(seen) for seen in pictures(program, experiment.points, those, SEED, batch, repeats=PICTURES)]
+            anew = readings(experiment.points, sights, known_sights(known[name]))
             contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
                              if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
     return contradicted

@@ -50,11 +50,11 @@ class Subject {
   public:
     Subject(const Device& device, Backend backend, const std::string& chapter, const GrowthStep& step)
         : scene_(step.scene), gpu_scene_(device, scene_), estimator_(chapter_estimator(chapter)) {
-        structure_ = build_acceleration_structure(backend, device, gpu_scene_);
+        scene_backend_ = build_scene_backend(backend, device, gpu_scene_);
         RenderParameters parameters = default_parameters(scene_, step.image_size);
         parameters.max_path_length = step.max_path_length;
         parameters.roulette_start = 1;
-        renderer_.emplace(device, *structure_, estimator_, parameters);
+        renderer_.emplace(device, *scene_backend_, estimator_, parameters);
         film_bytes_ = Film::memory_need(step.image_size.x, step.image_size.y).bytes;
     }
 
@@ -62,8 +62,8 @@ class Subject {
 
     json describe(const std::vector<Rates>& runs) const {
         json result{{"rays_per_path", median(runs).rays_per_second / median(runs).paths_per_second},
-                    {"structure_bytes", structure_->bytes()},
-                    {"structure_seconds", structure_->build_seconds()},
+                    {"structure_bytes", scene_backend_->bytes()},
+                    {"structure_seconds", scene_backend_->build_seconds()},
                     {"film_bytes", film_bytes_},
                     {"bytes", bytes_of(gpu_scene_)},
                     {"paths_per_second", json::array()}};
@@ -73,7 +73,7 @@ class Subject {
 
     size_t instructions() const {
         ShaderCode code;
-        for (const auto& shader : structure_->shaders(estimator_)) code.merge(read_code(shader));
+        for (const auto& shader : scene_backend_->shaders(estimator_)) code.merge(read_code(shader));
         return code.instructions;
     }
 
@@ -81,7 +81,7 @@ class Subject {
     Scene scene_;
     GpuScene gpu_scene_;
     Estimator estimator_;
-    std::unique_ptr<AccelerationStructure> structure_;
+    std::unique_ptr<SceneBackend> scene_backend_;
     size_t film_bytes_;
     std::optional<Renderer> renderer_;
 };

@@ -33,10 +33,10 @@ class Subject {
           chapter_(chapter),
           scene_(scene),
           gpu_scene_(device, scene, Strategy::both, chapter.light_probe_sampling, chapter.microfacets),
-          structure_(build_acceleration_structure(compute_backend, device, gpu_scene_)) {}
+          scene_backend_(build_scene_backend(compute_backend, device, gpu_scene_)) {}
 
     Renderer renderer(const Options& options) const {
-        return {device_, *structure_, make_estimator(chapter_, options), parameters(options)};
+        return {device_, *scene_backend_, make_estimator(chapter_, options), parameters(options)};
     }
 
     RenderParameters parameters(const Options& options) const { return make_parameters(chapter_, scene_, options); }
@@ -46,7 +46,7 @@ class Subject {
     const Chapter& chapter_;
     const Scene& scene_;
     GpuScene gpu_scene_;
-    std::unique_ptr<AccelerationStructure> structure_;
+    std::unique_ptr<SceneBackend> scene_backend_;
 };
 
 Options options_of(const Chapter& chapter, uint32_t size) {

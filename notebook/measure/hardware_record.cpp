@@ -58,10 +58,10 @@ json measure(const Device& device, const Subject& subject) {
     device.submit([&](const vk::raii::CommandBuffer& commands) { commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, 0); });
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
     {
-        const auto structure = build_acceleration_structure(compute_backend, device, gpu_scene);
+        const auto scene_backend = build_scene_backend(compute_backend, device, gpu_scene);
         Estimator record{measure / "record_rays.glsl", path_defines(compute_backend, path_count), estimator.file};
         record.defines.insert(record.defines.end(), estimator.defines.begin(), estimator.defines.end());
-        Renderer recorder(device, *structure, record, parameters, {&ray_binding, 1});
+        Renderer recorder(device, *scene_backend, record, parameters, {&ray_binding, 1});
         while (recorder.advance(1)) {
         }
     }
@@ -72,10 +72,10 @@ json measure(const Device& device, const Subject& subject) {
                 {"backends", json::object()}};
     for (const Backend backend : all_backends) {
         if (!device.description().supports(backend)) continue;
-        const auto structure = build_acceleration_structure(backend, device, gpu_scene);
-        Renderer path_tracer(device, *structure, estimator, parameters);
+        const auto scene_backend = build_scene_backend(backend, device, gpu_scene);
+        Renderer path_tracer(device, *scene_backend, estimator, parameters);
         const Estimator replay{measure / "replay/path_trace.glsl", path_defines(backend, path_count)};
-        Renderer replayer(device, *structure, replay, parameters, {&ray_binding, 1});
+        Renderer replayer(device, *scene_backend, replay, parameters, {&ray_binding, 1});
         const auto runs = measure_in_turns({&path_tracer, &replayer}, 0.5);
         const Rates rates = median(runs[0]), bare = median(runs[1]);
         json all_runs{{"rays_per_second", json::array()}, {"bare_rays_per_second", json::array()}};
@@ -84,7 +84,7 @@ json measure(const Device& device, const Subject& subject) {
         result["backends"][to_string(backend)] = {
             {"paths_per_second", rates.paths_per_second},   {"rays_per_second", rates.rays_per_second},
             {"bare_rays_per_second", bare.rays_per_second}, {"runs", all_runs},
-            {"structure_bytes", structure->bytes()},        {"structure_seconds", structure->build_seconds()}};
+            {"structure_bytes", scene_backend->bytes()},    {"structure_seconds", scene_backend->build_seconds()}};
         std::printf(
             "%-17s %8zu triangles  %-8s %8.1f million paths/s  %8.1f million rays/s, bare %8.1f (%.2f of "
             "it)\n",

@@ -32,8 +32,8 @@ double median(Runs runs) {
 struct Side {
     Side(Backend which, const Device& device, const GpuScene& scene, const RenderParameters& parameters)
         : backend(which),
-          structure(build_acceleration_structure(which, device, scene)),
-          renderer(device, *structure, {project_folder() / "notebook/measure/path_trace.glsl"}, parameters) {
+          scene_backend(build_scene_backend(which, device, scene)),
+          renderer(device, *scene_backend, {project_folder() / "notebook/measure/path_trace.glsl"}, parameters) {
         renderer.set_dispatch_seconds(1);
     }
     glm::dvec3 mean() const {
@@ -42,7 +42,7 @@ struct Side {
     }
 
     Backend backend;
-    std::unique_ptr<AccelerationStructure> structure;
+    std::unique_ptr<SceneBackend> scene_backend;
     Renderer renderer;
     Runs runs;
 };

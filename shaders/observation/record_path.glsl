@@ -1,7 +1,7 @@
 // Wraps a chapter's estimator and records what it does for one sample of one pixel.
 //
 // trace_ray() and is_occluded() are replaced here. After the estimator's assignments to `throughput`, `radiance` and
-// `survival_probability`, common/inside/recording_calls.cpp has inserted calls of the functions record_…() below.
+// `survival_probability`, common/inspection/recording_calls.cpp has inserted calls of the functions record_…() below.
 #include "observation/recorded_path.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_PATH) buffer RecordedPath {

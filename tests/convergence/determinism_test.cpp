@@ -92,10 +92,10 @@ TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
 // With a renderer made for a large image: restarted with a small one, it still uses one thread per pixel.
 FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSettings& settings) {
     const GpuScene gpu_scene = make_gpu_scene(scene, settings);
-    const auto acceleration_structure = build_acceleration_structure(settings.backend, test_device(), gpu_scene);
+    const auto scene_backend = build_scene_backend(settings.backend, test_device(), gpu_scene);
     RenderSettings large = settings;
     large.width = large.height = 640;
-    Renderer renderer(test_device(), *acceleration_structure, settings.estimator, make_parameters(scene, large));
+    Renderer renderer(test_device(), *scene_backend, settings.estimator, make_parameters(scene, large));
     renderer.restart(make_parameters(scene, settings));
     renderer.set_dispatch_seconds(settings.dispatch_seconds);
     while (renderer.advance(settings.samples)) {
@@ -120,9 +120,9 @@ TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
     // With a film that shaders see in parts: the checkpoint contains the samples of all parts.
     const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
     const GpuScene gpu_scene(test_device(), scene);
-    const auto acceleration_structure = build_acceleration_structure(compute_backend, test_device(), gpu_scene);
+    const auto scene_backend = build_scene_backend(compute_backend, test_device(), gpu_scene);
     const auto make_renderer = [&] {
-        return Renderer(test_device(), *acceleration_structure, settings().estimator, make_parameters(scene, settings()), {},
+        return Renderer(test_device(), *scene_backend, settings().estimator, make_parameters(scene, settings()), {},
                         two_rows_of_blocks);
     };
     // Interrupted in mid-pass, when some pixels have one sample more than others.

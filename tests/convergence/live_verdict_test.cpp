@@ -26,11 +26,11 @@ INSTANTIATE_TEST_SUITE_P(, LiveVerdictOf, testing::ValuesIn(all_chapters), own_e
 void LiveVerdictOf::expect_agreement(uint32_t seeds) {
     const Scene scene = load_shipped_scene("cornell_box.json");
     const GpuScene gpu_scene(test_device(), scene);
-    const auto acceleration_structure = build_acceleration_structure(compute_backend, test_device(), gpu_scene);
+    const auto scene_backend = build_scene_backend(compute_backend, test_device(), gpu_scene);
     // Bounces find the light by chance: direct light is enough.
     const uint32_t max_path_length = samples_lights(GetParam()) ? 6 : 1;
     RenderParameters parameters = parameters_for(scene, max_path_length, 1);
-    Renderer renderer(test_device(), *acceleration_structure, chapter_estimator(GetParam()), parameters);
+    Renderer renderer(test_device(), *scene_backend, chapter_estimator(GetParam()), parameters);
     for (uint32_t seed = 1; seed <= seeds; ++seed) {
         parameters.seed_key = seed_key(test_seed(chapter_seed(GetParam()) + seed));
         renderer.restart(parameters);

@@ -20,7 +20,7 @@ class InvalidSamples : public OnEachBackend {
         const Device& device = test_device();
         const Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}, {1, 2, 3}));
         const GpuScene gpu_scene(device, scene);
-        const auto structure = build_acceleration_structure(GetParam(), device, gpu_scene);
+        const auto scene_backend = build_scene_backend(GetParam(), device, gpu_scene);
         const RenderParameters parameters = make_parameters(scene, {.width = width, .height = height, .first_sample = first});
         // The estimator starts after the two numbers for the position in the pixel.
         const RandomState state =
@@ -29,7 +29,7 @@ class InvalidSamples : public OnEachBackend {
         const Estimator estimator{project_folder() / "tests/shaders/poisoned.glsl",
                                   {"POISONED_STATE " + number(state[0]) + ", " + number(state[1]), "POISON " + number(bits),
                                    "POISONED_CHANNEL " + std::to_string(channel)}};
-        Renderer renderer(device, *structure, estimator, parameters);
+        Renderer renderer(device, *scene_backend, estimator, parameters);
         while (renderer.advance(count)) {
         }
         return renderer.film().read();

@@ -27,11 +27,11 @@ class BackendScene {
   public:
     BackendScene(Backend backend, const Scene& scene, bool samples_probe = false)
         : gpu_scene_(test_device(), scene, Strategy::both, samples_probe),
-          structure_(build_acceleration_structure(backend, test_device(), gpu_scene_)) {}
+          scene_backend_(build_scene_backend(backend, test_device(), gpu_scene_)) {}
 
     // One sample per pixel.
     TracedImage render(const RenderSettings& settings) const {
-        Renderer renderer(test_device(), *structure_, settings.estimator, make_parameters(gpu_scene_.scene(), settings));
+        Renderer renderer(test_device(), *scene_backend_, settings.estimator, make_parameters(gpu_scene_.scene(), settings));
         while (renderer.advance(1)) {
         }
         return {renderer.film().read().mean(), renderer.rays()};
@@ -39,7 +39,7 @@ class BackendScene {
 
   private:
     GpuScene gpu_scene_;
-    std::unique_ptr<AccelerationStructure> structure_;
+    std::unique_ptr<SceneBackend> scene_backend_;
 };
 
 struct Limits {

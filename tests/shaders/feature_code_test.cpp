@@ -58,12 +58,12 @@ class FeatureCode : public testing::TestWithParam<std::string> {
         const RenderSettings settings{.strategy = samples_lights(GetParam()) ? Strategy::both : Strategy::bounces,
                                       .estimator = chapter_estimator(GetParam())};
         const GpuScene gpu_scene = make_gpu_scene(scene, settings);
-        const auto structure = build_acceleration_structure(backend, test_device(), gpu_scene);
+        const auto scene_backend = build_scene_backend(backend, test_device(), gpu_scene);
         std::set<std::string> functions;
         for (const auto& [name, needs] : needs_of_features()) functions.insert(needs.functions.begin(), needs.functions.end());
         Footprint result;
         for (const auto& binding : gpu_scene.bindings()) result.bindings.insert(binding.index);
-        for (const auto& shader : structure->shaders(chapter_estimator(GetParam())))
+        for (const auto& shader : scene_backend->shaders(chapter_estimator(GetParam())))
             result.code.merge(read_code(shader, functions));
         return result;
     }

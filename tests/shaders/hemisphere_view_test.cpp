@@ -1,5 +1,5 @@
 // The hemisphere at a shading point, against known values and against the chapters' own estimates there.
-#include "inside/hemisphere_view.h"
+#include "inspection/hemisphere_view.h"
 
 #include <cmath>
 #include <numbers>
@@ -19,10 +19,10 @@ struct LookAtPoint {
     LookAtPoint(Scene scene_to_use, const RenderSettings& settings)
         : scene(std::move(scene_to_use)),
           gpu_scene(test_device(), scene),
-          acceleration_structure(build_acceleration_structure(compute_backend, test_device(), gpu_scene)),
+          scene_backend(build_scene_backend(compute_backend, test_device(), gpu_scene)),
           parameters(make_parameters(scene, settings)),
-          view(test_device(), *acceleration_structure, settings.estimator) {
-        PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator, parameters.image_size);
+          view(test_device(), *scene_backend, settings.estimator) {
+        PathRecorder recorder(test_device(), *scene_backend, settings.estimator, parameters.image_size);
         vertex = recorder.record(parameters, parameters.image_size / 2u + settings.height / 4, 0).vertices.at(0);
     }
     HemisphereView::Pictures look(uint32_t samples) {
@@ -34,7 +34,7 @@ struct LookAtPoint {
 
     Scene scene;
     GpuScene gpu_scene;
-    std::unique_ptr<AccelerationStructure> acceleration_structure;
+    std::unique_ptr<SceneBackend> scene_backend;
     RenderParameters parameters;
     HemisphereView view;
     PathVertex vertex;
@@ -105,7 +105,7 @@ TEST_P(HemisphereOf, IntegratesToWhatTheChapterReflects) {
     narrow.camera.forward = setup.vertex.direction;
     narrow.camera.right *= 1e-5f;
     narrow.camera.up *= 1e-5f;
-    Renderer renderer(test_device(), *setup.acceleration_structure, settings.estimator, narrow);
+    Renderer renderer(test_device(), *setup.scene_backend, settings.estimator, narrow);
     std::vector<double> integrals, estimates;
     for (uint32_t batch = 0; batch < 16; ++batch) {
         setup.parameters.seed_key = seed_key(test_seed(chapter_seed(GetParam()) + batch));

@@ -1,5 +1,5 @@
 // The path recorder records exactly the path that the estimator follows.
-#include "inside/path_recorder.h"
+#include "inspection/path_recorder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ struct Recorded {
 // Paths of `count` pixels spread over the image, with varying sample indices.
 std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
     const GpuScene gpu_scene(test_device(), scene, settings.strategy, scene.light_probe.has_value());
-    const auto acceleration_structure = build_acceleration_structure(settings.backend, test_device(), gpu_scene);
-    PathRecorder recorder(test_device(), *acceleration_structure, settings.estimator, {settings.width, settings.height});
+    const auto scene_backend = build_scene_backend(settings.backend, test_device(), gpu_scene);
+    PathRecorder recorder(test_device(), *scene_backend, settings.estimator, {settings.width, settings.height});
     std::vector<Recorded> paths;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t index = i * 7919 % (settings.width * settings.height);

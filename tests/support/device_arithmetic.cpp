@@ -185,13 +185,13 @@ struct HitPoints {
 
 HitPoints trace(const Device& device, const Scene& scene, Backend backend) {
     const GpuScene gpu_scene(device, scene);
-    const auto structure = build_acceleration_structure(backend, device, gpu_scene);
+    const auto scene_backend = build_scene_backend(backend, device, gpu_scene);
     HitPoints points;
     std::vector<vec3>* const results[] = {&points.directions, &points.positions, &points.ids};
     for (uint32_t which = 0; which < std::size(results); ++which) {
         RenderParameters parameters = default_parameters(scene, uvec2(256));
         parameters.max_path_length = which;
-        Renderer renderer(device, *structure, {project_folder() / "tests/shaders/hit_point.glsl"}, parameters);
+        Renderer renderer(device, *scene_backend, {project_folder() / "tests/shaders/hit_point.glsl"}, parameters);
         while (renderer.advance(1)) {
         }
         for (const FilmPixel& pixel : renderer.film().read().pixels) results[which]->push_back(pixel.sum);

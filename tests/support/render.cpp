@@ -63,8 +63,8 @@ GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings) {
 
 SceneRenderer::SceneRenderer(const Scene& scene, const RenderSettings& settings)
     : gpu_scene_(make_gpu_scene(scene, settings)),
-      acceleration_structure_(build_acceleration_structure(settings.backend, test_device(), gpu_scene_)),
-      renderer_(test_device(), *acceleration_structure_, settings.estimator, make_parameters(scene, settings), {},
+      scene_backend_(build_scene_backend(settings.backend, test_device(), gpu_scene_)),
+      renderer_(test_device(), *scene_backend_, settings.estimator, make_parameters(scene, settings), {},
                 settings.max_film_window) {}
 
 Rendering SceneRenderer::render(const RenderSettings& settings) {

@@ -66,7 +66,7 @@ class SceneRenderer {
 
   private:
     GpuScene gpu_scene_;
-    std::unique_ptr<AccelerationStructure> acceleration_structure_;
+    std::unique_ptr<SceneBackend> scene_backend_;
     Renderer renderer_;
 };
 

@@ -35,17 +35,17 @@ TEST(FilmFile, GoesOnWithTheWholeSum) {
 TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
     const TestFolder folder;
     const auto write = [&](uint32_t first, uint32_t samples) {
-        FilmRecord record{};
-        record.first_sample = first;
+        FilmHeader header{};
+        header.first_sample = first;
         const auto file = folder / (std::to_string(first) + "_" + std::to_string(samples) + ".exr");
-        write_film(file, {1, 1, {{vec3(1), vec3(0), vec3(0), samples, 0}}}, record);
+        write_film(file, {1, 1, {{vec3(1), vec3(0), vec3(0), samples, 0}}}, header);
         return file;
     };
     const uint32_t half = 0x80000000;
     const auto first = write(0, half), rest = write(half, half - 1);
     // In any order; and a pixel's sample count needs all 32 bits.
     const FilmFile merged = merge_films({rest, first});
-    EXPECT_EQ(merged.record.first_sample, 0u);
+    EXPECT_EQ(merged.header.first_sample, 0u);
     EXPECT_EQ(merged.image.min_samples(), 0xffffffffu);
     EXPECT_USER_ERROR(merge_films({first, write(half, half)}), "at most 2^32 - 1 samples");
     EXPECT_USER_ERROR(merge_films({first, write(half + 1, 7)}), "without overlap or gap");
@@ -81,10 +81,10 @@ TEST(FilmFile, NumbersThatNoRenderWritesAreRefused) {
 TEST(FilmFile, KeepsAndShowsInvalidSamples) {
     const TestFolder folder;
     for (const uint32_t first : {0u, 5u}) {
-        FilmRecord record{};
-        record.first_sample = first;
+        FilmHeader header{};
+        header.first_sample = first;
         const FilmPixel good{vec3(1), vec3(0), vec3(0), 5, 0}, bad{vec3(1), vec3(0), vec3(0), 5, first == 0};
-        write_film(folder / (std::to_string(first) + ".exr"), {2, 1, {good, bad}}, record);
+        write_film(folder / (std::to_string(first) + ".exr"), {2, 1, {good, bad}}, header);
     }
     const FilmImage film = merge_films({folder / "0.exr", folder / "5.exr"}).image;
     EXPECT_EQ(film.pixels[0].invalid_count, 0u);

@@ -22,7 +22,7 @@ class Picture {
 
     void render_until(double target) {
         for (double growth = 2; !error || error->rel_rmse > target; ++looks) {
-            advance(next_look(film_.min_samples(), 1u << 20, growth));
+            advance(next_sample_count(film_.min_samples(), 1u << 20, growth));
             error = estimate_error(film_);
             if (error) growth = std::pow(error->rel_rmse / target, 2);
         }

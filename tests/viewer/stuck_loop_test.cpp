@@ -121,7 +121,7 @@ TEST_F(StuckLoopTest, APathThatDoesNotEndIsNotFollowed) {
                   "while (seed == first) radiance *= 0.999;" + tail,
               "compute", [](Options& options) { options.appearance.sample_count = 4; });
     wait_until("samples", [&] { return session().samples() >= 4; });
-    const Inspection& inspection = viewer_->inside_panel().inspection();
+    const Inspection& inspection = viewer_->inspection_panel().inspection();
     auto& selection = const_cast<Inspection&>(inspection).selection();
     selection = Inspection::Selection{{0, 0}, 9, 0};
     wait_until("a message", [&] { return !inspection.message().empty(); });

@@ -31,9 +31,9 @@ TEST_F(ViewerTest, SavesWhatARunWithoutAWindowSaves) {
     ASSERT_EQ(a.image.pixels.size(), b.image.pixels.size());
     EXPECT_EQ(std::memcmp(a.image.pixels.data(), b.image.pixels.data(), a.image.pixels.size() * sizeof(FilmPixel)), 0);
     EXPECT_NO_THROW(require_same_render(a, b, "window", "headless"));
-    EXPECT_EQ(a.record.backend, b.record.backend);
-    EXPECT_EQ(a.record.estimator_hash, b.record.estimator_hash);
-    EXPECT_EQ(a.record.rays, b.record.rays);
+    EXPECT_EQ(a.header.backend, b.header.backend);
+    EXPECT_EQ(a.header.estimator_hash, b.header.estimator_hash);
+    EXPECT_EQ(a.header.rays, b.header.rays);
 }
 
 TEST_F(ViewerTest, KeysMoveTheCameraAndRestartWithinAFrame) {
@@ -100,12 +100,12 @@ TEST_F(ViewerTest, ANarrowWindowHasTheControlsBelowThePicture) {
         // What is there can be clicked.
         const vec2 middle = vec2(picture.corner) + 0.5f * vec2(picture.size);
         click(middle.x, middle.y);
-        EXPECT_TRUE(viewer_->inside_panel().inspection().selection());
+        EXPECT_TRUE(viewer_->inspection_panel().inspection().selection());
         const Rectangle path = viewer_->path_rectangle();
         EXPECT_GE(path.size.x, 200);
         EXPECT_LE(viewer_->picture_rectangle().corner.y + viewer_->picture_rectangle().size.y, path.corner.y);
         take_screenshot("viewer_" + std::to_string(size.x));
-        const_cast<Inspection&>(viewer_->inside_panel().inspection()).deselect();
+        const_cast<Inspection&>(viewer_->inspection_panel().inspection()).deselect();
         run_frames(1);
     }
 }
@@ -179,7 +179,7 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
         const RenderParameters before = parameters();
         change([&](Options& options) { options.samples.chapter_values[i] = chapter_.options[i].low; });
         EXPECT_NE(std::memcmp(&before, &session().build().job.parameters, sizeof before), 0) << chapter_.options[i].name;
-        EXPECT_NE(session().build().job.record.settings.find(chapter_.options[i].name), std::string::npos);
+        EXPECT_NE(session().build().job.header.settings.find(chapter_.options[i].name), std::string::npos);
     }
     change([](Options& options) { options.samples.chapter_values.assign(3, std::nullopt); });
     change([](Options& options) { options.samples.seed = 99; });
@@ -190,7 +190,7 @@ TEST_F(ViewerTest, EveryOptionTakesEffect) {
     EXPECT_LT(one, all);
     change([](Options& options) { options.light.only_path_length.reset(); });
     change([](Options& options) { options.estimator.strategy = Strategy::bounces; });
-    EXPECT_NE(session().build().job.record.settings.find("--strategy bounces"), std::string::npos);
+    EXPECT_NE(session().build().job.header.settings.find("--strategy bounces"), std::string::npos);
     const double black_sky = change([](Options& options) { options.estimator.strategy.reset(), options.scene.specular = true; });
     const double sky = change([](Options& options) { options.light.background = {1, 2, 3}; });
     EXPECT_EQ(parameters().background, vec3(1, 2, 3));
@@ -219,7 +219,7 @@ TEST_F(ViewerTest, EveryChoiceTakesEffect) {
             const auto& job = session().build().job;
             const std::string said = choice.name + " " + choice.values[i].first,
                               define = choice.define() + " " + choice.values[i].second;
-            EXPECT_EQ(job.record.settings.find(said) != std::string::npos, i > 0) << said;
+            EXPECT_EQ(job.header.settings.find(said) != std::string::npos, i > 0) << said;
             EXPECT_EQ(std::ranges::count(job.estimator.defines, define), i > 0) << define;
         }
 }

@@ -228,7 +228,3 @@ def pictures(program, points, settings, seed, batch, repeats=1):
             sights.append(seen)
     return sights
 
-
-def measure(*those, **others):
-    """The same, with all pictures of a point averaged: a list of Sight."""
-    return [together(sights) for sights in pictures(*those, **others)]

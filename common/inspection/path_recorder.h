@@ -44,8 +44,7 @@ struct RecordedPath {
 class PathRecorder {
   public:
     // Device and acceleration structure must outlive it. Throws UserError if the estimator does not compile.
-    PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
-                 uvec2 image_size);
+    PathRecorder(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator, uvec2 image_size);
 
     // Records the sample with this index (counted from first_sample), for the constructor's image size. Its values are those of a
     // render with these parameters on the same backend. Throws StuckLoop as Renderer::advance() does.

@@ -1,4 +1,4 @@
-#include "inside/projection.h"
+#include "inspection/projection.h"
 
 namespace lab {
 

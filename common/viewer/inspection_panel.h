@@ -1,6 +1,6 @@
 // The inside view: live verdict, tiles, a pixel's path, and what its vertices see.
 #pragma once
-#include "inside/hemisphere_view.h"
+#include "inspection/hemisphere_view.h"
 #include "viewer/session.h"
 #include "viewer/tile_overlay.h"
 
@@ -39,7 +39,7 @@ class Inspection {
     struct Tools {
         std::shared_ptr<const Scene> scene;
         std::shared_ptr<const GpuScene> gpu_scene;
-        std::shared_ptr<const AccelerationStructure> acceleration_structure;
+        std::shared_ptr<const SceneBackend> scene_backend;
         Estimator estimator;
         uint64_t hash;  // of what they are compiled from
         uvec2 image_size;
@@ -60,9 +60,9 @@ class Inspection {
     bool has_hemisphere_ = false;
 };
 
-class InsidePanel {
+class InspectionPanel {
   public:
-    explicit InsidePanel(const Device& device) : inspection_(device) {}
+    explicit InspectionPanel(const Device& device) : inspection_(device) {}
 
     // Draws over the picture, and a panel for the path of a selected pixel. Renders hemispheres for about this many seconds. Call
     // between Screen::begin_frame() and Screen::show().

@@ -2,7 +2,7 @@
 #pragma once
 #include <imgui.h>
 
-#include "inside/path_recorder.h"
+#include "inspection/path_recorder.h"
 #include "viewer/screen.h"
 
 namespace lab {

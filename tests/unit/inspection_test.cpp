@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "inside/projection.h"
-#include "inside/recording_calls.h"
+#include "inspection/projection.h"
+#include "inspection/recording_calls.h"
 #include "scene/scene.h"
 
 namespace lab {

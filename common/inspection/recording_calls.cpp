@@ -1,4 +1,4 @@
-#include "inside/recording_calls.h"
+#include "inspection/recording_calls.h"
 
 #include <cctype>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "viewer/inside_panel.h"
+#include "viewer/inspection_panel.h"
 
 #include <imgui.h>
 
@@ -10,7 +10,7 @@
 #include "rendering/settings.h"
 #include "statistics/error_metrics.h"
 #include "tracing/limited_loops.h"
-#include "viewer/inside_drawing.h"
+#include "viewer/inspection_drawing.h"
 #include "viewer/text.h"
 
 namespace lab {
@@ -32,13 +32,13 @@ void text_point(const char* name, const vec3& v) { text_vector("%s (%.3g, %.3g, 
 
 }  // namespace
 
-int InsidePanel::height() const {
+int InspectionPanel::height() const {
     if (!inspection_.selection()) return 0;
     return static_cast<int>(17 * ImGui::GetFontSize() * ImGui::GetIO().DisplayFramebufferScale.y);
 }
 
-void InsidePanel::draw(const Session& session, const Session* beside, float split, const Rectangle& picture,
-                       const Rectangle& panel, double seconds) {
+void InspectionPanel::draw(const Session& session, const Session* beside, float split, const Rectangle& picture,
+                           const Rectangle& panel, double seconds) {
     select_clicked_pixel(session, split, picture);
     const Session& inspected = is_beside_ && beside ? *beside : session;
     inspection_.update(inspected, seconds);
@@ -51,7 +51,7 @@ void InsidePanel::draw(const Session& session, const Session* beside, float spli
     if (inspection_.selection() && panel.size.y > 0) draw_panel(whose, panel);
 }
 
-void InsidePanel::draw_panel(const std::string& whose, const Rectangle& panel) {
+void InspectionPanel::draw_panel(const std::string& whose, const Rectangle& panel) {
     const Placement placement(panel);
     ImGui::SetNextWindowPos({placement.corner.x, placement.corner.y});
     ImGui::SetNextWindowSize({placement.size.x, placement.size.y});
@@ -82,7 +82,7 @@ void InsidePanel::draw_panel(const std::string& whose, const Rectangle& panel) {
     if (!is_open) inspection_.deselect();
 }
 
-void InsidePanel::draw_controls(Session& session) {
+void InspectionPanel::draw_controls(Session& session) {
     ImGui::Separator();
     draw_verdict(session);
     if (const auto& settings = session.settings_for_verdict()) {
@@ -99,7 +99,7 @@ void InsidePanel::draw_controls(Session& session) {
     if (!overlay_.legend().empty()) ImGui::TextWrapped("%s", overlay_.legend().c_str());
 }
 
-void InsidePanel::select_clicked_pixel(const Session& session, float split, const Rectangle& picture) {
+void InspectionPanel::select_clicked_pixel(const Session& session, float split, const Rectangle& picture) {
     const ImGuiIO& io = ImGui::GetIO();
     const glm::uvec2 size = session.build().job.parameters.image_size;
     const Placement placement(picture);
@@ -119,7 +119,7 @@ void InsidePanel::select_clicked_pixel(const Session& session, float split, cons
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) inspection_.deselect();
 }
 
-void InsidePanel::draw_verdict(const Session& session) {
+void InspectionPanel::draw_verdict(const Session& session) {
     const VerdictState state = session.verdict_state();
     std::string text = session.verdict_text();
     if (session.has_moved()) text += "\nF: back to the first camera";
@@ -137,7 +137,7 @@ void InsidePanel::draw_verdict(const Session& session) {
                           LiveVerdict::default_false_alarms);
 }
 
-void InsidePanel::draw_pixel(const Session& session) {
+void InspectionPanel::draw_pixel(const Session& session) {
     const std::optional<Inspection::Selection>& selection = inspection_.selection();
     const FilmImage& film = session.last_snapshot();
     const std::optional<glm::uvec2> pixel = hovered_ ? hovered_ : selection ? std::optional(selection->pixel) : std::nullopt;
@@ -155,7 +155,7 @@ void InsidePanel::draw_pixel(const Session& session) {
     if (!selection) ImGui::TextColored(grey, "click: follow a path; right click: leave it");
 }
 
-void InsidePanel::draw_sample() {
+void InspectionPanel::draw_sample() {
     auto& selection = *inspection_.selection();
     const RecordedPath& path = *inspection_.path();
     // Buttons first, so that changing numbers do not move them.
@@ -166,7 +166,7 @@ void InsidePanel::draw_sample() {
     text_colour("this sample's radiance", path.radiance);
 }
 
-void InsidePanel::draw_vertices() {
+void InspectionPanel::draw_vertices() {
     auto& selection = *inspection_.selection();
     const RecordedPath& path = *inspection_.path();
     if (!path.is_complete) ImGui::TextColored(red, "too long to be shown as a whole");
@@ -201,7 +201,7 @@ void InsidePanel::draw_vertices() {
     }
 }
 
-void InsidePanel::draw_hemisphere() {
+void InspectionPanel::draw_hemisphere() {
     if (!inspection_.has_hemisphere()) {
         ImGui::TextColored(grey, "no hemisphere: glass, or beyond the scene");
         return;
@@ -269,19 +269,19 @@ bool Inspection::have_tools(const Session& session) {
     for (const auto& define : estimator.defines) hash = hash_text(define + "\n", hash);
     const auto wanted = std::make_shared<Tools>(Tools{.scene = build.job.scene,
                                                       .gpu_scene = build.gpu_scene,
-                                                      .acceleration_structure = build.acceleration_structure,
+                                                      .scene_backend = build.scene_backend,
                                                       .estimator = estimator,
                                                       .hash = hash,
                                                       .image_size = build.job.parameters.image_size});
-    if (tools_ && tools_->acceleration_structure == wanted->acceleration_structure && tools_->hash == hash &&
+    if (tools_ && tools_->scene_backend == wanted->scene_backend && tools_->hash == hash &&
         tools_->image_size == wanted->image_size)
         return true;
     if (hash == failed_hash_) return false;
     work_hash_ = hash;
     work_.start([&device = device_, wanted] {
-        const AccelerationStructure& structure = *wanted->acceleration_structure;
-        wanted->recorder = std::make_unique<PathRecorder>(device, structure, wanted->estimator, wanted->image_size);
-        wanted->hemisphere = std::make_unique<HemisphereView>(device, structure, wanted->estimator);
+        const SceneBackend& scene_backend = *wanted->scene_backend;
+        wanted->recorder = std::make_unique<PathRecorder>(device, scene_backend, wanted->estimator, wanted->image_size);
+        wanted->hemisphere = std::make_unique<HemisphereView>(device, scene_backend, wanted->estimator);
         return wanted;
     });
     return false;

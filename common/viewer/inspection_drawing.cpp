@@ -1,9 +1,9 @@
-#include "viewer/inside_drawing.h"
+#include "viewer/inspection_drawing.h"
 
 #include <cmath>
 
-#include "inside/hemisphere_view.h"
-#include "inside/projection.h"
+#include "inspection/hemisphere_view.h"
+#include "inspection/projection.h"
 
 namespace lab {
 namespace {

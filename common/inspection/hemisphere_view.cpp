@@ -1,4 +1,4 @@
-#include "inside/hemisphere_view.h"
+#include "inspection/hemisphere_view.h"
 
 #include "files/project_folder.h"
 #include "shaders/observation/shading_point.h"
@@ -31,10 +31,9 @@ Image cut(const Image& image, uint32_t left, uint32_t width) {
 
 }  // namespace
 
-HemisphereView::HemisphereView(const Device& device, const AccelerationStructure& acceleration_structure,
-                               const Estimator& estimator)
+HemisphereView::HemisphereView(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator)
     : point_(device, sizeof(ShadingPoint), vk::BufferUsageFlagBits::eStorageBuffer),
-      renderer_(device, acceleration_structure, hemisphere_estimator(estimator), with_size({}),
+      renderer_(device, scene_backend, hemisphere_estimator(estimator), with_size({}),
                 std::vector{storage_binding(BINDING_SHADING_POINT, point_)}) {}
 
 void HemisphereView::look_at(const PathVertex& vertex, const RenderParameters& parameters) {

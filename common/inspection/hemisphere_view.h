@@ -1,6 +1,6 @@
 // What a shading point sees: the factors of the rendering equation's integrand over its hemisphere.
 #pragma once
-#include "inside/path_recorder.h"
+#include "inspection/path_recorder.h"
 #include "rendering/renderer.h"
 
 namespace lab {
@@ -12,7 +12,7 @@ class HemisphereView {
     static constexpr uint32_t extent = 128;  // width and height of a picture in pixels
 
     // Device and acceleration structure must outlive it. Throws UserError if the estimator does not compile.
-    HemisphereView(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator);
+    HemisphereView(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator);
 
     // Restarts at a vertex of a path, seen from where the path came. `parameters` are those of the render.
     void look_at(const PathVertex& vertex, const RenderParameters& parameters);

@@ -8,15 +8,15 @@
 namespace lab {
 namespace {
 
-class InsideTest : public ViewerTest {
+class InspectionTest : public ViewerTest {
   protected:
-    const Inspection& inspection() const { return viewer_->inside_panel().inspection(); }
+    const Inspection& inspection() const { return viewer_->inspection_panel().inspection(); }
     void wait_for_verdict() {
         wait_until("a verdict", [&] { return session().latest_verdict() != nullptr; });
     }
 };
 
-TEST_F(InsideTest, TheVerdictFollowsTheShader) {
+TEST_F(InspectionTest, TheVerdictFollowsTheShader) {
     // A private chapter, so that the sources stay untouched.
     const fs::path shader = folder_.path() / "path_trace.glsl";
     const std::string good = text_of(project_folder() / "chapters" / chapter_.name / "path_trace.glsl");
@@ -71,7 +71,7 @@ TEST_F(InsideTest, TheVerdictFollowsTheShader) {
     wait_until("unbiased", [&] { return session().latest_verdict() && !session().latest_verdict()->is_biased; });
 }
 
-TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {
+TEST_F(InspectionTest, WhereThereIsNoReferenceItSaysWhy) {
     open(options_with_reference());
     wait_for_verdict();
     hold(GLFW_KEY_W, 2);
@@ -85,7 +85,7 @@ TEST_F(InsideTest, WhereThereIsNoReferenceItSaysWhy) {
     wait_for_verdict();
 }
 
-TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
+TEST_F(InspectionTest, AClickFollowsAPathAndADragDoesNot) {
     open(options_with_reference());
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
     drag({500, 400}, {520, 400});
@@ -113,7 +113,7 @@ TEST_F(InsideTest, AClickFollowsAPathAndADragDoesNot) {
     wait_until("the hemisphere", [&] { return inspection().hemisphere().samples() >= 2; });
 }
 
-TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_all) {
+TEST_F(InspectionTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_all) {
     chapter_ = load_chapter(chapter_named("multiple_importance_sampling"));
     Options options = options_with_reference();
     options.appearance.sample_count = 1;
@@ -141,7 +141,7 @@ TEST_F(InsideTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_a
     expect_the_sample_of_the_render("a background");
 }
 
-TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage_all) {
+TEST_F(InspectionTest, TwoChaptersBesideEachOtherShowTheSameImage_all) {
     open(options_with_reference());
     Comparison& comparison = viewer_->comparison();
     comparison.start(session(), chapter_named("next_event_estimation"));
@@ -172,7 +172,7 @@ TEST_F(InsideTest, TwoChaptersBesideEachOtherShowTheSameImage_all) {
     EXPECT_FALSE(session().waits);
 }
 
-TEST_F(InsideTest, AClickFollowsAPathOfTheRenderThatIsShownThere) {
+TEST_F(InspectionTest, AClickFollowsAPathOfTheRenderThatIsShownThere) {
     open(options_with_reference());
     Comparison& comparison = viewer_->comparison();
     comparison.start(session(), chapter_named("uniform_sampling"));
@@ -193,7 +193,7 @@ TEST_F(InsideTest, AClickFollowsAPathOfTheRenderThatIsShownThere) {
     wait_until("the path of the render that is left", [&] { return inspection().path().has_value(); });
 }
 
-TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
+TEST_F(InspectionTest, AChapterThatCannotRenderTheSceneIsRefused) {
     Options options = make_options();
     options.scene.file = scenes / "glass.json";
     chapter_ = load_chapter(chapter_named("dielectrics"));
@@ -207,7 +207,7 @@ TEST_F(InsideTest, AChapterThatCannotRenderTheSceneIsRefused) {
 }
 
 // At common screen sizes.
-TEST_F(InsideTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
+TEST_F(InspectionTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
     open(options_with_reference(), {900, 700});
     // A point of the picture, 0 to 1, in pointer coordinates.
     const auto point_of_picture = [&](const vec2& position) {

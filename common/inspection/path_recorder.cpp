@@ -1,4 +1,4 @@
-#include "inside/path_recorder.h"
+#include "inspection/path_recorder.h"
 
 #include <algorithm>
 #include <cstring>
@@ -6,7 +6,7 @@
 #include <map>
 
 #include "files/project_folder.h"
-#include "inside/recording_calls.h"
+#include "inspection/recording_calls.h"
 #include "shaders/observation/recorded_path.h"
 #include "tracing/limited_loops.h"
 
@@ -160,8 +160,7 @@ Estimator recording(const Estimator& estimator) {
             }};
 }
 
-PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& acceleration_structure, const Estimator& estimator,
-                           uvec2 image_size)
+PathRecorder::PathRecorder(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator, uvec2 image_size)
     : estimator_(estimator),
       // The samples go into a single row of blocks, wherever the pixel is in the image.
       film_(device, image_size.x, BLOCK_HEIGHT),
@@ -171,7 +170,7 @@ PathRecorder::PathRecorder(const Device& device, const AccelerationStructure& ac
     const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                         storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
                                         storage_binding(BINDING_RECORDED_PATH, events_)};
-    tracer_ = acceleration_structure.make_tracer(recording(estimator), bindings);
+    tracer_ = scene_backend.make_tracer(recording(estimator), bindings);
 }
 
 RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample) {
