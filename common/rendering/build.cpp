@@ -1,5 +1,7 @@
 #include "rendering/build.h"
 
+#include <functional>
+
 #include "rendering/render_job.h"
 #include "rendering/settings.h"
 
@@ -15,11 +17,12 @@ void record_device(RenderJob& job, const std::string& device, const std::string&
 }  // namespace
 
 BuildStage first_difference(const Options& before, const Options& options) {
-    if (before.scene != options.scene) return BuildStage::scene;
+    const auto differs = [&](auto part) { return std::invoke(part, before) != std::invoke(part, options); };
     const auto samples_lights = [](const Options& o) { return o.estimator.strategy != Strategy::bounces; };
-    if (samples_lights(before) != samples_lights(options)) return BuildStage::gpu_scene;
-    if (before.estimator != options.estimator || before.image != options.image || asks_for_sky(before) != asks_for_sky(options))
-        return BuildStage::renderer;
+    if (differs(&Options::scene)) return BuildStage::scene;
+    if (differs(samples_lights)) return BuildStage::gpu_scene;
+    if (differs(&Options::estimator) || differs(&Options::image) || differs(asks_for_sky)) return BuildStage::renderer;
+    if (differs(&Options::camera) || differs(&Options::light) || differs(&Options::samples)) return BuildStage::samples;
     return BuildStage::nothing;
 }
 
@@ -27,6 +30,7 @@ Options keep_built(const Options& built, Options options) {
     options.scene = built.scene;
     options.estimator = built.estimator;
     options.image = built.image;
+    if (asks_for_sky(options) != asks_for_sky(built)) options.light.background = built.light.background;
     return options;
 }
 

@@ -13,13 +13,13 @@ struct Build {
     std::unique_ptr<Renderer> renderer;
 };
 
-// What has to be rebuilt. Each stage includes all that follow.
-enum class BuildStage { scene, gpu_scene, renderer, nothing };
+// What changed options ask for: to load and build from this stage on, only to begin with new samples, or nothing.
+enum class BuildStage { scene, gpu_scene, renderer, samples, nothing };
 
-// The first stage that must be rebuilt to go from the options `before` to these.
+// The first stage that must be repeated to go from the options `before` to these.
 BuildStage first_difference(const Options& before, const Options& options);
 
-// `options`, but with everything that would need a rebuild taken from `built`.
+// `options`, but with everything that comes before new samples taken from `built`.
 Options keep_built(const Options& built, Options options);
 
 // Builds from stage `first` on and takes earlier stages from `before`, which is null if `first` is the scene. A resumed render

@@ -5,70 +5,46 @@
 #include <cmath>
 
 #include "error.h"
-#include "files/file.h"
 #include "rendering/outputs.h"
 #include "rendering/settings.h"
 #include "tracing/limited_loops.h"
 
 namespace lab {
-namespace {
-
-// Whether a render can continue under the other options.
-bool has_same_samples(const Options& a, const Options& b) {
-    return a.samples == b.samples && a.camera == b.camera && a.light == b.light;
-}
-
-}  // namespace
-
 Session::Session(const Device& device, Chapter chapter, std::unique_ptr<WindowBuild> first_build)
     : device_(device),
       chapter_(std::move(chapter)),
-      options_(first_build->job.options),
-      first_options_(options_),
+      first_options_(first_build->job.options),
+      wanted_(first_options_),
       build_(std::move(first_build)),
-      needs_restart_(!build_->job.resumed) {
-    watched_shaders_ = build_->shader_files;
-    shader_hash_ = build_->shader_hash;
-}
+      shaders_(build_->shader_files, build_->shader_hash),
+      needs_restart_(!build_->job.resumed) {}
 
-CameraPose Session::camera() const { return camera_of(*build_->job.scene, options_); }
+CameraPose Session::camera() const { return camera_of(*build_->job.scene, wanted_); }
 
-vec3 Session::background() const { return background_of(*build_->job.scene, options_); }
+vec3 Session::background() const { return background_of(*build_->job.scene, wanted_); }
 
-void Session::change(const Options& options) {
-    if (!has_same_samples(options_, options)) needs_restart_ = true;
-    options_ = options;
-}
-
-void Session::set_camera(const CameraPose& pose) {
-    Options options = options_;
-    options.camera = {pose.position, pose.target, pose.up, pose.vertical_fov};
-    change(options);
-}
+void Session::set_camera(const CameraPose& pose) { wanted_.camera = {pose.position, pose.target, pose.up, pose.vertical_fov}; }
 
 // Flags apply to the scene on the command line only.
 CameraOptions Session::first_camera() const {
-    return options_.scene.file == first_options_.scene.file ? first_options_.camera : CameraOptions{};
-}
-
-void Session::reset_camera() {
-    Options options = options_;
-    options.camera = first_camera();
-    change(options);
+    return wanted_.scene.file == first_options_.scene.file ? first_options_.camera : CameraOptions{};
 }
 
 void Session::open_scene(const std::filesystem::path& file) {
-    options_.scene.file = file;
-    options_.camera = {};
-    options_.light.background.reset();
+    wanted_.scene.file = file;
+    wanted_.camera = {};
+    wanted_.light.background.reset();
     reloads_scene_ = true;
 }
 
 void Session::update(double dispatch_seconds, bool is_moving) {
-    look_for_changed_shaders();
+    const bool had_failed = shaders_.have_failed();
+    shaders_.look([&] { return shader_files(make_estimator(chapter_, wanted_)); });
+    if (had_failed && !shaders_.have_failed()) message_.clear();
     adopt_finished_build();
     start_build_if_needed();
-    if (needs_restart_ && !is_loading_scene())
+    const Options& shown = build_->job.options;
+    if ((needs_restart_ || first_difference(shown, keep_built(shown, wanted_)) == BuildStage::samples) && !is_loading_scene())
         begin(find_reduction(dispatch_seconds));
     else if (reduction_ > 1 && !is_moving && build_->renderer->samples() >= 1)
         begin(1);
@@ -84,32 +60,15 @@ void Session::update(double dispatch_seconds, bool is_moving) {
     }
 }
 
-void Session::look_for_changed_shaders() {
-    constexpr double interval = 0.1;
-    if (seconds_since(last_look_) < interval) return;
-    last_look_ = Clock::now();
-    if (failed_shader_hash_ != 0) try {
-            // The broken shader may include other files than the last good one.
-            watched_shaders_ = shader_files(make_estimator(chapter_, options_));
-        } catch (const UserError&) {
-            // A file is missing: the message already says so.
-        }
-    if (const uint64_t hash = hash_of(watched_shaders_); hash != 0) shader_hash_ = hash;
-    if (failed_shader_hash_ != 0 && shader_hash_ == build_->shader_hash) {
-        failed_shader_hash_ = 0;
-        message_.clear();
-    }
-}
-
 void Session::start_build_if_needed() {
     if (is_building()) return;
-    work_stage_ = reloads_scene_ ? BuildStage::scene : first_difference(build_->job.options, options_);
+    work_stage_ = reloads_scene_ ? BuildStage::scene : first_difference(build_->job.options, wanted_);
     BuildStage first = work_stage_;
-    if (shader_hash_ != build_->shader_hash && shader_hash_ != failed_shader_hash_) first = std::min(first, BuildStage::renderer);
-    if (first == BuildStage::nothing) return;
+    if (shaders_.have_changed()) first = std::min(first, BuildStage::renderer);
+    if (first >= BuildStage::samples) return;
     reloads_scene_ = false;
-    work_shader_hash_ = shader_hash_;
-    Options options = options_;
+    work_shader_hash_ = shaders_.hash();
+    Options options = wanted_;
     options.run.resume.clear();
     work_.start([this, options, first, before = build_.get()] {
         auto scene = before->job.scene;
@@ -126,9 +85,7 @@ void Session::adopt_finished_build() {
         return take_back(window_message(error));
     }
     message_.clear();
-    failed_shader_hash_ = 0;
-    watched_shaders_ = build_->shader_files;
-    shader_hash_ = build_->shader_hash;
+    shaders_ = {build_->shader_files, build_->shader_hash};
     paths_per_second_ = 0;
     needs_restart_ = true;
 }
@@ -136,9 +93,8 @@ void Session::adopt_finished_build() {
 void Session::take_back(const std::string& why) {
     message_ = why;
     // Blame the shaders only if nothing else changed and they are still the compiled ones.
-    if (work_stage_ == BuildStage::nothing && hash_of(watched_shaders_) == work_shader_hash_)
-        failed_shader_hash_ = work_shader_hash_;
-    options_ = build_->job.options;
+    if (work_stage_ >= BuildStage::samples) shaders_.blame(work_shader_hash_);
+    wanted_ = build_->job.options;
 }
 
 void Session::begin(uint32_t reduction) {
@@ -146,9 +102,9 @@ void Session::begin(uint32_t reduction) {
     if (std::exchange(is_stuck_, false)) message_.clear();
     const Options before = build_->job.options;
     try {
-        set_options(build_->job, chapter_, keep_built(before, options_));
+        set_options(build_->job, chapter_, keep_built(before, wanted_));
     } catch (const UserError& error) {
-        options_ = before;
+        wanted_ = before;
         message_ = error.what();
         set_options(build_->job, chapter_, before);
     }
@@ -158,7 +114,6 @@ void Session::begin(uint32_t reduction) {
     build_->renderer->restart(parameters);
     seconds_ = 0;
     snapshot_ = {};
-    snapshot_error_.reset();
     verdict_ = find_verdict();
     verdict_settings_.reset();
     const RenderJob& job = build_->job;
@@ -167,11 +122,9 @@ void Session::begin(uint32_t reduction) {
 }
 
 void Session::change_for_verdict() {
-    Options options = options_;
-    options.light.max_path_length = verdict_settings_->max_path_length;
-    options.image.width = verdict_settings_->image_size.x;
-    options.image.height = verdict_settings_->image_size.y;
-    change(options);
+    wanted_.light.max_path_length = verdict_settings_->max_path_length;
+    wanted_.image.width = verdict_settings_->image_size.x;
+    wanted_.image.height = verdict_settings_->image_size.y;
 }
 
 // Starts a live verdict, or says why there is none.
@@ -190,7 +143,7 @@ std::variant<LiveVerdict, std::string> Session::find_verdict() const {
 
 VerdictState Session::verdict_state() const {
     if (!latest_verdict()) return VerdictState::none;
-    if (failed_shader_hash_ != 0) return VerdictState::outdated;
+    if (shaders_.have_failed()) return VerdictState::outdated;
     return latest_verdict()->is_biased ? VerdictState::biased : VerdictState::agrees;
 }
 
@@ -245,20 +198,20 @@ void Session::take_snapshots(uint32_t samples, double seconds) {
     FilmImage film = build_->renderer->film().read();
     if (is_for_verdict) live_verdict->add(film);
     if (!is_for_error) return;
-    if (const auto error = estimate_error(film)) snapshot_error_ = error->rel_rmse;
-    snapshot_ = std::move(film);
-    snapshot_header_ = header(seconds);
+    if (const auto error = estimate_error(film)) snapshot_.relative_error = error->rel_rmse;
+    snapshot_.film = std::move(film);
+    snapshot_.header = header(seconds);
 }
 
 uint32_t Session::target_samples() const {
-    return options_.appearance.sample_count.value_or(UINT32_MAX - build_->job.header.first_sample);
+    return wanted_.appearance.sample_count.value_or(UINT32_MAX - build_->job.header.first_sample);
 }
 
 double Session::samples() const { return reduction_ == 1 ? build_->renderer->samples() : 0; }
 
 std::optional<double> Session::relative_error() const {
-    if (!snapshot_error_ || samples() <= 0) return std::nullopt;
-    return *snapshot_error_ * std::sqrt(snapshot_.min_samples() / samples());
+    if (!snapshot_.relative_error || samples() <= 0) return std::nullopt;
+    return *snapshot_.relative_error * std::sqrt(snapshot_.film.min_samples() / samples());
 }
 
 void Session::save(const std::vector<std::filesystem::path>& files) {
@@ -272,7 +225,7 @@ void Session::save(const std::vector<std::filesystem::path>& files) {
 
 void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmHeader& header) const {
     Options options = build_->job.options;
-    options.appearance = options_.appearance;
+    options.appearance = wanted_.appearance;
     write_each(files, [&](const std::filesystem::path& file) { write_picture(file, film, header, options); });
 }
 
@@ -284,17 +237,7 @@ FilmHeader Session::header(double seconds) const {
 }
 
 void Session::keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const {
-    write_after_failure(error, snapshot_, [&] { write(files, snapshot_, snapshot_header_); });
-}
-
-uint64_t hash_of(const std::set<std::filesystem::path>& files) {
-    uint64_t hash = 0;
-    try {
-        for (const auto& file : files) hash = hash_text(read_file(file, max_shader_bytes), hash + 1);
-    } catch (const UserError&) {
-        return 0;
-    }
-    return hash;
+    write_after_failure(error, snapshot_.film, [&] { write(files, snapshot_.film, snapshot_.header); });
 }
 
 std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job, BuildStage first,

@@ -1,6 +1,5 @@
 // A render in a window, which the user may change at any time.
 #pragma once
-#include <set>
 #include <variant>
 
 #include "clock.h"
@@ -9,12 +8,13 @@
 #include "statistics/live_verdict.h"
 #include "viewer/background_work.h"
 #include "viewer/screen.h"
+#include "viewer/watched_shaders.h"
 
 namespace lab {
 
 // A build and its display pass, made in the background because it takes long.
 struct WindowBuild : Build {
-    std::set<std::filesystem::path> shader_files;
+    ShaderFiles shader_files;
     uint64_t shader_hash = 0;  // of their contents
     std::unique_ptr<DisplayPass> display;
 };
@@ -22,9 +22,6 @@ struct WindowBuild : Build {
 // Calls make_build() and adds a pass that displays the film.
 std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapter& chapter, RenderJob job,
                                                BuildStage first = BuildStage::scene, const WindowBuild* before = nullptr);
-
-// Hash of the contents of all files; 0 if one cannot be read, such as while an editor replaces it.
-uint64_t hash_of(const std::set<std::filesystem::path>& files);
 
 // State of the live verdict. Outdated: the shader does not compile, so the previous one is being rendered.
 enum class VerdictState { none, agrees, biased, outdated };
@@ -36,17 +33,17 @@ class Session {
 
     const Chapter& chapter() const { return chapter_; }
     const WindowBuild& build() const { return *build_; }
-    // The requested options: those of the render unless a build is in progress.
-    const Options& options() const { return options_; }
+    // What is wanted. build().job.options is what is shown, and follows at the next update(), or when a build is done.
+    const Options& options() const { return wanted_; }
     CameraPose camera() const;
     vec3 background() const;
 
-    // Changes options. Parameters take effect at the next update(); anything that needs a build is built in the background while
-    // the picture stays. Impossible changes are reverted, and message() says why.
-    void change(const Options& options);
+    // Changes what is wanted. Parameters take effect at the next update(); anything that needs a build is built in the background
+    // while the picture stays. Impossible changes are reverted, and message() says why.
+    void change(const Options& options) { wanted_ = options; }
     void set_camera(const CameraPose& pose);
-    void reset_camera();  // to the initial one
-    bool has_moved() const { return options_.camera != first_camera(); }
+    void reset_camera() { wanted_.camera = first_camera(); }
+    bool has_moved() const { return wanted_.camera != first_camera(); }
     void open_scene(const std::filesystem::path& file);  // with its own camera and background
     void restart() { needs_restart_ = true; }
 
@@ -60,7 +57,7 @@ class Session {
     // Whether the session can end without waiting for a build.
     bool can_end() const { return !is_building() || work_.is_done(); }
     // Whether another scene is being loaded, although camera and background are already the new ones.
-    bool is_loading_scene() const { return reloads_scene_ || options_.scene.file != build_->job.options.scene.file; }
+    bool is_loading_scene() const { return reloads_scene_ || wanted_.scene.file != build_->job.options.scene.file; }
     const std::string& message() const { return message_; }  // the last failure, or empty
     // Whether rendering has ended because of a loop that does not. It is tried again after any change.
     bool is_stuck() const { return is_stuck_; }
@@ -86,13 +83,12 @@ class Session {
 
     // Writes the current picture in the formats given by the files' extensions.
     void save(const std::vector<std::filesystem::path>& files);
-    const FilmImage& last_snapshot() const { return snapshot_; }
+    const FilmImage& last_snapshot() const { return snapshot_.film; }
     // After a failure: calls write_after_failure() with the last snapshot.
     [[noreturn]] void keep_snapshot_after(const std::exception& error, const std::vector<std::filesystem::path>& files) const;
 
   private:
     CameraOptions first_camera() const;
-    void look_for_changed_shaders();
     void start_build_if_needed();
     void adopt_finished_build();
     void begin(uint32_t reduction);
@@ -104,19 +100,23 @@ class Session {
     uint32_t find_reduction(double seconds) const;
     void take_back(const std::string& why);
 
+    // A picture that was read back, at the last power of two of its samples.
+    struct Snapshot {
+        FilmImage film;
+        FilmHeader header;
+        std::optional<double> relative_error;
+    };
+
     const Device& device_;
     const Chapter chapter_;
-    Options options_;
     const Options first_options_;
-    std::unique_ptr<WindowBuild> build_;
+    Options wanted_;
+    std::unique_ptr<WindowBuild> build_;  // what is shown
     BackgroundWork<std::unique_ptr<WindowBuild>> work_;
     BuildStage work_stage_ = BuildStage::nothing;  // of the build in progress, apart from changed shaders
+    uint64_t work_shader_hash_ = 0;                // at its start
     bool reloads_scene_ = false;                   // even if its name is the same
-    std::set<std::filesystem::path> watched_shaders_;
-    uint64_t shader_hash_ = 0;         // of their contents, at the last check
-    uint64_t work_shader_hash_ = 0;    // at the start of the build in progress
-    uint64_t failed_shader_hash_ = 0;  // contents that did not compile; 0 if the last ones did
-    Clock::time_point last_look_{};
+    WatchedShaders shaders_;
     std::string message_;
 
     bool needs_restart_ = true;
@@ -124,11 +124,9 @@ class Session {
     uint32_t reduction_ = 1;
     double paths_per_second_ = 0;  // camera paths, measured
     double seconds_ = 0;
-    FilmImage snapshot_;  // at the last power of two
-    FilmHeader snapshot_header_;
+    Snapshot snapshot_;
     std::variant<LiveVerdict, std::string> verdict_ = "the render goes on from an earlier one";
     std::optional<VerdictSettings> verdict_settings_;
-    std::optional<double> snapshot_error_;
 };
 
 }  // namespace lab
