@@ -66,7 +66,7 @@ class HeadlessRender {
             if (!difference.empty() && !options_.quiet)
                 std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(), difference.c_str());
         }
-        take_snapshot();
+        if (job_.resumed) take_snapshot();
     }
 
     void run() {
@@ -192,11 +192,7 @@ class HeadlessRender {
         });
     }
 
-    double paths() const {
-        double paths = 0;
-        for (const auto& pixel : snapshot_.pixels) paths += pixel.sample_count;
-        return paths;
-    }
+    double paths() const { return static_cast<double>(snapshot_.sum(&FilmPixel::sample_count)); }
 
     std::string invalid_samples_text() const {
         return std::to_string(snapshot_.invalid_samples()) + " of " + short_number(paths()) +
@@ -207,7 +203,8 @@ class HeadlessRender {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = header_.seconds - job_.header.seconds;
         const bool shows_radiance = !job_.options.image.view;
-        const std::optional<ErrorMetrics> error = find_error();
+        const bool is_last_row = !rows_.empty() && rows_.back().rays == header_.rays;
+        const std::optional<ErrorMetrics> error = is_last_row ? rows_.back().error : find_error();
         // Pixels are independent. Against a reference the error would include bias.
         const bool is_spread = error && !reference_;
         std::printf("%-15s%.5g %.5g %.5g", shows_radiance ? "mean radiance" : "mean", mean[0], mean[1], mean[2]);

@@ -43,13 +43,14 @@ fs::path temporary_name(const fs::path& file) {
 
 // Whether all bytes were written: a full disk may show only on flush or close. The file gets the mode of the one that it will
 // replace, if there is one.
-bool write_bytes(const fs::path& file, const fs::path& replaced, std::string_view bytes) {
+bool write_bytes(const fs::path& file, const fs::path& replaced, std::span<const std::string_view> parts) {
     std::FILE* stream = std::fopen(file.string().c_str(), "wb");
     if (!stream) return false;
     std::error_code ignored;
     const fs::file_status status = fs::status(replaced, ignored);
     if (fs::exists(status)) fs::permissions(file, status.permissions(), ignored);
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
+    const bool written = std::ranges::all_of(
+        parts, [&](std::string_view part) { return std::fwrite(part.data(), 1, part.size(), stream) == part.size(); });
     // The contents must reach the disk before the rename, or a power failure could leave an empty file.
     const bool flushed = std::fflush(stream) == 0 && write_to_disk(stream);
     const int error = errno;
@@ -82,10 +83,12 @@ std::string read_file(const fs::path& file, uint64_t max_bytes) {
     return bytes;
 }
 
-void write_file(const fs::path& file, std::string_view bytes) {
+void write_file(const fs::path& file, std::string_view bytes) { write_file(file, {&bytes, 1}); }
+
+void write_file(const fs::path& file, std::span<const std::string_view> parts) {
     const fs::path target = target_of(file), temporary = temporary_name(target);
     std::error_code error;
-    if (!write_bytes(temporary, target, bytes))
+    if (!write_bytes(temporary, target, parts))
         error = {errno, std::generic_category()};
     else
         rename_file(temporary, target, error);
@@ -109,7 +112,7 @@ void check_writable(const fs::path& file, const std::vector<std::string>& ending
         if (error) throw UserError(name + ": its folder cannot be created: " + error.message());
     }
     const fs::path target = target_of(file), temporary = temporary_name(target);
-    const bool writable = write_bytes(temporary, target, "");
+    const bool writable = write_bytes(temporary, target, {});
     const std::string reason = std::strerror(errno);
     fs::remove(temporary, error);
     if (!writable) throw UserError(name + ": cannot be written: " + reason);

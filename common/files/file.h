@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ constexpr uint64_t memory_limit(uint64_t file_size) { return 16 * file_size + (u
 // Writes a temporary file and renames it. If any step fails, throws UserError and leaves an existing file untouched, whose mode
 // is kept. Symbolic links are followed.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
+void write_file(const std::filesystem::path& file, std::span<const std::string_view> parts);  // one after another
 
 // Creates the folders of a file to be written later. Throws UserError if the file has none of the endings or cannot be written.
 // An existing file keeps its contents.

@@ -72,16 +72,21 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
                       {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
                       {"rays", std::to_string(header.rays)}, {"seconds", to_text(header.seconds)}};
     for (const auto& [name, text] : texts) exr.attributes[name] = header.*text;
+    const auto add_channel = [&](const char* name, const auto& value_of) {
+        std::vector<float>& channel = exr.channels[name];
+        channel.resize(image.pixels.size());
+        in_parallel(channel.size(), pixels_per_piece, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) channel[i] = static_cast<float>(value_of(image.pixels[i]));
+        });
+    };
     for (int channel = 0; channel < 3; ++channel)
-        for (const auto& pixel : image.pixels)
-            exr.channels[differences[static_cast<size_t>(channel)]].push_back(
-                to_float(double{pixel.difference[channel]} / std::max(pixel.sample_count, 1u)));
+        add_channel(differences[static_cast<size_t>(channel)], [&](const FilmPixel& pixel) {
+            return to_float(double{pixel.difference[channel]} / std::max(pixel.sample_count, 1u));
+        });
     // Only what exceeds the smallest count, since 32-bit floats hold whole numbers only up to 2^24.
     if (!image.has_equal_sample_counts())
-        for (const auto& pixel : image.pixels)
-            exr.channels["further_samples"].push_back(static_cast<float>(pixel.sample_count - samples));
-    if (image.invalid_samples() > 0)
-        for (const auto& pixel : image.pixels) exr.channels["invalid_samples"].push_back(static_cast<float>(pixel.invalid_count));
+        add_channel("further_samples", [&](const FilmPixel& pixel) { return pixel.sample_count - samples; });
+    if (image.invalid_samples() > 0) add_channel("invalid_samples", [](const FilmPixel& pixel) { return pixel.invalid_count; });
     write_exr(file, exr);
 }
 

@@ -8,8 +8,6 @@
 namespace lab {
 namespace {
 
-constexpr size_t pixels_per_piece = 1 << 16;  // per task of a thread
-
 glm::dvec3 mean_of(const FilmPixel& pixel) { return sum_of(pixel) / static_cast<double>(std::max(pixel.sample_count, 1u)); }
 
 std::array<double, 3> mean_over_pixels(const std::vector<FilmPixel>& pixels, glm::dvec3 (*value_of)(const FilmPixel&)) {
@@ -44,19 +42,23 @@ glm::dvec3 variance_of_mean(const FilmPixel& pixel) {
 }
 
 uint32_t FilmImage::min_samples() const {
-    return pixels.empty() ? 0 : std::ranges::min(pixels, {}, &FilmPixel::sample_count).sample_count;
+    std::vector<uint32_t> minima((pixels.size() + pixels_per_piece - 1) / pixels_per_piece, UINT32_MAX);
+    in_parallel(pixels.size(), pixels_per_piece, [&](size_t begin, size_t end) {
+        uint32_t& minimum = minima[begin / pixels_per_piece];
+        for (size_t i = begin; i < end; ++i) minimum = std::min(minimum, pixels[i].sample_count);
+    });
+    return minima.empty() ? 0 : std::ranges::min(minima);
 }
 
 bool FilmImage::has_equal_sample_counts() const {
-    return std::ranges::all_of(
-        pixels, [&](uint32_t count) { return count == pixels.front().sample_count; }, &FilmPixel::sample_count);
+    return sum(&FilmPixel::sample_count) == uint64_t{min_samples()} * pixels.size();
 }
 
-uint64_t FilmImage::invalid_samples() const {
+uint64_t FilmImage::sum(uint32_t FilmPixel::*count) const {
     return sum_in_parallel<uint64_t>(pixels.size(), [&](size_t begin, size_t end) {
-        uint64_t count = 0;
-        for (size_t i = begin; i < end; ++i) count += pixels[i].invalid_count;
-        return count;
+        uint64_t part = 0;
+        for (size_t i = begin; i < end; ++i) part += pixels[i].*count;
+        return part;
     });
 }
 

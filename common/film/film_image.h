@@ -8,6 +8,8 @@
 
 namespace lab {
 
+inline constexpr size_t pixels_per_piece = 1 << 16;  // per task of a thread
+
 // The sum of a pixel's samples, stored as two floats.
 inline glm::dvec3 sum_of(const FilmPixel& pixel) { return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation); }
 
@@ -23,11 +25,12 @@ struct FilmImage {
     std::vector<FilmPixel> pixels;
 
     bool has_equal_sample_counts() const;
-    uint32_t min_samples() const;                   // smallest count of any pixel
-    uint64_t invalid_samples() const;               // infinite or NaN samples of all pixels
-    Image mean() const;                             // per pixel; 0 without samples
-    std::array<double, 3> mean_radiance() const;    // of the whole image
-    std::array<double, 3> mean_difference() const;  // of the halves, of the whole image
+    uint32_t min_samples() const;                                                // smallest count of any pixel
+    uint64_t sum(uint32_t FilmPixel::*count) const;                              // of all pixels
+    uint64_t invalid_samples() const { return sum(&FilmPixel::invalid_count); }  // infinite or NaN
+    Image mean() const;                                                          // per pixel; 0 without samples
+    std::array<double, 3> mean_radiance() const;                                 // of the whole image
+    std::array<double, 3> mean_difference() const;                               // of the halves, of the whole image
 };
 
 // For messages: "640x480".

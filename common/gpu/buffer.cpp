@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "error.h"
+#include "parallel.h"
 
 namespace lab {
 namespace {
@@ -14,6 +15,13 @@ struct Allocation {
     vk::raii::DeviceMemory memory;
     vk::MemoryPropertyFlags properties;
 };
+
+// One core alone does not copy as fast as memory allows.
+void copy_in_parallel(void* target, const void* source, size_t size) {
+    in_parallel(size, size_t{1} << 22, [&](size_t begin, size_t end) {
+        std::memcpy(static_cast<std::byte*>(target) + begin, static_cast<const std::byte*>(source) + begin, end - begin);
+    });
+}
 
 std::string mebibytes(size_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
 
@@ -108,7 +116,7 @@ vk::DeviceAddress Buffer::address() const { return device_->handle().getBufferAd
 
 void Buffer::write(const void* data, size_t size) {
     if (mapped_) {
-        std::memcpy(mapped_, data, size);
+        copy_in_parallel(mapped_, data, size);
     } else if (size > 0) {
         Buffer staging(*device_, size, {}, Location::host);
         staging.write(data, size);
@@ -120,13 +128,17 @@ void Buffer::write(const void* data, size_t size) {
 
 void Buffer::read(void* data, size_t size) const {
     if (mapped_) {
-        std::memcpy(data, mapped_, size);
+        copy_in_parallel(data, mapped_, size);
     } else if (size > 0) {
-        const Buffer staging(*device_, size, {}, Location::host);
-        device_->submit([&](const vk::raii::CommandBuffer& commands) {
-            commands.copyBuffer(handle(), staging.handle(), vk::BufferCopy(0, 0, size));
-        });
-        staging.read(data, size);
+        // In pieces, since drivers take long to make much memory visible to both sides.
+        const Buffer staging(*device_, std::min(size, size_t{1} << 26), {}, Location::host);
+        for (size_t begin = 0; begin < size; begin += staging.size()) {
+            const size_t piece = std::min(staging.size(), size - begin);
+            device_->submit([&](const vk::raii::CommandBuffer& commands) {
+                commands.copyBuffer(handle(), staging.handle(), vk::BufferCopy(begin, 0, piece));
+            });
+            staging.read(static_cast<std::byte*>(data) + begin, piece);
+        }
     }
 }
 

@@ -48,7 +48,7 @@ std::string compress_block(const std::string& rows) {
     const size_t half = (rows.size() + 1) / 2;
     for (size_t i = 0; i < rows.size(); ++i) split[(i % 2 ? half : 0) + i / 2] = rows[i];
     for (size_t i = split.size(); i-- > 1;) split[i] = static_cast<char>(split[i] - split[i - 1] + 128);
-    std::string packed = compress(split);
+    std::string packed = compress_numbers(split);
     return packed.size() < rows.size() ? packed : rows;
 }
 
@@ -73,15 +73,15 @@ void write_exr(const std::filesystem::path& file, const ExrFile& exr) {
         blocks[begin / rows_per_block] =
             little_endian(static_cast<uint32_t>(begin)) + little_endian(static_cast<uint32_t>(packed.size())) + packed;
     });
-    std::string bytes = header(exr, planes);
-    uint64_t offset = bytes.size() + blocks.size() * sizeof offset;
+    std::string start = header(exr, planes);
+    uint64_t offset = start.size() + blocks.size() * sizeof offset;
     for (const std::string& block : blocks) {
-        bytes += little_endian(offset);
+        start += little_endian(offset);
         offset += block.size();
     }
-    bytes.reserve(offset);
-    for (const std::string& block : blocks) bytes += block;
-    write_file(file, bytes);
+    std::vector<std::string_view> parts(blocks.begin(), blocks.end());
+    parts.insert(parts.begin(), start);
+    write_file(file, parts);
 }
 
 }  // namespace lab

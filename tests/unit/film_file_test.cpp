@@ -32,6 +32,21 @@ TEST(FilmFile, GoesOnWithTheWholeSum) {
         }
 }
 
+TEST(FilmFile, KeepsThePixelsOfALargeImageThatDiffer) {
+    const TestFolder folder;
+    FilmImage film{400, 300, std::vector<FilmPixel>(400 * 300, {vec3(5), vec3(0), vec3(0), 5, 0})};
+    film.pixels[70'000].sample_count = 4;  // threads work on pieces of 65,536
+    film.pixels[119'999].invalid_count = 1;
+    EXPECT_EQ(film.min_samples(), 4u);
+    EXPECT_FALSE(film.has_equal_sample_counts());
+    write_film(folder / "film.exr", film, {});
+    const FilmImage read = read_film(folder / "film.exr").image;
+    for (size_t i = 0; i < film.pixels.size(); ++i) {
+        ASSERT_EQ(read.pixels[i].sample_count, film.pixels[i].sample_count) << i;
+        ASSERT_EQ(read.pixels[i].invalid_count, film.pixels[i].invalid_count) << i;
+    }
+}
+
 TEST(FilmFile, RangesJoinWithoutOverlapOrGap) {
     const TestFolder folder;
     const auto write = [&](uint32_t first, uint32_t samples) {

@@ -38,7 +38,7 @@ std::string png_chunk(const std::string& type, const std::string& contents) {
 // A row of four pixels with 8-bit indices.
 std::string png_with_palette(const std::string& indices, const std::string& palette) {
     return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", big_endian(4) + big_endian(1) + bytes(8, 3, 0, 0, 0)) +
-           png_chunk("PLTE", palette) + png_chunk("IDAT", compress(bytes(0) + indices)) + png_chunk("IEND", "");
+           png_chunk("PLTE", palette) + png_chunk("IDAT", compress_numbers(bytes(0) + indices)) + png_chunk("IEND", "");
 }
 
 // A .bmp file: the header's contents after its size, then masks or a palette, then rows.
