@@ -137,6 +137,8 @@ struct Camera {
     vec3 forward;  // unit length
     vec3 right;    // scaled by tan(horizontal field of view / 2)
     vec3 up;       // scaled by tan(vertical field of view / 2)
+    float aperture_radius;
+    float focus_distance;  // of the plane in focus, along `forward`
 };
 
 // Constant during a render.

@@ -161,11 +161,16 @@ void debug_pixel(Build& build, uvec2 pixel) {
 // Prints what is worth knowing about the scene of a job. Throws UserError if a report would describe another picture.
 void print_warnings(const Chapter& chapter, const RenderJob& job) {
     std::vector<std::string> warnings = job.scene->warnings;
-    if (features_of(*job.scene).microfacets && !chapter.microfacets) {
-        const std::string scene = job.scene->file.string(), use = ": use a chapter that has them, see ./lab run";
+    const SceneFeatures features = features_of(*job.scene);
+    const std::pair<bool, const char*> left_out[] = {
+        {features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
+        {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"}};
+    for (const auto& [is_left_out, what] : left_out) {
+        if (!is_left_out) continue;
+        const std::string scene = job.scene->file.string(), use = ": use a chapter that does not, see ./lab run";
         if (!job.options.run.report.empty())
-            throw UserError("--report: " + chapter.name + " cannot render the microfacets (Pr) of " + scene + use);
-        warnings.push_back(scene + ": has microfacets (Pr), which " + chapter.name + " leaves out" + use);
+            throw UserError("--report: " + chapter.name + " leaves out the " + what + " of " + scene + use);
+        warnings.push_back(scene + ": " + chapter.name + " leaves out its " + what + use);
     }
     for (const auto& warning : warnings)
         if (!job.options.run.quiet) std::cerr << "note: " << warning << "\n";

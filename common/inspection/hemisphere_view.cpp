@@ -45,7 +45,7 @@ void HemisphereView::look_at(const PathVertex& vertex, const RenderParameters& p
                              .up = glm::normalize(parameters.camera.up) + parameters.camera.forward};
     point_.write(&point, sizeof point);
     RenderParameters of_view = with_size(parameters);
-    of_view.camera = {vec3(0), vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)};
+    of_view.camera = {vec3(0), vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0), 0, 1};
     of_view.first_sample = 0;
     // The bounce at the point itself counts towards the path length.
     if (of_view.max_path_length > 0) --of_view.max_path_length;

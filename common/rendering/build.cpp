@@ -21,7 +21,8 @@ BuildStage first_difference(const Options& before, const Options& options) {
     const auto samples_lights = [](const Options& o) { return o.estimator.strategy != Strategy::bounces; };
     if (differs(&Options::scene)) return BuildStage::scene;
     if (differs(samples_lights)) return BuildStage::gpu_scene;
-    if (differs(&Options::estimator) || differs(&Options::image) || differs(asks_for_sky)) return BuildStage::renderer;
+    if (differs(&Options::estimator) || differs(&Options::image) || differs(asks_for_sky) || differs(asks_for_lens))
+        return BuildStage::renderer;
     if (differs(&Options::camera) || differs(&Options::light) || differs(&Options::samples)) return BuildStage::samples;
     return BuildStage::nothing;
 }
@@ -31,6 +32,7 @@ Options keep_built(const Options& built, Options options) {
     options.estimator = built.estimator;
     options.image = built.image;
     if (asks_for_sky(options) != asks_for_sky(built)) options.light.background = built.light.background;
+    if (asks_for_lens(options) != asks_for_lens(built)) options.camera = built.camera;
     return options;
 }
 

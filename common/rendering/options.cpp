@@ -76,6 +76,10 @@ void add_options(CLI::App& app, Options& options, std::string& view, const std::
     place("--camera-up", camera.up, "What it holds upwards");
     number("--vertical-fov", camera.vertical_fov, 1e-6, 179.999, "an angle between 0 and 180 degrees",
            "Angle between the picture's top and bottom in degrees");
+    number("--aperture-diameter", camera.aperture_diameter, 0, 1e30, "a length (finite and not negative)",
+           "Diameter of the lens, 0 for a pinhole");
+    number("--focus-distance", camera.focus_distance, 1e-30, 1e30, "a positive length",
+           "From the lens to the plane in focus; default: the scene's, or else where the target is");
     vector("--background", light.background, 0, "a radiance (finite and not negative)", "R,G,B",
            "Radiance of the sky; with a light probe its factor");
     app.add_flag("--specular", scene.specular, "Use the Phong lobe Ks, Ns of the materials");

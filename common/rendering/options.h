@@ -54,6 +54,7 @@ struct ImageOptions {
 struct CameraOptions {
     std::optional<vec3> position, target, up;
     std::optional<float> vertical_fov;  // degrees
+    std::optional<float> aperture_diameter, focus_distance;
     bool operator==(const CameraOptions&) const = default;
 };
 

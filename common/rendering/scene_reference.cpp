@@ -28,13 +28,15 @@ std::vector<Reference> references_of(const fs::path& scene_file) {
 }
 
 bool are_equal(const Camera& a, const Camera& b) {
-    return a.position == b.position && a.forward == b.forward && a.right == b.right && a.up == b.up;
+    const bool have_same_focus = a.aperture_radius == 0 || a.focus_distance == b.focus_distance;
+    return a.position == b.position && a.forward == b.forward && a.right == b.right && a.up == b.up &&
+           a.aperture_radius == b.aperture_radius && have_same_focus;
 }
 
 // How the image differs from the one that the scene's file describes; empty if it does not.
 std::string difference_from_file(const Scene& scene, const RenderParameters& parameters) {
     const RenderParameters of_file = default_parameters(scene, parameters.image_size);
-    if (!are_equal(parameters.camera, of_file.camera)) return "the camera has moved";
+    if (!are_equal(parameters.camera, of_file.camera)) return "the camera has changed";
     if (parameters.background != of_file.background || parameters.probe_rotation != of_file.probe_rotation)
         return "the background is another one";
     if (scene.has_added_lobes) return "the specular lobe is another one";

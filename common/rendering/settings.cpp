@@ -45,12 +45,14 @@ double largest_albedo(const Scene& scene) {
 
 }  // namespace
 
-CameraPose camera_of(const Scene& scene, const Options& options) {
+CameraPose camera_of(const Chapter& chapter, const Scene& scene, const Options& options) {
     const CameraOptions& wanted = options.camera;
     return {.position = wanted.position.value_or(scene.camera.position),
             .target = wanted.target.value_or(scene.camera.target),
             .up = wanted.up.value_or(scene.camera.up),
-            .vertical_fov = wanted.vertical_fov.value_or(scene.camera.vertical_fov)};
+            .vertical_fov = wanted.vertical_fov.value_or(scene.camera.vertical_fov),
+            .aperture_diameter = chapter.lens ? wanted.aperture_diameter.value_or(scene.camera.aperture_diameter) : 0,
+            .focus_distance = wanted.focus_distance.value_or(scene.camera.focus_distance)};
 }
 
 vec3 background_of(const Scene& scene, const Options& options) { return options.light.background.value_or(scene.background); }
@@ -67,10 +69,12 @@ Strategy strategy_of(const Chapter& chapter, const Options& options) {
 
 bool asks_for_sky(const Options& options) { return options.light.background.value_or(vec3(0)) != vec3(0); }
 
+bool asks_for_lens(const Options& options) { return options.camera.aperture_diameter.value_or(0) > 0; }
+
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
     const uvec2 image_size(options.image.width.value_or(scene.defaults.width),
                            options.image.height.value_or(scene.defaults.height));
-    RenderParameters parameters = default_parameters(scene, camera_of(scene, options), image_size);
+    RenderParameters parameters = default_parameters(scene, camera_of(chapter, scene, options), image_size);
     parameters.background = background_of(scene, options);
     parameters.seed_key = seed_key(options.samples.seed);
     parameters.first_sample = options.samples.first_sample;
@@ -87,9 +91,13 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
 }
 
 std::string camera_flags(const CameraPose& pose, char separator) {
+    std::string lens;
+    if (pose.aperture_diameter > 0) lens = std::string(" --aperture-diameter") + separator + exact_text(pose.aperture_diameter);
+    if (pose.aperture_diameter > 0 && pose.focus_distance > 0)
+        lens += std::string(" --focus-distance") + separator + exact_text(pose.focus_distance);
     return "--camera-position" + (separator + exact_text(pose.position)) + " --camera-target" + separator +
            exact_text(pose.target) + " --camera-up" + separator + exact_text(pose.up) + " --vertical-fov" + separator +
-           exact_text(pose.vertical_fov);
+           exact_text(pose.vertical_fov) + lens;
 }
 
 std::string settings_text(const Chapter& chapter, const RenderParameters& parameters, const Scene& scene,
@@ -107,7 +115,8 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
             text << ' ' << choice.name << ' ' << choice.values[value].first;
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
-    text << ' ' << camera_flags(camera_of(scene, options), ' ') << " --background " << exact_text(background_of(scene, options));
+    text << ' ' << camera_flags(camera_of(chapter, scene, options), ' ') << " --background "
+         << exact_text(background_of(scene, options));
     return text.str();
 }
 
@@ -132,6 +141,7 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
         if (const size_t value = value_of(choice, options); value > 0)
             estimator.defines.push_back(choice.define() + ' ' + choice.values[value].second);
     if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
+    if (asks_for_lens(options)) estimator.defines.emplace_back("FEATURE_LENS");
     estimator.max_threads_per_pixel = options.estimator.max_threads_per_pixel.value_or(estimator.max_threads_per_pixel);
     return estimator;
 }

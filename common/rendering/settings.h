@@ -6,12 +6,13 @@
 
 namespace lab {
 
-// Camera and background: from the scene file, unless flags override them.
-CameraPose camera_of(const Scene& scene, const Options& options);
+// Camera and background: from the scene file, unless flags override them. Chapters without a lens have a pinhole.
+CameraPose camera_of(const Chapter& chapter, const Scene& scene, const Options& options);
 vec3 background_of(const Scene& scene, const Options& options);
 
 // Whether --background asks for a sky: the shaders must know even if the scene itself has none.
 bool asks_for_sky(const Options& options);
+bool asks_for_lens(const Options& options);  // --aperture-diameter, likewise
 
 // Throws UserError for options that contradict each other.
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options);

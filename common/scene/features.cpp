@@ -22,14 +22,22 @@ SceneFeatures features_of(const Scene& scene) {
     features.double_sided = !scene.double_sided.empty();
     features.transforms = std::any_of(scene.instances.begin(), scene.instances.end(), is_moved);
     features.microfacets = !scene.microfacets.empty();
+    features.lens = scene.camera.aperture_diameter > 0;
     return features;
 }
 
 std::vector<std::string> SceneFeatures::defines() const {
     const std::pair<bool, const char*> names[] = {
-        {vertex_normals, "FEATURE_VERTEX_NORMALS"}, {textures, "FEATURE_TEXTURES"},         {sky, "FEATURE_SKY"},
-        {light_probe, "FEATURE_LIGHT_PROBE"},       {specular, "FEATURE_SPECULAR"},         {dielectrics, "FEATURE_DIELECTRICS"},
-        {absorption, "FEATURE_ABSORPTION"},         {double_sided, "FEATURE_DOUBLE_SIDED"}, {transforms, "FEATURE_TRANSFORMS"},
+        {vertex_normals, "FEATURE_VERTEX_NORMALS"},
+        {textures, "FEATURE_TEXTURES"},
+        {sky, "FEATURE_SKY"},
+        {light_probe, "FEATURE_LIGHT_PROBE"},
+        {specular, "FEATURE_SPECULAR"},
+        {dielectrics, "FEATURE_DIELECTRICS"},
+        {absorption, "FEATURE_ABSORPTION"},
+        {double_sided, "FEATURE_DOUBLE_SIDED"},
+        {transforms, "FEATURE_TRANSFORMS"},
+        {lens, "FEATURE_LENS"},
     };
     std::vector<std::string> present;
     for (const auto& [is_present, name] : names)

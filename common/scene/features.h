@@ -19,6 +19,7 @@ struct SceneFeatures {
     bool double_sided = false;  // some emissive triangle has another one as its back
     bool transforms = false;    // some instance is moved, turned or scaled
     bool microfacets = false;   // the defines depend on the estimator, see GpuScene
+    bool lens = false;          // the camera has an aperture
 
     // FEATURE_VERTEX_NORMALS and so on, for the features present.
     std::vector<std::string> defines() const;

@@ -155,6 +155,8 @@ Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
     camera.forward = vec3(forward);
     camera.right = vec3(tangent * width / height * right);
     camera.up = vec3(tangent * glm::cross(right, forward));
+    camera.aperture_radius = 0.5f * pose.aperture_diameter;
+    camera.focus_distance = pose.focus_distance > 0 ? pose.focus_distance : static_cast<float>(distance);
     return camera;
 }
 

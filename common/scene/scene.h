@@ -50,7 +50,9 @@ struct CameraPose {
     vec3 position{0, 0, 1};
     vec3 target{0, 0, 0};
     vec3 up{0, 1, 0};
-    float vertical_fov = 45;  // degrees, in (0,180)
+    float vertical_fov = 45;      // degrees, in (0,180)
+    float aperture_diameter = 0;  // of a thin lens, scene units; 0 is a pinhole
+    float focus_distance = 0;     // of the plane in focus, along the viewing direction; 0 is the distance to the target
 };
 
 struct Scene {

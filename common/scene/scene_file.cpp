@@ -43,6 +43,12 @@ CameraPose read_camera(const JsonObject& camera) {
     const double vertical_fov = camera.number("vertical_fov").value_or(pose.vertical_fov);
     if (!(vertical_fov > 0 && vertical_fov < 180)) camera.fail("vertical_fov", "must be above 0 and below 180 degrees");
     pose.vertical_fov = static_cast<float>(vertical_fov);
+    pose.aperture_diameter = static_cast<float>(camera.number("aperture_diameter").value_or(0));
+    if (pose.aperture_diameter < 0) camera.fail("aperture_diameter", "must not be negative");
+    if (const auto focus = camera.number("focus_distance")) {
+        pose.focus_distance = static_cast<float>(*focus);
+        if (!(pose.focus_distance > 0)) camera.fail("focus_distance", "must be above 0");
+    }
     return pose;
 }
 
@@ -82,7 +88,9 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
         result.meshes.push_back(read_placement(
             {entry, name, "an entry of \"meshes\"", {"file", "materials", "scale", "rotation", "translation"}}, folder));
     result.has_camera = root.has("camera");
-    if (result.has_camera) result.scene.camera = read_camera(root.object("camera", {"position", "target", "up", "vertical_fov"}));
+    if (result.has_camera)
+        result.scene.camera = read_camera(
+            root.object("camera", {"position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance"}));
     if (root.has("background"))
         read_background(root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder, result);
     result.scene.multiple_scattering = root.boolean("multiple_scattering").value_or(false);

@@ -40,6 +40,7 @@ std::map<std::string, std::filesystem::path> named_includes(const Estimator& est
     std::map<std::string, std::filesystem::path> names{
         {"path_trace.glsl", estimator.file},
         {"brdf.glsl", own_or_default(chapter / "brdf.glsl", "world")},
+        {"camera.glsl", own_or_default(chapter / "camera.glsl", "world")},
         {"random_words.glsl", own_or_default(chapter / "random_words.glsl", "world")},
         {"sample_loop.glsl", own_or_default(estimator.file.parent_path() / "sample_loop.glsl", "engine")}};
     if (is_observed) {

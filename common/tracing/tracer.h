@@ -27,7 +27,7 @@ struct Estimator {
 };
 
 // Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. The chapter's folder may override the
-// defaults of "brdf.glsl", "random_words.glsl" and "sample_loop.glsl" by files of these names.
+// defaults of "brdf.glsl", "camera.glsl", "random_words.glsl" and "sample_loop.glsl" by files of these names.
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator);
 
 // All files that an estimator is compiled from, with any backend.

@@ -19,11 +19,17 @@ Session::Session(const Device& device, Chapter chapter, std::unique_ptr<WindowBu
       shaders_(build_->shader_files, build_->shader_hash),
       needs_restart_(!build_->job.resumed) {}
 
-CameraPose Session::camera() const { return camera_of(*build_->job.scene, wanted_); }
+CameraPose Session::camera() const { return camera_of(chapter_, *build_->job.scene, wanted_); }
 
 vec3 Session::background() const { return background_of(*build_->job.scene, wanted_); }
 
-void Session::set_camera(const CameraPose& pose) { wanted_.camera = {pose.position, pose.target, pose.up, pose.vertical_fov}; }
+void Session::set_camera(const CameraPose& pose) {
+    CameraOptions& camera = wanted_.camera;
+    camera.position = pose.position;
+    camera.target = pose.target;
+    camera.up = pose.up;
+    camera.vertical_fov = pose.vertical_fov;
+}
 
 // Flags apply to the scene on the command line only.
 CameraOptions Session::first_camera() const {

@@ -8,7 +8,7 @@ layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uin
 #include "world/constants.glsl"
 #include "world/random.glsl"
 #include "world/frame.glsl"
-#include "world/camera.glsl"
+#include "camera.glsl"
 #include "world/textures.glsl"
 #include "world/light_probe.glsl"
 #include "world/background.glsl"
@@ -39,8 +39,7 @@ Ray start_sample(uvec2 position, uint index, out uvec2 seed) {
 #endif
     uint pixel_index = position.y * parameters.image_size.x + position.x;
     seed = random_start_state(pixel_index, parameters.first_sample + index, parameters.seed_key);
-    vec2 image_position = (vec2(position) + get_random_numbers(seed)) / vec2(parameters.image_size);
-    return get_camera_ray(image_position);
+    return sample_camera_ray(position, seed);
 }
 
 // This thread's pixel stays in memory: kept in registers, its eleven numbers would be spilled around every call that traces

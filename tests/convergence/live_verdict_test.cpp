@@ -63,7 +63,7 @@ TEST(SceneReference, IsThatOfTheSameImageOnly) {
     EXPECT_EQ(why_not(scene, parameters_for(scene, 5, 1)), "this scene's references are for a maximal path length of 1 and 6");
     RenderParameters changed = good;
     changed.camera.position.x += 0.01f;
-    EXPECT_EQ(why_not(scene, changed), "the camera has moved");
+    EXPECT_EQ(why_not(scene, changed), "the camera has changed");
     changed = good;
     changed.background = vec3(1);
     EXPECT_EQ(why_not(scene, changed), "the background is another one");

@@ -77,7 +77,7 @@ TEST_F(InspectionTest, WhereThereIsNoReferenceItSaysWhy) {
     hold(GLFW_KEY_W, 2);
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
     EXPECT_EQ(session().verdict(), nullptr);
-    EXPECT_EQ(session().verdict_text(), "no verdict: the camera has moved");
+    EXPECT_EQ(session().verdict_text(), "no verdict: the camera has changed");
     EXPECT_TRUE(session().has_moved());
 
     hold(GLFW_KEY_F);

@@ -160,7 +160,7 @@ TEST_F(ViewerTest, AButtonSetsWhatTheReferenceHas) {
     EXPECT_EQ(session().build().job.parameters.image_size, uvec2(288, 192));
     hold(GLFW_KEY_W, 2);
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
-    EXPECT_FALSE(session().settings_for_verdict()) << "the camera has moved";
+    EXPECT_FALSE(session().settings_for_verdict()) << "the camera has changed";
 }
 
 TEST_F(ViewerTest, EveryOptionTakesEffect) {
