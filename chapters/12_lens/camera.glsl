@@ -50,7 +50,7 @@ vec2 sample_disc(vec2 u) {
 Ray sample_camera_ray(uvec2 pixel, inout uvec2 seed) {
     Camera camera = parameters.camera;
     vec2 in_pixel, on_aperture;
-    get_joint_numbers(seed, in_pixel, on_aperture);
+    get_joint_numbers(seed, on_aperture, in_pixel);  // the first two dimensions are the most even, and the aperture needs it more
     vec2 position = 2.0 * (vec2(pixel) + in_pixel) / vec2(parameters.image_size) - 1.0;
     vec3 to_focus = camera.focus_distance * (camera.forward + position.x * camera.right - position.y * camera.up);
     vec2 lens = camera.aperture_radius * sample_disc(on_aperture);

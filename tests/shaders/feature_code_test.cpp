@@ -45,7 +45,8 @@ const std::map<std::string, Needs>& needs_of_features() {
         {"dielectrics", dielectric},
         {"absorption", {.functions = dielectric.functions, .material_members = {"refractive_index", "absorption"}}},
         {"transforms", {.bindings = {BINDING_INSTANCES}}},
-        {"microfacets", {.bindings = {BINDING_MICROFACETS}, .functions = {"get_facet_distribution", "get_fresnel_reflectance"}}}};
+        {"microfacets", {.bindings = {BINDING_MICROFACETS}, .functions = {"get_facet_distribution", "get_fresnel_reflectance"}}},
+        {"lens", {.functions = {"sample_disc"}}}};
     return needs;
 }
 
@@ -109,7 +110,8 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
             needs.bindings.erase(BINDING_PROBE_CELLS);
             needs.functions.erase("choose_probe_cell");
         }
-        const bool has_no_use = feature.name == "microfacets" && !handles_microfacets(GetParam());
+        const bool has_no_use = (feature.name == "microfacets" && !handles_microfacets(GetParam())) ||
+                                (feature.name == "lens" && !load_chapter(GetParam()).lens);
         if (has_no_use) needs = {};
         Scene scene = bare_scene();
         feature.add(scene);

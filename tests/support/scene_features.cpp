@@ -60,16 +60,24 @@ void add_microfacets(Scene& scene) {
     scene.microfacets.assign(scene.materials.size(), plastic);
 }
 
+void add_lens(Scene& scene) { scene.camera.aperture_diameter = 0.1f; }
+
 void add_transform(Scene& scene) { scene.instances.front().object_to_world[3] += vec3(0, 1e-3f, 0); }
 
 }  // namespace
 
 const std::vector<SceneFeature>& all_scene_features() {
-    static const std::vector<SceneFeature> features{
-        {"vertex normals", add_vertex_normals}, {"textures", add_texture},       {"sky", add_sky},
-        {"light probe", add_light_probe},       {"area lights", add_area_light}, {"Phong lobe", add_phong_lobe},
-        {"dielectrics", add_dielectric},        {"absorption", add_absorption},  {"transforms", add_transform},
-        {"microfacets", add_microfacets}};
+    static const std::vector<SceneFeature> features{{"vertex normals", add_vertex_normals},
+                                                    {"textures", add_texture},
+                                                    {"sky", add_sky},
+                                                    {"light probe", add_light_probe},
+                                                    {"area lights", add_area_light},
+                                                    {"Phong lobe", add_phong_lobe},
+                                                    {"dielectrics", add_dielectric},
+                                                    {"absorption", add_absorption},
+                                                    {"transforms", add_transform},
+                                                    {"microfacets", add_microfacets},
+                                                    {"lens", add_lens}};
     return features;
 }
 

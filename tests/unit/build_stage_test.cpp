@@ -20,6 +20,8 @@ TEST(BuildStage, EachGroupOfOptionsRepeatsWhatDependsOnIt) {
              Row{"target", [](Options& o) { o.appearance.sample_count = 8; }, BuildStage::nothing},
              Row{"seed", [](Options& o) { o.samples.seed = 2; }, BuildStage::samples},
              Row{"camera", [](Options& o) { o.camera.position = vec3(1); }, BuildStage::samples},
+             Row{"focus", [](Options& o) { o.camera.focus_distance = 2.0f; }, BuildStage::samples},
+             Row{"aperture", [](Options& o) { o.camera.aperture_diameter = 1.0f; }, BuildStage::renderer},
              Row{"path length", [](Options& o) { o.light.max_path_length = 2; }, BuildStage::samples},
              Row{"black background", [](Options& o) { o.light.background = vec3(0); }, BuildStage::samples},
              Row{"sky", [](Options& o) { o.light.background = vec3(1); }, BuildStage::renderer},

@@ -118,8 +118,12 @@ def make_camera(scene, width, height, unit, sampler):
     forward = (target - position) / np.linalg.norm(target - position)
     if np.linalg.norm(np.cross(forward, up)) <= 1e-6 * np.linalg.norm(up):  # leaves the roll undefined
         up = np.array([0, 0, -1] if abs(forward[1]) > 0.5 else [0, 1, 0])
+    lens = {"type": "perspective"}
+    if diameter := float(scene.camera["aperture_diameter"]):
+        focus = float(scene.camera["focus_distance"]) or np.linalg.norm(target - position) / unit
+        lens = {"type": "thinlens", "aperture_radius": unit * diameter / 2, "focus_distance": unit * focus}
     return {
-        "type": "perspective", "fov": float(scene.camera["vertical_fov"]), "fov_axis": "y",
+        **lens, "fov": float(scene.camera["vertical_fov"]), "fov_axis": "y",
         "near_clip": 1e-2, "far_clip": 1e8,
         "to_world": mi.ScalarTransform4f().look_at(list(position), list(target), list(up)),
         "sampler": {"type": sampler},

@@ -48,7 +48,7 @@ class Surface:
 @dataclass
 class Scene:
     surfaces: list
-    camera: dict  # position, target, up, vertical_fov in degrees
+    camera: dict  # position, target, up, vertical_fov in degrees, aperture_diameter, focus_distance (0: that of the target)
     background: np.ndarray  # radiance, or factor of the light probe
     light_probe: Path | None
     probe_rotation: float  # degrees
@@ -179,10 +179,10 @@ def read_scene(path):
         radiance = background.get("intensity", 1) if light_probe else background.get("radiance", 0)
         if path.suffix.lower() == ".obj" and not any(s.material.emission.any() for s in surfaces):
             radiance = 1  # a bare mesh without lights is lit by a white sky
-        camera = {"up": [0, 1, 0], "vertical_fov": 45,
+        camera = {"up": [0, 1, 0], "vertical_fov": 45, "aperture_diameter": 0, "focus_distance": 0,
                   **(root.get("camera") or framing_camera(meshes, placements))}
         camera = {key: np.asarray(value, float) for key, value in
-                  only(path, camera, "position", "target", "up", "vertical_fov").items()}
+                  only(path, camera, "position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance").items()}
         return Scene(surfaces, camera,
                      triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
                      root.get("width", 512), root.get("height", 512), root.get("max_path_length", 8),

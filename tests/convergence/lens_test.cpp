@@ -1,0 +1,136 @@
+// The lens: what is out of focus becomes a disc of the right size and brightness.
+#include <cmath>
+#include <numbers>
+
+#include "support/expect_statistics.h"
+#include "support/render.h"
+#include "support/scenes.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec2;
+
+constexpr double focus = 4, field = 2;  // distance and side of the picture in the plane in focus
+
+// The camera at the origin looks along -Z. Its picture shows a square of the plane in focus.
+Scene in_focus(const Scene& scene, double aperture_diameter) {
+    Scene result = scene;
+    result.camera = {.position = {0, 0, 0},
+                     .target = {0, 0, -1},
+                     .up = {0, 1, 0},
+                     .vertical_fov = static_cast<float>(glm::degrees(2 * std::atan(0.5 * field / focus))),
+                     .aperture_diameter = static_cast<float>(aperture_diameter),
+                     .focus_distance = static_cast<float>(focus)};
+    return result;
+}
+
+// A square lamp of radiance 1 on the axis, which faces the camera.
+Scene lamp(double distance, double side) {
+    const auto s = static_cast<float>(side), z = static_cast<float>(-distance);
+    return make_scene({diffuse_material(vec3(0), vec3(1))}, {{{-0.5f * s, -0.5f * s, z}, {s, 0, 0}, {0, s, 0}}});
+}
+
+RenderSettings lens_settings(uint32_t samples) {
+    return {.width = 96,
+            .height = 96,
+            .samples = samples,
+            .max_path_length = 0,
+            .estimator = chapter_estimator(chapter_named("lens")),
+            .backend = fastest_backend()};
+}
+
+struct BlurredLamp {
+    const char* name;
+    double distance, side, aperture;
+};
+class LensDisc : public testing::TestWithParam<BlurredLamp> {};
+INSTANTIATE_TEST_SUITE_P(, LensDisc,
+                         testing::Values(BlurredLamp{"behind", 8, 0.05, 0.8}, BlurredLamp{"before", 2.5, 0.03, 0.6},
+                                         BlurredLamp{"far_behind", 400, 2, 0.9}, BlurredLamp{"large", 6, 0.5, 0.7}),
+                         [](const auto& of) { return of.param.name; });
+
+// In the plane in focus, the picture of a lamp is its pinhole's picture, smeared over the aperture as seen from the lamp: a disc
+// of diameter c = A |z - f| / z. So its sum is the pinhole's, and the mean square of the distance from the axis is the sum of
+// those of the two shapes, c²/8 for the disc and s²/6 for a square of side s.
+TEST_P(LensDisc, ShowsADiscOfTheRightSizeAndBrightness) {
+    const auto& [name, distance, side, aperture] = GetParam();
+    const double c = aperture * std::abs(distance - focus) / distance, s = side * focus / distance;
+    constexpr uint32_t batch_count = 32;
+    const Batches batches = render_batches(in_focus(lamp(distance, side), aperture), lens_settings(400), batch_count);
+    std::vector<double> areas, squares, centres;
+    for (const auto& image : batches.images) {
+        double sum = 0, square = 0, centre = 0, centre_pixels = 0;
+        for (uint32_t y = 0; y < batches.height; ++y)
+            for (uint32_t x = 0; x < batches.width; ++x) {
+                const dvec2 position = field * ((dvec2(x, y) + 0.5) / static_cast<double>(batches.width) - 0.5);
+                const double radiance = image[size_t{y} * batches.width + x][0], pixel = field / batches.width;
+                sum += radiance * pixel * pixel;
+                // The mean over a pixel of the squared distance from the axis, but for shapes that cut pixels.
+                square += radiance * pixel * pixel * (glm::dot(position, position) + pixel * pixel / 6);
+                if (glm::length(position) < 0.5 * c - s) centre += radiance, ++centre_pixels;
+            }
+        areas.push_back(sum);
+        squares.push_back(square / sum);
+        if (centre_pixels > 0) centres.push_back(centre / centre_pixels);
+    }
+    expect_mean("sum", estimate_mean(areas), s * s, 0.003, 3);
+    expect_mean("mean square of the distance from the axis", estimate_mean(squares), c * c / 8 + s * s / 6, 0.003, 3);
+    if (!centres.empty())
+        expect_mean("radiance in the middle", estimate_mean(centres), s * s / (std::numbers::pi / 4 * c * c), 0.003, 3);
+}
+
+// A lamp in the plane in focus is as sharp as through a pinhole, wherever it is: that plane is no sphere.
+TEST(Lens, APlaneIsInFocus) {
+    Scene scene = lamp(focus, 0.25 * field);
+    for (vec3& position : scene.positions) position += vec3(0.25 * field, 0.25 * field, 0);  // now a quarter of the picture
+    const FilmImage film = render(in_focus(scene, 1), lens_settings(64));
+    for (uint32_t y = 0; y < film.height; ++y)
+        for (uint32_t x = 0; x < film.width; ++x) {
+            const bool is_lamp = x >= 60 && x < 84 && y >= 12 && y < 36;
+            const bool is_edge = (x == 59 || x == 60 || x == 83 || x == 84) || (y == 11 || y == 12 || y == 35 || y == 36);
+            if (is_edge) continue;
+            ASSERT_EQ(film.pixels[size_t{y} * film.width + x].sum.r, is_lamp ? 64 : 0) << x << ", " << y;
+        }
+}
+
+// A length is a length: scenes scaled by a power of two have the same pixels, to the bit.
+TEST(Lens, ScenesOfAnySizeLookTheSame) {
+    const auto scaled = [](float scale) {
+        Scene scene = in_focus(lamp(6, 0.5), 0.7);
+        for (vec3& position : scene.positions) position *= scale;
+        scene.camera.target *= scale;
+        scene.camera.aperture_diameter *= scale;
+        scene.camera.focus_distance *= scale;
+        return render(scene, lens_settings(16));
+    };
+    const FilmImage expected = scaled(1);
+    EXPECT_GT(expected.mean_radiance()[0], 0);
+    for (const float scale : {0x1p-20f, 0x1p20f}) {
+        const FilmImage film = scaled(scale);
+        for (size_t i = 0; i < expected.pixels.size(); ++i)
+            ASSERT_EQ(film.pixels[i].sum, expected.pixels[i].sum) << scale << ", pixel " << i;
+    }
+}
+
+// Focus behind everything, an aperture larger than the scene, a camera in glass: under a white sky, where nothing absorbs,
+// everything is white.
+TEST(Lens, ExtremesLoseNoLight) {
+    Material glass = diffuse_material(vec3(0));
+    glass.refractive_index = 1.5f;
+    for (const bool is_in_glass : {false, true})
+        for (const double aperture : {1e-6, 0.5, 1e3})
+            for (const double distance : {1e-3, 2.0, 1e9}) {
+                Scene scene = is_in_glass ? make_scene({glass}, box_sides(vec3(-2), vec3(2), 0, Facing::outwards))
+                                          : make_scene({diffuse_material(vec3(1))}, {{{-1, -1, -3}, {2, 0, 0}, {0, 2, 0}}});
+                scene = in_focus(scene, is_in_glass ? std::min(aperture, 0.5) : aperture);
+                scene.camera.focus_distance = static_cast<float>(distance);
+                scene.background = vec3(1);
+                RenderSettings settings = lens_settings(4);
+                settings.max_path_length = 100;
+                for (const FilmPixel& pixel : render(scene, settings).pixels) ASSERT_NEAR(pixel.sum.r, 4, 1e-4);
+            }
+}
+
+}  // namespace
+}  // namespace lab
