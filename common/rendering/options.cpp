@@ -188,6 +188,7 @@ const std::vector<View>& views() {
     static const std::vector<View> all{
         {"normals", "VIEW_NORMALS", DisplayTransform::as_is},
         {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
+        {"focus", "VIEW_FOCUS", DisplayTransform::maximum},
         {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
         {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
         {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},

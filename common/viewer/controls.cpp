@@ -224,6 +224,10 @@ void Controls::draw_camera(Session& session, CameraControl& camera_control) {
     CameraPose pose = session.camera();
     if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees", ImGuiSliderFlags_AlwaysClamp))
         session.set_camera(pose);
+    const float distance = session.build().job.parameters.camera.focus_distance;
+    if (session.chapter().lens && ImGui::SliderFloat("aperture diameter", &pose.aperture_diameter, 0, 0.25f * distance, "%.3g",
+                                                     ImGuiSliderFlags_AlwaysClamp))
+        session.set_camera(pose);
     const auto copy = [&](const char* button, const std::string& text) {
         if (!ImGui::Button(button)) return;
         ImGui::SetClipboardText(text.c_str());

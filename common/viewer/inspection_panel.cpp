@@ -90,6 +90,14 @@ void InspectionPanel::draw_controls(Session& session) {
             "Verdict: max path length " + std::to_string(settings->max_path_length) + ", " + size_text(settings->image_size);
         if (ImGui::Button(label.c_str())) session.change_for_verdict();
     }
+    const auto& path = inspection_.path();
+    const bool has_point = path && !is_beside_ && !path->vertices.empty() && path->vertices.front().is_hit;
+    if (session.chapter().lens && has_point && ImGui::Button("Focus on the point that was clicked")) {
+        CameraPose pose = session.camera();
+        const vec3 forward = session.build().job.parameters.camera.forward;
+        pose.focus_distance = glm::dot(path->vertices.front().position - pose.position, forward);
+        session.set_camera(pose);
+    }
     if (ImGui::CollapsingHeader("look inside")) {
         int overlay = static_cast<int>(overlay_.shown);
         ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));

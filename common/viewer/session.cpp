@@ -24,11 +24,15 @@ CameraPose Session::camera() const { return camera_of(chapter_, *build_->job.sce
 vec3 Session::background() const { return background_of(*build_->job.scene, wanted_); }
 
 void Session::set_camera(const CameraPose& pose) {
+    const CameraPose before = this->camera();
     CameraOptions& camera = wanted_.camera;
     camera.position = pose.position;
     camera.target = pose.target;
     camera.up = pose.up;
     camera.vertical_fov = pose.vertical_fov;
+    // A value of the scene stays one: another number would need a build.
+    if (pose.aperture_diameter != before.aperture_diameter) camera.aperture_diameter = pose.aperture_diameter;
+    if (pose.focus_distance != before.focus_distance) camera.focus_distance = pose.focus_distance;
 }
 
 // Flags apply to the scene on the command line only.

@@ -13,6 +13,13 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
 #ifdef VIEW_BVH_STEPS
     return vec3(traversal_steps);
 #endif
+#ifdef VIEW_FOCUS
+    // Circle of confusion in the plane in focus, c = A |z - f| / z, over the height of a pixel there.
+    Camera camera = parameters.camera;
+    float blur = is_hit ? abs(1.0 - camera.focus_distance / (hit.distance * dot(ray.direction, camera.forward))) : 1.0;
+    float pixel = 2.0 * camera.focus_distance * length(camera.up) / float(parameters.image_size.y);
+    return vec3(2.0 * camera.aperture_radius * blur / pixel);
+#endif
     if (!is_hit) return vec3(0.0);
     ShadingData s = get_shading_data(hit, ray.direction);
 #if defined(VIEW_NORMALS)

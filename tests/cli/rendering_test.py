@@ -1,10 +1,11 @@
 """Pictures: the same command gives the same bits, parts add up to the whole, and every file format is correct."""
 
+import math
 import re
 import stat
 
 from image_files import Exr, read_png
-from program import MERGE, ProgramTest, RenderTest
+from program import BINARIES, MERGE, ProgramTest, RenderTest
 from project import write_bytes
 
 class Determinism(RenderTest):
@@ -151,6 +152,21 @@ class Views(RenderTest):
         picture = self.picture("view", "--samples=1", "--view=depth", "--vertical-fov=1", scene="quad.json")
         for depth in picture.pixels():
             self.assertAlmostEqual(depth, 3, delta=0.01)
+
+    def test_focus_shows_the_circle_of_confusion_in_pixels(self):
+        # The quad is 3 units away. In the plane in focus, 2 units away, a pixel is 2 * 2 * tan(20 degrees) / 16 high.
+        picture = self.picture("view", "--samples=1", "--view=focus", "--aperture-diameter=0.5", "--focus-distance=2", scene="quad.json",
+                               size=(16, 16), program=BINARIES / "12_lens")
+        self.assertAlmostEqual(picture.channels["R"][8 * 16 + 8], 0.5 * (3 - 2) / 3 / (4 * math.tan(math.radians(20)) / 16), delta=0.01)
+
+    def test_chapters_without_a_lens_say_so(self):
+        code, _, err = self.run_program("quad.json", "--aperture-diameter=0.1", "--samples=1", "--headless", "--output=a.exr")
+        self.assertEqual(code, 0)
+        self.assertIn("leaves out its lens", err)
+        self.assert_refused(["quad.json", "--aperture-diameter=0.1", "--report=r.json", "--headless"], "leaves out the lens")
+        self.assert_refused(["focus", "--report=r.json", "--headless"], "leaves out the lens")
+        for bad in ("--aperture-diameter=-1", "--aperture-diameter=nan", "--focus-distance=0", "--focus-distance=inf"):
+            self.assert_refused(["quad.json", bad, "--headless"], bad.split("=")[0])
 
     def test_albedo_and_emission(self):
         self.assertEqual(set(self.picture("a", "--samples=1", "--view=albedo", scene="furnace").pixels()), {0.5})

@@ -20,7 +20,7 @@ COMPLAINT = re.compile("Sanitizer|runtime error:")
 OPTIONS = {"ASAN_OPTIONS": "detect_leaks=0",  # the search for leaks itself crashes now and then, at a program's end
            "UBSAN_OPTIONS": "print_stacktrace=1", "TSAN_OPTIONS": f"suppressions={ROOT}/tests/sanitizers/threads.txt",
            "GALLIVM_PERF": "nopt"}  # Mesa's driver for CPUs takes longer to optimise a shader than to run it
-VIEWS = ("normals", "depth", "albedo", "emission", "texture-coordinates", "triangles", "instances", "bvh-steps")
+VIEWS = ("normals", "depth", "albedo", "emission", "focus", "texture-coordinates", "triangles", "instances", "bvh-steps")
 RENDERS = """--backend=auto cornell_box
     --backend=compute cornell_box --specular --background=1,1,1 --seed=7
     --backend=pipeline torus

@@ -98,6 +98,14 @@ TEST(CameraControl, TheTextsAreExact) {
         EXPECT_EQ(json.at("up").at(static_cast<size_t>(axis)).get<float>(), pose.up[axis]);
     }
     EXPECT_EQ(json.at("vertical_fov").get<float>(), pose.vertical_fov);
+    EXPECT_FALSE(json.contains("aperture_diameter"));
+    CameraPose with_lens = pose;
+    with_lens.aperture_diameter = 0.1f;
+    with_lens.focus_distance = 2.5f;
+    EXPECT_EQ(camera_flags(with_lens, '='), camera_flags(pose, '=') + " --aperture-diameter=0.100000001 --focus-distance=2.5");
+    const auto lens = nlohmann::json::parse("{" + camera_json(with_lens) + "}").at("camera");
+    EXPECT_EQ(lens.at("aperture_diameter").get<float>(), with_lens.aperture_diameter);
+    EXPECT_EQ(lens.at("focus_distance").get<float>(), with_lens.focus_distance);
 }
 
 TEST(FramePacing, AFastDeviceHoldsTheRateOfItsDisplay) {
