@@ -267,8 +267,7 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
     const std::string key = expanded.preamble + expanded.text + source.file.extension().string() + "/" +
                             std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
                             std::to_string(version.patch);
-    // Two independent 64-bit hashes make a chance collision impossible in practice.
-    const std::string name = "shader-" + std::to_string(hash_text(key)) + "-" + std::to_string(hash_text(key, key.size()));
+    const std::string name = cache_name("shader", key);
     std::vector<uint32_t> words;
     if (const auto cached = read_cache(name)) {
         words.resize(cached->size() / sizeof(uint32_t));

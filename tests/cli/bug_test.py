@@ -5,6 +5,7 @@ import unittest
 from unittest import mock
 
 from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
+import cited_tests
 import mistake
 import project
 from PIL import Image
@@ -59,8 +60,7 @@ class BugTest(Bugs, ProgramTest):
             mistakes.bugs_of(3)
 
     def test_every_answer_names_what_catches_the_bug(self):
-        text = "\n".join(file.read_text(encoding="utf-8") for file in (PROJECT / "tests").rglob("*.cpp"))
-        known = set(re.findall(r"^TEST(?:_[PF])?\((\w+), (\w+)\)", text, re.MULTILINE))
+        known = cited_tests.written_tests()
         for chapter in CHAPTERS:
             checked = {found.mistake["name"] for found in mistakes.catalogue() if found.chapter == chapter}
             for found in mistakes.bugs_of(chapter):
