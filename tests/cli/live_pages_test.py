@@ -169,16 +169,28 @@ class LivePagesTest(LivePages, unittest.TestCase):
             self.frame(f"frame.plant(frame.about.bugs[{number}])")
             self.assertEqual(self.frame("frame.editor.edited.length"), 1, f"bug {number + 1}")
 
+    def test_the_chapter_before_has_the_same_time(self):
+        self.start(3)
+        self.frame("(frame.compared.checked = true, frame.restart(), 0)")
+        self.wait("/^After the same time, left chapter 3: .*; right chapter 2: /.test(frame.caption.textContent)", "both chapters")
+        self.frame("frame.line.focus()")
+        times = self.frame("frame.renderings.map(({ rendering }) => rendering.busy)")
+        self.assertLess(max(times), 1.5 * min(times))
+        for kind in ("keyDown", "keyUp"):
+            self.browser.call("Input.dispatchKeyEvent", type=kind, key="ArrowRight", code="ArrowRight", windowsVirtualKeyCode=39)
+        self.assertEqual(self.frame("frame.line.value"), "51")
+        self.assert_no_complaints()
+
     def test_a_hidden_tab_pauses(self):
         self.start(3, before="Object.defineProperty(document, 'hidden', { get: () => window.isHidden, configurable: true })")
         self.wait("frame.film", "a picture")
         self.browser.evaluate("window.isHidden = true")
         time.sleep(1)
-        samples = self.frame("frame.renderer.samples")
+        samples = self.frame("frame.renderings[0].rendering.samples")
         time.sleep(2)
-        self.assertEqual(self.frame("frame.renderer.samples"), samples)
+        self.assertEqual(self.frame("frame.renderings[0].rendering.samples"), samples)
         self.browser.evaluate("window.isHidden = false")
-        self.wait(f"frame.renderer.samples > {samples}", "more samples")
+        self.wait(f"frame.renderings[0].rendering.samples > {samples}", "more samples")
 
     def test_the_view_of_surfaces_gives_no_verdict(self):
         self.start(3)

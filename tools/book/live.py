@@ -14,6 +14,7 @@ import struct
 import tempfile
 from array import array
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from pathlib import Path
 
 from book.code_blocks import take_out
@@ -81,29 +82,43 @@ def halves(numbers):
     return struct.pack(f"<{len(numbers)}e", *(number / scale for number in numbers)), scale
 
 
-def dumped(chapter, name, folder):
-    """A picture's entry, and the scripts that it loads: {file name: text}."""
-    file = Path(folder) / f"{chapter}_{name}"
+def dump(file, chapter, *scene_and_options):
+    """What dump_arrays writes for a chapter: the description of the arrays, and their bytes."""
     if not program_file("dump_arrays").is_file():
         raise UserError("dump_arrays is not built: ./lab book builds it")
     estimator = CHAPTERS[original(int(chapter[:2]))]  # the program may be that of a tree without the copy
-    process = run_program([program_file("dump_arrays"), file, estimator, scene_of(name), "--max-path-length", length_of(name)])
+    process = run_program([program_file("dump_arrays"), file, estimator, *scene_and_options])
     if process.returncode != 0:
         raise UserError(f"{chapter}: {failure_text(process)}")
-    content, words = read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
+    return read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
 
-    def words_of(entry):
-        return words[4 * entry["first"]:4 * (entry["first"] + entry["count"])]
 
-    (parameters,), references = content.pop("parameters"), content.pop("reference")
-    mean, variance = (array("f", words_of(entry)) for entry in references)
+def numbers_of(entry, content, code="f"):
+    """The numbers of an array, of the type that the code of array.array stands for."""
+    return array(code, content[4 * entry["first"]:4 * (entry["first"] + entry["count"])])
+
+
+def dumped(chapter, name, folder):
+    """A picture's entry, and the scripts that it loads: {file name: text}."""
+    arrays, content = dump(folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name))
+    (parameters,), references = arrays.pop("parameters"), arrays.pop("reference")
+    mean, variance = (numbers_of(entry, content) for entry in references)
     (means, mean_scale), (deviations, deviation_scale) = halves(mean), halves([number**0.5 for number in variance])
     reference = {"width": references[0]["width"], "height": references[0]["height"], "samples": float(references[0]["samples"]),
                  "scales": [mean_scale, deviation_scale], "packed": packed(means + deviations)}
-    arrays = content | {"packed": packed(words[:4 * parameters["first"]])}
+    arrays["packed"] = packed(content[:4 * parameters["first"]])
     scene = f"{scene_of(name)}_{hashlib.sha256(json.dumps(arrays).encode()).hexdigest()[:8]}"
-    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": list(array("I", words_of(parameters)))}
-    return entry, {key: f"live.data[{json.dumps(key)}] = {json.dumps(value)};\n" for key, value in ((scene, arrays), (entry["reference"], reference))}
+    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": list(numbers_of(parameters, content, "I"))}
+    return entry, {key: script(key, value) for key, value in ((scene, arrays), (entry["reference"], reference))}
+
+
+def fits(scripts):
+    """Whether a page may load these scripts."""
+    return sum(map(len, scripts.values())) <= LARGEST
+
+
+def script(name, value):
+    return f"live.data[{json.dumps(name)}] = {json.dumps(value)};\n"
 
 
 def exercise_of(chapter, texts):
@@ -125,18 +140,27 @@ def bugs_of(chapter):
 def write(folder, frames):
     """Writes the folder `live` of a site. `frames`: {chapter: scene} of its pages."""
     texts, chapters, scripts = shaders(), {}, {}
+    before = dict(pairwise(sorted(frames, reverse=True)))  # the pages' chapters may be compared with
+    names = {chapter: pictures_of(chapter, scene) for chapter, scene in frames.items()}
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
-        jobs = {(chapter, name): pool.submit(dumped, chapter, name, temporary)
-                for chapter, scene in frames.items() for name in pictures_of(chapter, scene)}
-        for (chapter, name), job in jobs.items():
-            entry, files = job.result()
-            told = description(chapter)
-            known = chapters.setdefault(chapter, {"title": told["title"], "strategies": told.get("strategies", []), "pictures": [],
-                                                  "samples": told["check"]["samples"], "checked": told["check"]["references"],
-                                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)})
-            if sum(len(text) for text in files.values()) <= LARGEST:
-                known["pictures"].append(entry)
+        wanted = {(each, name) for chapter in frames for name in names[chapter] for each in (chapter, before.get(chapter)) if each}
+        jobs = {pair: pool.submit(dumped, *pair, Path(temporary)) for pair in sorted(wanted)}
+        for chapter in frames:
+            told, pictures = description(chapter), []
+            for name in names[chapter]:
+                entry, files = jobs[chapter, name].result()
+                if not fits(files):
+                    continue
+                pictures.append(entry)
                 scripts |= files
+                if chapter in before and not jobs[before[chapter], name].exception():  # it may know no glass
+                    other, files = jobs[before[chapter], name].result()
+                    if fits(files):
+                        entry["before"] = {"chapter": before[chapter], "scene": other["scene"], "parameters": other["parameters"]}
+                        scripts |= files
+            chapters[chapter] = {"title": told["title"], "strategies": told.get("strategies", []), "pictures": pictures,
+                                 "samples": told["check"]["samples"], "checked": told["check"]["references"],
+                                 "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)}
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")

@@ -4,7 +4,7 @@ var live = globalThis.live ?? {};
 globalThis.live = live;
 
 live.page = (() => {
-    const { element } = live, { Renderer, loadData, unpackReference } = live.rendering;
+    const { element } = live, { Renderer, Rendering, loadScene, loadReference } = live.rendering;
     const TYPING = 600;  // milliseconds after the last key until the picture starts again
     const MOST_SAMPLES = 4096, FIRST_VERDICT = 16;
     const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
@@ -21,10 +21,11 @@ live.page = (() => {
     class Frame {
         // `keepsTexts`: whether the reader's texts are read and stored.
         constructor(root, keepsTexts = true) {
-            Object.assign(this, { root, keepsTexts });
+            Object.assign(this, { root, keepsTexts, turn: 0 });
             this.chapter = root.dataset.chapter;
             this.about = live.chapters[this.chapter];
             this.isPaused = false;
+            this.renderings = [];  // of this chapter, and perhaps of the one before
             root.append(element("button", { type: "button", class: "live-start", click: () => this.start() }, `Render this chapter here`),
                         element("p", {}, "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
                                 "The pictures are noisy at first, and the fan may start."));
@@ -35,6 +36,9 @@ live.page = (() => {
             Frame.active = this;
             this.canvas = element("canvas", { width: "256", height: "256", role: "img", "aria-label": "the picture as it renders" });
             this.overlay = element("canvas", { class: "live-overlay", "aria-hidden": "true" });
+            this.line = element("input", { type: "range", class: "live-line", min: "0", max: "100", value: "50", hidden: "",
+                                           "aria-label": "the line between this chapter, left, and the one before", input: () => this.paint() });
+            this.caption = element("p", { class: "live-numbers" });
             this.verdict = element("p", { class: "live-verdict", role: "status", "aria-live": "polite" }, "starting …");
             this.numbers = element("p", { class: "live-numbers" });
             this.note = element("p", { class: "live-note", role: "status" });
@@ -44,8 +48,8 @@ live.page = (() => {
             await this.editor.readLink();
             this.root.replaceChildren(this.controls(),
                 element("div", { class: "live-columns" },
-                    element("div", { class: "live-picture" }, element("div", { class: "live-canvases" }, this.canvas, this.overlay),
-                            this.verdict, this.plot, this.numbers, this.note),
+                    element("div", { class: "live-picture" }, element("div", { class: "live-canvases" }, this.canvas, this.overlay, this.line),
+                            this.caption, this.verdict, this.plot, this.numbers, this.note),
                     this.editor.root), this.results);
             this.root.classList.add("live-running");
             try {
@@ -71,7 +75,7 @@ live.page = (() => {
 
         stop() {
             Frame.active = null;
-            if (this.renderer) ++this.renderer.run;
+            this.stopRenderings();
             clearTimeout(this.timer);
             this.verdict.textContent = "stopped: only one frame of a page renders at a time";
         }
@@ -92,9 +96,11 @@ live.page = (() => {
             [this.strategy, strategyLabel] = this.select("Light by", strategies.map(name => [name, { both: "both", light: "light samples", bounces: "bounces" }[name]]), restart);
             this.length = element("input", { type: "number", min: "0", max: "100", step: "1", placeholder: "as above", change: restart });
             lengthLabel.append(this.length);
+            this.compared = element("input", { type: "checkbox", change: restart });
             this.pause = this.button("Pause", () => this.setPaused(!this.isPaused));
             const bar = element("div", { class: "live-controls", role: "group", "aria-label": "controls of the picture" }, sceneLabel, viewLabel,
-                                ...(strategies.length > 1 ? [strategyLabel] : []), lengthLabel, this.pause, this.button("Restart", restart),
+                                ...(strategies.length > 1 ? [strategyLabel] : []), lengthLabel,
+                                ...(pictures.some(({ before }) => before) ? [element("label", {}, this.compared, " compare with the chapter before")] : []), this.pause, this.button("Restart", restart),
                                 this.button("Check", () => this.check()));
             if (exercise) bar.append(this.button("Start exercise 1", () => { this.editor.edit(exercise.text, exercise.file); }));
             if (bugs.length) {
@@ -146,13 +152,16 @@ live.page = (() => {
             this.shownView = this.view.value;
         }
 
-        // Loads a picture's data and compiles the reader's texts for it. Returns what Renderer.render() needs; throws ShaderErrors.
-        async prepare(picture) {
-            const { folder } = this.root.dataset, tooLong = this.editor.tooLong;
-            if (tooLong) throw new live.glsl.ShaderError(`${tooLong}:1: the text is longer than any shader needs: is it the right file?`);
-            const [scene, packed] = await Promise.all([loadData(folder, picture.scene), loadData(folder, picture.reference)]);
-            const reference = picture.unpacked ??= await unpackReference(packed);
-            const parameters = Uint32Array.from(picture.parameters), placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
+        stopRenderings() {
+            ++this.turn;
+            for (const { rendering } of this.renderings) rendering.stop();
+            this.renderings = [];
+        }
+
+        // Loads a picture's data and compiles texts for it. Throws ShaderErrors.
+        async prepare({ scene: name, parameters: words, chapter = this.chapter }, sources) {
+            const scene = await loadScene(this.root.dataset.folder, name), { layout } = this.renderer;
+            const parameters = Uint32Array.from(words), placeOf = member => layout.offsetOf("RenderParameters", member);
             const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)];
             if (this.length.value !== "") parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(this.length.value), 0), 100);
             const defines = [...scene.defines], named = {};
@@ -161,29 +170,32 @@ live.page = (() => {
                 defines.push(`VIEW_${this.view.value}`);
                 Object.assign(named, { "path_trace.glsl": "shaders/observation/view.glsl", "sample_loop.glsl": "shaders/engine/sample_loop.glsl" });
             }
-            const translated = live.glsl.translate({ sources: this.editor.sources, chapter: this.chapter, named, defines, scene });
-            this.numbers.textContent = "compiling …";
-            const started = performance.now(), program = await this.renderer.compile(translated);
-            return { program, scene, parameters, size, reference, translated, compileTime: performance.now() - started };
+            const translated = live.glsl.translate({ sources, chapter, named, defines, scene });
+            const started = performance.now(), linked = await this.renderer.compile(translated), compileTime = performance.now() - started;
+            return { rendering: new Rendering(this.renderer, { linked, scene, parameters, size }), translated, chapter, compileTime };
         }
 
-        // Renders a picture; look(film, state) is called at powers of two. Returns whether it came to its end.
+        // Renders a picture; look(film, state, verdict) is called at powers of two. Returns whether it came to its end.
         async renderPicture(picture, target, look) {
-            const turn = this.turn = (this.turn ?? 0) + 1, started = performance.now();
-            ++this.renderer.run;
-            const state = await this.prepare(picture);
-            if (turn !== this.turn) return false;
-            this.state = state;
-            const verdict = new live.statistics.LiveVerdict(state.reference, ...state.size);
-            try {
-                return await this.draw(state, verdict, target, look, started) && turn === this.turn;
-            } finally { this.renderer.gl.deleteProgram(state.program); }
-        }
-
-        draw(state, verdict, target, look, started) {
-            return this.renderer.render({
-                ...state, target, isPaused: () => this.isPaused || document.hidden,
-                shown: () => this.renderer.show({ scale: 1, isSrgb: this.view.value !== "NORMALS" }),
+            this.stopRenderings();
+            const { turn, editor: { tooLong } } = this, started = performance.now(), { before } = picture;
+            if (tooLong) throw new live.glsl.ShaderError(`${tooLong}:1: the text is longer than any shader needs: is it the right file?`);
+            this.numbers.textContent = "compiling …";
+            const reference = picture.unpacked ??= await loadReference(this.root.dataset.folder, picture.reference);
+            const state = await this.prepare(picture, this.editor.sources), { rendering } = state, states = [state];
+            if (turn === this.turn && this.compared.checked && before) states.push(await this.prepare(before, live.sources));
+            if (turn !== this.turn) {
+                for (const { rendering } of states) rendering.stop();
+                return false;
+            }
+            this.renderings = states;
+            this.line.hidden = states.length < 2;
+            this.caption.textContent = "";
+            const verdict = new live.statistics.LiveVerdict(reference, ...rendering.size), other = states[1]?.rendering;
+            const isPaused = (a, b) => this.isPaused || document.hidden || b && a.busy > b.busy && b.samples < MOST_SAMPLES;  // whoever has had more time waits
+            other?.render({ target: () => MOST_SAMPLES, isPaused: () => isPaused(other, rendering), shown: () => this.paint(), look: film => this.compare(film, reference) });
+            return rendering.render({
+                target, isPaused: () => isPaused(rendering, other), shown: () => this.paint(),
                 preview: film => {
                     this.checkLoops(film, state);
                     this.times ??= { compile: state.compileTime, first: performance.now() - started };
@@ -191,16 +203,32 @@ live.page = (() => {
                 look: film => {
                     this.checkLoops(film, state);
                     if (film.samples === verdict.nextSamples) verdict.add(film);
-                    look(film, state, verdict);
+                    look(film, reference, verdict);
                 }
             });
         }
 
+        // Shows what is rendered: this chapter's up to the line, then that of the chapter before.
+        paint() {
+            const [own, other] = this.renderings.map(({ rendering }) => rendering);
+            if (!own) return;
+            const [width] = own.size, end = other ? Math.round(width * this.line.value / 100) : width;
+            this.renderer.show(other ? [[own, end], [other, width]] : [[own, end]], this.view.value !== "NORMALS");
+            this.overlay.style.clipPath = `inset(0 ${100 * (1 - end / width)}% 0 0)`;
+        }
+
+        // What both chapters have reached in the same time. A film of the chapter before is compared with the reference, too.
+        compare(film, reference) {
+            const words = (chapter, samples, error) => `chapter ${parseInt(chapter)}: ${samples} samples, error ${(100 * error).toPrecision(2)} %`;
+            const [{ chapter }, other] = this.renderings, own = this.errors.at(-1);
+            if (own && film.samples > 1) this.caption.textContent = `After the same time, left ${words(chapter, ...own)}; right ${words(other.chapter, film.samples, live.statistics.relativeError(film, reference).error)}.`;
+        }
+
         // Throws if a loop had to be ended: then the samples are wrong.
-        checkLoops(film, state) {
+        checkLoops(film, { rendering, translated }) {
             if (!film.stuck) return;
-            const { file, line } = state.translated.loop(film.stuck);
-            ++this.renderer.run;
+            const { file, line } = translated.loop(film.stuck);
+            rendering.stop();
             throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end`);
         }
 
@@ -213,7 +241,7 @@ live.page = (() => {
             this.drawOverlay();
             this.results.replaceChildren();
             try {
-                await this.renderPicture(picture, () => MOST_SAMPLES, (film, state, verdict) => this.show(film, state, verdict, started));
+                await this.renderPicture(picture, () => MOST_SAMPLES, (...all) => this.show(...all, started));
             } catch (error) { this.report(error); }
         }
 
@@ -224,11 +252,10 @@ live.page = (() => {
             } else this.fail(error.message);
         }
 
-        show(film, state, verdict, started) {
+        show(film, reference, verdict, started) {
             this.editor.showError("");
-            this.film = film;
-            this.latest = verdict;
-            const seconds = (performance.now() - started) / 1000, { means, error } = live.statistics.relativeError(film, state.reference);
+            Object.assign(this, { film, reference, latest: verdict });
+            const seconds = (performance.now() - started) / 1000, { means, error } = live.statistics.relativeError(film, reference);
             this.means = means;
             const hasReference = !this.isView && this.length.value === "";
             const isBiased = verdict.verdict?.isBiased;
@@ -244,10 +271,10 @@ live.page = (() => {
 
         // What is not the picture itself: differences, the verdict's map, noise. One pixel of the overlay is one of the reference or a tile.
         drawOverlay() {
-            const { film, state, overlay, latest } = this, view = this.view.value;
+            const { film, reference, overlay, latest } = this, view = this.view.value;
             overlay.hidden = !film || !["difference", "bias", "noise"].includes(view) || view === "bias" && !latest.verdict;
             if (overlay.hidden) return;
-            const { reference } = state, mean = reference.mean.reduce((sum, r) => sum + r, 0) / reference.mean.length;
+            const mean = reference.mean.reduce((sum, r) => sum + r, 0) / reference.mean.length;
             const paint = (width, height, value) => {
                 [overlay.width, overlay.height] = [width, height];
                 const image = new ImageData(width, height);
@@ -289,7 +316,7 @@ live.page = (() => {
                 let last;
                 try {
                     const started = performance.now(), target = () => last && last.verdict && last.verdict.samples >= enough ? 0 : MOST_SAMPLES;
-                    const done = await this.renderPicture(picture, target, (film, state, verdict) => { last = verdict; this.show(film, state, verdict, started); });
+                    const done = await this.renderPicture(picture, target, (film, reference, verdict) => { last = verdict; this.show(film, reference, verdict, started); });
                     if (!done) return;
                 } catch (error) { this.report(error); return; }
                 rows.push([name, last.text]);
