@@ -19,7 +19,7 @@ SMALL = """for (const { pictures } of Object.values(live.chapters)) for (const {
     parameters[place] /= 2;
     parameters[place + 1] /= 2;
 }"""
-PATIENCE = 120  # seconds
+PATIENCE = 240  # seconds
 
 
 @unittest.skipUnless(CHROMIUM, "needs Chromium, which ./lab test installs")
@@ -242,11 +242,26 @@ class LivePages_all(LivePages, unittest.TestCase):
         self.assertEqual(report.count(": agrees with the reference"), 3, report)
         self.assert_no_complaints()
 
+    def check(self):
+        self.frame("void frame.check()")
+        self.wait("frame.results.textContent.includes('./lab check says')", "the check")
+        self.assert_no_complaints()
+        return self.frame("frame.results.textContent"), self.frame("[...frame.results.querySelectorAll('li')].map(fact => fact.textContent)")
+
     def test_the_check_passes_what_is_right(self):
         self.start(3)
-        self.frame("void frame.check()")
-        self.wait("frame.results.textContent.includes('./lab check')", "the check")
-        self.assertIn("Correct on all scenes", self.frame("frame.results.textContent"))
+        text, facts = self.check()
+        self.assertIn("Correct on all scenes", text)
+        self.assertEqual(facts, [])
+
+    def test_the_check_says_what_is_wrong(self):
+        self.start(3)
+        self.edit("throughput *= PI * get_brdf(s, omega);", "throughput *= 2.0 * PI * get_brdf(s, omega);")
+        text, facts = self.check()
+        self.assertIn("Biased: the estimator is wrong on a scene.", text)
+        self.assertTrue(any(re.match(r"light in the glowing ball after two bounces: 2\.0\d ± 0\.0\d times as bright as it should be \(as by a factor 2\), whatever the albedo", fact)
+                            for fact in facts), facts)
+        self.assertFalse(any(fact.startswith("light of a lamp after one bounce") for fact in facts), facts)
 
 
 if __name__ == "__main__":

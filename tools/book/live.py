@@ -18,10 +18,15 @@ from itertools import pairwise
 from pathlib import Path
 
 from book.code_blocks import take_out
+from check import facts
+from check.diagnosis import FIRST_SEED
+from check.experiments import SIZE, experiments_of, known_sights, write_scene
+from check.grading import expected_file
 from project import CHAPTERS, ROOT, UserError, chapter_named, description, failure_text, original, program_file, read_json, run_program, scene_of
 
 HERE = Path(__file__).parent / "live"
-SCRIPTS = ["glsl.js", "verdict.js", "renderer.js", "editor.js", "page.js"]
+SCRIPTS = ["glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "check.js", "report.js", "page.js"]
+RULES = ["SURE", "TOLERANCE", "CLOSE", "INTERVAL", "DARK", "FEW_PARTS", "CONSTANTS"]  # of facts.py, which facts.js follows
 MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+))? -->$", re.MULTILINE)
 REPORT = "report"
 LARGEST = 2_500_000  # bytes of a scene on a page
@@ -101,7 +106,7 @@ def numbers_of(entry, content, code="f"):
 def dumped(chapter, name, folder):
     """A picture's entry, and the scripts that it loads: {file name: text}."""
     arrays, content = dump(folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name))
-    (parameters,), references = arrays.pop("parameters"), arrays.pop("reference")
+    (parameters,), references, _ = arrays.pop("parameters"), arrays.pop("reference"), arrays.pop("options")  # a page has its own
     mean, variance = (numbers_of(entry, content) for entry in references)
     (means, mean_scale), (deviations, deviation_scale) = halves(mean), halves([number**0.5 for number in variance])
     reference = {"width": references[0]["width"], "height": references[0]["height"], "samples": float(references[0]["samples"]),
@@ -119,6 +124,31 @@ def fits(scripts):
 
 def script(name, value):
     return f"live.data[{json.dumps(name)}] = {json.dumps(value)};\n"
+
+
+def experiments_of_page(chapter, folder):
+    """The experiments of ./lab check as a page renders them: their scenes' arrays, each once, and what the chapter's own shader shows."""
+    number = int(chapter[:2])
+    expected, shown, scenes = read_json(expected_file(number))["experiments"], [], []
+    for name, experiment in experiments_of(number).items():
+        points, sights = [], known_sights(expected[name])
+        for index, (point, sight) in enumerate(zip(experiment.points, sights)):
+            file = write_scene(point.scene, folder, f"{chapter}_{name}_{index}")
+            arrays, content = dump(folder / f"{chapter}_point", chapter, file, "--width", str(SIZE), "--height", str(SIZE), *point.options.split(),
+                                   "--seed", str(FIRST_SEED + index))
+            (parameters,) = arrays.pop("parameters")
+            arrays["packed"] = packed(content[:4 * parameters["first"]])
+            options = arrays.pop("options")
+            if arrays not in scenes:
+                scenes.append(arrays)
+            points.append({"at": point.at, "samples": point.samples, "channel": point.channel, "mean": sight.mean, "error": sight.error, "options": options,
+                           "scene": scenes.index(arrays), "parameters": list(numbers_of(parameters, content, "I"))})
+        shown.append({"name": name, "subject": experiment.subject, "varies": experiment.varies, "when": experiment.when, "points": points})
+    # Scenes with the same features share a program.
+    stack = max((define for arrays in scenes for define in arrays["defines"] if define.startswith("BVH_STACK_SIZE")), key=lambda define: int(define.split()[1]))
+    for arrays in scenes:
+        arrays["defines"] = [stack if define.startswith("BVH_STACK_SIZE") else define for define in arrays["defines"]]
+    return {"experiments": shown, "scenes": scenes, "rules": {name: getattr(facts, name) for name in RULES}}
 
 
 def exercise_of(chapter, texts):
@@ -145,6 +175,7 @@ def write(folder, frames):
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
         wanted = {(each, name) for chapter in frames for name in names[chapter] for each in (chapter, before.get(chapter)) if each}
         jobs = {pair: pool.submit(dumped, *pair, Path(temporary)) for pair in sorted(wanted)}
+        experiments = {chapter: pool.submit(experiments_of_page, chapter, Path(temporary)) for chapter in frames}
         for chapter in frames:
             told, pictures = description(chapter), []
             for name in names[chapter]:
@@ -161,6 +192,7 @@ def write(folder, frames):
             chapters[chapter] = {"title": told["title"], "strategies": told.get("strategies", []), "pictures": pictures,
                                  "samples": told["check"]["samples"], "checked": told["check"]["references"],
                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)}
+            scripts[f"experiments_{chapter}"] = script(f"experiments_{chapter}", experiments[chapter].result())
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")

@@ -6,7 +6,7 @@ globalThis.live = live;
 live.page = (() => {
     const { element } = live, { Renderer, Rendering, loadScene, loadReference } = live.rendering;
     const TYPING = 600;  // milliseconds after the last key until the picture starts again
-    const MOST_SAMPLES = 4096, FIRST_VERDICT = 16;
+    const MOST_SAMPLES = 4096;
     const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
                     ALBEDO: "albedo", NORMALS: "normals" };
 
@@ -158,14 +158,16 @@ live.page = (() => {
             this.renderings = [];
         }
 
-        // Loads a picture's data and compiles texts for it. Throws ShaderErrors.
-        async prepare({ scene: name, parameters: words, chapter = this.chapter }, sources) {
-            const scene = await loadScene(this.root.dataset.folder, name), { layout } = this.renderer;
-            const parameters = Uint32Array.from(words), placeOf = member => layout.offsetOf("RenderParameters", member);
+        // The defines of the page's own options.
+        get options() { return this.strategy.value ? [`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`] : []; }
+
+        // Compiles texts for a picture's scene. Throws ShaderErrors.
+        async prepare({ scene, parameters: words, chapter = this.chapter, options = this.options }, sources) {
+            if (typeof scene === "string") scene = await loadScene(this.root.dataset.folder, scene);
+            const parameters = Uint32Array.from(words), placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
             const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)];
             if (this.length.value !== "") parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(this.length.value), 0), 100);
-            const defines = [...scene.defines], named = {};
-            if (this.strategy.value) defines.push(`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`);
+            const defines = [...scene.defines, ...options], named = {};
             if (this.isView) {
                 defines.push(`VIEW_${this.view.value}`);
                 Object.assign(named, { "path_trace.glsl": "shaders/observation/view.glsl", "sample_loop.glsl": "shaders/engine/sample_loop.glsl" });
@@ -245,6 +247,17 @@ live.page = (() => {
             } catch (error) { this.report(error); }
         }
 
+        async check() {
+            if (!this.renderer) return;
+            clearTimeout(this.timer);
+            this.setPaused(false);
+            this.compared.checked = false;
+            this.view.value = "picture";
+            this.length.value = "";
+            if (this.strategy.value) this.strategy.selectedIndex = 0;
+            try { await live.check(this, MOST_SAMPLES); } catch (error) { this.report(error); }
+        }
+
         report(error) {
             if (error instanceof live.glsl.ShaderError) {
                 this.editor.showError(error.message);
@@ -299,87 +312,13 @@ live.page = (() => {
                 `<text x="2" y="${y(first[1]) + 4}">${percent(first[1])}</text><text x="2" y="${y(last[1]) + 4}">${percent(last[1])}</text>` +
                 `<text x="${x(first[0])}" y="106" text-anchor="middle">${first[0]}</text><text x="${x(last[0])}" y="106" text-anchor="middle">${last[0]}</text></svg>`;
         }
-
-        // The verdicts on the scenes of ./lab check, one after the other.
-        async check() {
-            if (!this.renderer) return;
-            const { checked, pictures, samples } = this.about, rows = [], enough = Math.max(samples, FIRST_VERDICT);
-            clearTimeout(this.timer);
-            this.setPaused(false);
-            this.view.value = "picture";
-            this.length.value = "";
-            this.errors = [];
-            for (const name of checked) {
-                const picture = pictures.find(p => p.name === name);
-                if (!picture) { rows.push([name, "is too large for a page: ./lab check renders it"]); continue; }
-                this.scene.value = pictures.indexOf(picture);
-                let last;
-                try {
-                    const started = performance.now(), target = () => last && last.verdict && last.verdict.samples >= enough ? 0 : MOST_SAMPLES;
-                    const done = await this.renderPicture(picture, target, (film, reference, verdict) => { last = verdict; this.show(film, reference, verdict, started); });
-                    if (!done) return;
-                } catch (error) { this.report(error); return; }
-                rows.push([name, last.text]);
-                this.results.replaceChildren(element("table", {}, ...rows.map(row => element("tr", {}, ...row.map(cell => element("td", {}, cell))))));
-            }
-            const isBiased = rows.some(([, text]) => text.startsWith("biased"));
-            this.results.prepend(element("p", {}, element("strong", {}, isBiased ? "Biased: the estimator is wrong on a scene." : "Correct on all scenes, as far as these samples tell."),
-                                 " ./lab check says more: where a bias begins, and how noisy the estimator is."));
-        }
-    }
-
-    // Tries chapters one after the other, and writes what a developer wants to know about the device.
-    class Report {
-        static chapters = ["next_event_estimation", "dielectrics", "light_probes"];
-        static patience = 120;  // seconds for a chapter
-
-        constructor(root) {
-            this.root = root;
-            this.text = element("textarea", { readonly: "", rows: "16", "aria-label": "the report" });
-            this.frames = element("div");
-            root.append(element("button", { type: "button", class: "live-start", click: () => this.run() }, "Try it"), this.text, this.frames);
-        }
-
-        say(line) { this.text.value += `${line}\n`; }
-
-        async run() {
-            this.text.value = "";
-            this.say(navigator.userAgent);
-            this.say(`screen ${screen.width} x ${screen.height}, ${navigator.hardwareConcurrency} threads`);
-            for (const name of Report.chapters) {
-                const chapter = Object.keys(live.chapters).find(folder => folder.endsWith(name));
-                if (chapter) await this.try(chapter);
-            }
-            this.frames.replaceChildren();
-            this.say("done");
-        }
-
-        async try(chapter) {
-            const root = element("div", { "data-chapter": chapter, "data-folder": this.root.dataset.folder }), started = performance.now();
-            this.frames.replaceChildren(root);
-            const frame = root.frame = new Frame(root, false), seconds = () => (performance.now() - started) / 1000;
-            await frame.start();
-            if (frame.renderer && !this.isKnown) {
-                const { gl, parallel, device } = frame.renderer;
-                this.say(`device ${device.name}; textures up to ${gl.getParameter(gl.MAX_TEXTURE_SIZE)}; ${parallel ? "compiles" : "does not compile"} beside the page`);
-                this.isKnown = true;
-            }
-            const isOver = () => frame.latest?.verdict || frame.verdict.classList.contains("live-failed") || seconds() > Report.patience;
-            while (!isOver()) await live.rendering.pause(100);
-            this.say(`\n${chapter}: ${frame.verdict.textContent}`);
-            if (frame.times) this.say(`compiled in ${frame.times.compile.toFixed(0)} ms, first picture after ${frame.times.first.toFixed(0)} ms; ${frame.numbers.textContent}`);
-            if (frame.editor.error.textContent) this.say(frame.editor.error.textContent);
-            if (frame.losses) this.say(`the browser took the GPU away ${frame.losses} times`);
-            frame.stop();
-            frame.renderer?.gl.getExtension("WEBGL_lose_context")?.loseContext();
-        }
     }
 
     function init() {
         for (const root of document.querySelectorAll("div.live")) {
             if (root.frame || root.report) continue;  // each frame of a page brings this script
             root.replaceChildren();
-            if (root.dataset.chapter === "report") root.report = new Report(root);
+            if (root.dataset.chapter === "report") root.report = new live.Report(root, Frame);
             if (root.dataset.chapter in live.chapters) root.frame = new Frame(root);
         }
     }

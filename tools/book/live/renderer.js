@@ -5,6 +5,7 @@ globalThis.live = live;
 
 live.rendering = (() => {
     const WIDTH = 2048;  // texels of the arrays' texture, which every device allows
+    const MOST_PROGRAMS = 16;  // that are kept
     const FILM = [0, 1, 2];  // its textures
     const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
     const FULL_SCREEN = `#version 300 es
@@ -50,10 +51,12 @@ void main() {
         return exponent === 0 ? fraction * 2 ** -24 : (1 + fraction / 1024) * 2 ** (exponent - 15);
     }
 
+    const unpackWords = async packed => new Uint32Array(await unpack(packed));
+
     // A scene, with its words.
     async function loadScene(folder, name) {
         const scene = await loadData(folder, name);
-        scene.words ??= new Uint32Array(await unpack(scene.packed));
+        scene.words ??= await unpackWords(scene.packed);
         return scene;
     }
 
@@ -80,6 +83,7 @@ void main() {
         make() {
             this.parallel = this.gl.getExtension("KHR_parallel_shader_compile");
             this.display = this.link(FULL_SCREEN, DISPLAY);
+            this.compiled = new Map();  // the last programs by their text, the oldest first
         }
 
         // The name of the device, and whether a program draws in place of one.
@@ -102,14 +106,21 @@ void main() {
             return { program, place: name => places[name] ??= gl.getUniformLocation(program, name) };
         }
 
-        // Compiles a translated shader. Throws a ShaderError with the place in the reader's files.
+        // Compiles a translated shader, or returns one of the last. Throws a ShaderError with the place in the reader's files.
         async compile(translated) {
-            const { gl, parallel } = this, linked = this.link(FULL_SCREEN, translated.text), { program } = linked;
+            const { gl, parallel, compiled } = this, linked = compiled.get(translated.text) ?? this.link(FULL_SCREEN, translated.text), { program } = linked;
+            compiled.delete(translated.text);
             while (parallel && !gl.isContextLost() && !gl.getProgramParameter(program, parallel.COMPLETION_STATUS_KHR)) await pause(5);
             if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
                 const logs = gl.getAttachedShaders(program).map(shader => gl.getShaderInfoLog(shader) ?? "");
                 gl.deleteProgram(program);
                 throw new live.glsl.ShaderError(live.glsl.readableError(logs.find(log => log.trim()) ?? gl.getProgramInfoLog(program) ?? "", translated.place));
+            }
+            compiled.set(translated.text, linked);
+            if (compiled.size > MOST_PROGRAMS) {
+                const [[oldest, { program }]] = compiled;
+                compiled.delete(oldest);
+                gl.deleteProgram(program);
             }
             return linked;
         }
@@ -180,10 +191,9 @@ void main() {
 
         // Ends render() at its next draw.
         stop() {
-            const { gl, linked, films, arrays, probe } = this;
+            const { gl, films, arrays, probe } = this;
             if (this.isStopped) return;
             this.isStopped = true;
-            gl.deleteProgram(linked.program);
             for (const texture of [arrays, probe, ...films.flatMap(film => film.textures)]) gl.deleteTexture(texture ?? null);
             for (const { frame } of films) gl.deleteFramebuffer(frame);
         }
@@ -233,9 +243,10 @@ void main() {
 
         // Renders until `target()` samples are reached or stop() is called. Calls `look(film)` at 1, 2, 4, … samples and the target, and
         // before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns whether it was not stopped.
-        async render({ target, isPaused = () => false, preview = () => {}, look, shown = () => {} }) {
+        // `pace`: how much fits into a draw, from the last picture if it was like this one.
+        async render({ target, isPaused = () => false, preview = () => {}, look, shown = () => {} }, pace = { rows: 8, step: 1 }) {
             const { gl, size } = this;
-            let rows = 8, step = 1, isPreview = true;
+            let { rows, step } = pace, isPreview = true;
             while (this.samples < target()) {
                 const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1), next = Math.min(this.samples + step, look_at, target());
                 for (let row = 0; row < size[1];) {
@@ -252,6 +263,7 @@ void main() {
                     else if (time < SHORT && row >= size[1]) step *= 2;
                     else if (time > LONG && step > 1) step = Math.ceil(step / 2);
                     else if (time > LONG) rows = Math.max(1, Math.floor(rows / 2));
+                    Object.assign(pace, { rows, step });
                     if (this.isFirstPass) shown();
                 }
                 this.films.reverse();
@@ -294,5 +306,5 @@ void main() {
         }
     }
 
-    return { Renderer, Rendering, loadScene, loadReference, pause };
+    return { Renderer, Rendering, loadData, loadScene, loadReference, unpackWords, pause };
 })();
