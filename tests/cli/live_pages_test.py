@@ -169,6 +169,16 @@ class LivePagesTest(LivePages, unittest.TestCase):
             self.frame(f"frame.plant(frame.about.bugs[{number}])")
             self.assertEqual(self.frame("frame.editor.edited.length"), 1, f"bug {number + 1}")
 
+    def test_the_gallery_starts_from_bugs(self):
+        self.browser.visit("about:blank")
+        self.browser.visit((self.site / "docs/bugs.html").as_uri())
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.live-start').length"), (PROJECT / "docs/bugs.md").read_text(encoding="utf-8").count("<!-- live: "))
+        self.browser.evaluate(f"{SMALL}; document.querySelector('.live-start').click()")
+        self.wait("frame.latest?.verdict", "a verdict")
+        self.assertRegex(self.frame("frame.latest.text"), "^biased: ")
+        self.assertEqual(self.browser.evaluate("localStorage.length"), 0)
+        self.assert_no_complaints()
+
     def test_the_chapter_before_has_the_same_time(self):
         self.start(3)
         self.frame("(frame.compared.checked = true, frame.restart(), 0)")
@@ -240,6 +250,8 @@ class LivePages_all(LivePages, unittest.TestCase):
             time.sleep(1)
             report = self.browser.evaluate("document.querySelector('.live textarea').value")
         self.assertEqual(report.count(": agrees with the reference"), 3, report)
+        wrong = re.search(r"^furnace: (\d+) of 65536 pixels are wrong after 64 samples, 0 samples are no numbers$", report, re.MULTILINE)
+        self.assertLess(int(wrong[1]), 20, report)  # missed hits: rays that pass between two triangles, as there is no `precise`
         self.assert_no_complaints()
 
     def check(self):

@@ -1,7 +1,8 @@
 """The lab in the browser: what the pages of a book need to render its chapters.
 
 A line <!-- live: SCENE --> on a chapter's page becomes a frame in which the chapter renders this scene or those of its check. On
-other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. <!-- live: report --> becomes a button that
+other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. <!-- live: PICTURE by
+CHAPTER bug NUMBER --> starts from a mistake of ./lab bug, in one of the chapter's pictures. <!-- live: report --> becomes a button that
 tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
 """
 import base64
@@ -27,7 +28,7 @@ from project import CHAPTERS, ROOT, UserError, chapter_named, description, failu
 HERE = Path(__file__).parent / "live"
 SCRIPTS = ["glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "check.js", "report.js", "page.js"]
 RULES = ["SURE", "TOLERANCE", "CLOSE", "INTERVAL", "DARK", "FEW_PARTS", "CONSTANTS"]  # of facts.py, which facts.js follows
-MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+))? -->$", re.MULTILINE)
+MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+)(?: bug (\d+))?)? -->$", re.MULTILINE)
 REPORT = "report"
 LARGEST = 2_500_000  # bytes of a scene on a page
 HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halves end at 65504 and lose digits below 6e-5
@@ -36,7 +37,7 @@ SHADERS = {".glsl", ".h", ".frag"}
 
 def frames_of(text, path):
     """{chapter: scene} of a page's markers."""
-    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text) if marker[1] != REPORT}
+    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text) if marker[1] != REPORT and not marker[3]}
 
 
 def chapter_of(marker, path):
@@ -49,12 +50,14 @@ def with_frames(text, path):
     folder = "../" * (len(path.parts) - 1) + "live/"
 
     def frame(marker):
-        scripts = "".join(f'<script src="{folder}{name}"></script>' for name in ["sources.js", *SCRIPTS])
         what = REPORT if marker[1] == REPORT else chapter_of(marker, path)
-        return (f'<link rel="stylesheet" href="{folder}live.css">\n<div class="live" data-chapter="{what}" data-folder="{folder}">'
-                f'<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>{scripts}\n')
+        bug = f' data-bug="{marker[3]}" data-picture="{marker[1]}"' if marker[3] else ""
+        return (f'<div class="live" data-chapter="{what}" data-folder="{folder}"{bug}>'
+                f'<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>\n')
 
-    return MARKER.sub(frame, text)
+    text, count = MARKER.subn(frame, text)
+    scripts = "".join(f'<script src="{folder}{name}"></script>' for name in ["sources.js", *SCRIPTS])
+    return text + (f'\n\n<link rel="stylesheet" href="{folder}live.css">{scripts}\n' if count else "")
 
 
 def shaders():
@@ -151,6 +154,15 @@ def experiments_of_page(chapter, folder):
     return {"experiments": shown, "scenes": scenes, "rules": {name: getattr(facts, name) for name in RULES}}
 
 
+def furnace(folder):
+    """A closed room in which every path brings the same light, as chapter 2 weighs by the albedo, 0.5, alone: what is dark there has been lost between triangles."""
+    chapter = CHAPTERS[2]
+    arrays, content = dump(folder / "furnace", chapter, "furnace", "--max-path-length", "6", "--width", "256", "--height", "256")
+    (parameters,), _ = arrays.pop("parameters"), arrays.pop("options")
+    return {"chapter": chapter, "scene": arrays, "packed": packed(content[:4 * parameters["first"]]), "radiance": 2 - 0.5**6,
+            "parameters": list(numbers_of(parameters, content, "I"))}
+
+
 def exercise_of(chapter, texts):
     """The file of exercise 1 and its text with the placeholder; none in a student's tree, where that is the file's text."""
     exercise = description(chapter).get("exercise")
@@ -193,6 +205,7 @@ def write(folder, frames):
                                  "samples": told["check"]["samples"], "checked": told["check"]["references"],
                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)}
             scripts[f"experiments_{chapter}"] = script(f"experiments_{chapter}", experiments[chapter].result())
+        scripts["furnace"] = script("furnace", furnace(Path(temporary)))
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")

@@ -26,7 +26,9 @@ live.page = (() => {
             this.about = live.chapters[this.chapter];
             this.isPaused = false;
             this.renderings = [];  // of this chapter, and perhaps of the one before
-            root.append(element("button", { type: "button", class: "live-start", click: () => this.start() }, `Render this chapter here`),
+            this.bug = this.about.bugs[root.dataset.bug - 1];
+            if (root.dataset.bug && !this.bug) return;  // a student's book has none
+            root.append(element("button", { type: "button", class: "live-start", click: () => this.start() }, this.bug ? "Find this bug here" : "Render this chapter here"),
                         element("p", {}, "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
                                 "The pictures are noisy at first, and the fan may start."));
         }
@@ -51,6 +53,10 @@ live.page = (() => {
                     element("div", { class: "live-picture" }, element("div", { class: "live-canvases" }, this.canvas, this.overlay, this.line),
                             this.caption, this.verdict, this.plot, this.numbers, this.note),
                     this.editor.root), this.results);
+            if (this.bug) {
+                this.scene.value = Math.max(this.about.pictures.findIndex(({ name }) => name === this.root.dataset.picture), 0);
+                this.plant(this.bug);
+            }
             this.root.classList.add("live-running");
             try {
                 this.renderer = new Renderer(this.canvas);
@@ -316,10 +322,9 @@ live.page = (() => {
 
     function init() {
         for (const root of document.querySelectorAll("div.live")) {
-            if (root.frame || root.report) continue;  // each frame of a page brings this script
             root.replaceChildren();
             if (root.dataset.chapter === "report") root.report = new live.Report(root, Frame);
-            if (root.dataset.chapter in live.chapters) root.frame = new Frame(root);
+            if (root.dataset.chapter in live.chapters) root.frame = new Frame(root, !root.dataset.bug);
         }
     }
     if (document.readyState === "loading") addEventListener("DOMContentLoaded", init); else init();
