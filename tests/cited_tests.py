@@ -1,4 +1,4 @@
-"""The tests that docs/numerics.md cites for each hard case of the numerics: those in hard_cases/cases.json."""
+"""Which tests exist, and those that docs/numerics.md cites for each hard case of the numerics: those in hard_cases/cases.json."""
 import re
 from pathlib import Path
 
@@ -6,7 +6,13 @@ import test_report
 from project import BINARIES, read_json
 
 TESTS = Path(__file__).resolve().parent
+TEST = re.compile(r"^TEST(?:_[PF])?\((\w+), (\w+)\)", re.MULTILINE)
 PROGRAMS = ["unit", "shaders", "convergence", "parity", "hard_cases"]
+
+
+def written_tests():
+    """(suite, test) of everything that the sources of the tests in C++ define, whether it is built or not."""
+    return {pair for file in TESTS.rglob("*.cpp") for pair in TEST.findall(file.read_text(encoding="utf-8"))}
 
 
 def load_cases():

@@ -125,7 +125,7 @@ def number(kind, low, high=1e9):
 
 
 def add_device_options(parser):
-    parser.add_argument("--backend", choices=["auto", "pipeline", "query", "compute", "native"], default="auto", help="default: auto")
+    parser.add_argument("--backend", default="auto", metavar="NAME", help="one that --list-devices of a chapter shows; default: auto")
     parser.add_argument("--device", help="number or part of the name of the device")
 
 

@@ -20,6 +20,10 @@ std::filesystem::path cache_folder() {
 
 }  // namespace
 
+std::string cache_name(const std::string& kind, std::string_view key) {
+    return kind + "-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
+}
+
 std::filesystem::path cache_file(const std::string& name) {
     const auto folder = cache_folder();
     return folder.empty() ? folder : folder / name;

@@ -8,6 +8,9 @@
 
 namespace lab {
 
+// The name of the entry for `key`, such as a source. Two hashes make a chance collision impossible in practice.
+std::string cache_name(const std::string& kind, std::string_view key);
+
 // Contents of the entry `name`, if it exists.
 std::optional<std::string> read_cache(const std::string& name);
 

@@ -308,7 +308,7 @@ VkBool32 Device::receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebug
 static std::string pipeline_cache_name(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties();
     const std::string_view uuid(reinterpret_cast<const char*>(properties.pipelineCacheUUID.data()), VK_UUID_SIZE);
-    return "pipelines-" + std::to_string(hash_text(uuid));
+    return cache_name("pipelines", uuid);
 }
 
 void Device::load_pipeline_cache() {

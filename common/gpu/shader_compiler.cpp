@@ -8,7 +8,6 @@
 #include <cstring>
 #include <optional>
 #include <regex>
-#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -38,17 +37,19 @@ std::optional<std::string> included_name(std::string_view line) {
 }
 
 // Replaces each #include "…" by the file's text, every file once, with #line directives. The result is the compiler's input and
-// the cache key. Shaders may come from strangers, so included files must lie in the folder of a named file, in shaders/ or in
-// chapters/. Windows line ends and a byte order mark are accepted.
+// the cache key. Shaders may come from strangers, so included files must lie in the folder of a named file or of a replacement,
+// in shaders/ or in chapters/. Windows line ends and a byte order mark are accepted.
 class Includer {
   public:
-    explicit Includer(const ShaderSource& source) : named_(source.named_includes) {
+    explicit Includer(const ShaderSource& source) : named_(source.named_includes), replacements_(source.replacements) {
         folders_ = {project_folder() / "shaders", project_folder() / "chapters", fs::absolute(source.file).parent_path()};
         for (const auto& [name, file] : named_) folders_.push_back(fs::absolute(file).parent_path());
+        for (const auto& [place, file] : replacements_) folders_.push_back(fs::absolute(file).parent_path());
         for (fs::path& folder : folders_) folder = fs::weakly_canonical(folder);
     }
 
-    std::string expand(const fs::path& file) {
+    std::string expand(const fs::path& place) {
+        const auto& [canonical, file] = *read_.emplace(fs::weakly_canonical(place), file_at(place)).first;
         // #line has names in quotes, and compilers disagree about escapes in them.
         if (file.generic_string().find_first_of("\"\\") != std::string::npos)
             throw UserError(file.generic_string() + ": the path of a shader must not contain \" or \\: rename the folder");
@@ -59,36 +60,44 @@ class Includer {
         for (int number = 1; std::getline(stream, line); ++number) {
             if (line.ends_with('\r')) line.pop_back();
             const std::optional<std::string> name = included_name(line);
-            text += name ? include(*name, file, number) : line + "\n";
+            text += name ? include(*name, place, file, number) : line + "\n";
         }
         return text;
     }
 
-    // Files included so far.
-    const std::set<fs::path>& included() const { return seen_; }
+    // Places included so far, and the files that were read.
+    const std::map<fs::path, fs::path>& read() const { return read_; }
 
   private:
-    // The text that replaces an #include line.
-    std::string include(const std::string& name, const fs::path& includer, int line) {
-        const std::string place = includer.generic_string() + ":" + std::to_string(line) + ": ";
-        const fs::path file = find(name, includer, place);
-        std::string text;
-        if (seen_.insert(fs::weakly_canonical(file)).second) text += "#line 1 \"" + file.generic_string() + "\"\n" + expand(file);
-        return text + "#line " + std::to_string(line + 1) + " \"" + includer.generic_string() + "\"\n";
+    // The file that is read at this place.
+    fs::path file_at(const fs::path& place) const {
+        const auto replaced = replacements_.find(fs::weakly_canonical(place));
+        return replaced == replacements_.end() ? place : replaced->second;
     }
 
-    fs::path find(const std::string& name, const fs::path& includer, const std::string& place) const {
+    // The text that replaces an #include line of the file that is read at the place `includer`.
+    std::string include(const std::string& name, const fs::path& includer, const fs::path& file, int line) {
+        const std::string where = file.generic_string() + ":" + std::to_string(line) + ": ";
+        const fs::path place = find(name, {includer.parent_path(), file.parent_path()}, where);
+        std::string text;
+        if (!read_.contains(fs::weakly_canonical(place)))
+            text += "#line 1 \"" + file_at(place).generic_string() + "\"\n" + expand(place);
+        return text + "#line " + std::to_string(line + 1) + " \"" + file.generic_string() + "\"\n";
+    }
+
+    fs::path find(const std::string& name, std::vector<fs::path> folders, const std::string& where) const {
         if (const auto named = named_.find(name); named != named_.end()) return named->second;
-        for (const fs::path& folder : {includer.parent_path(), project_folder() / "shaders", project_folder() / "chapters"}) {
+        folders.insert(folders.end(), {project_folder() / "shaders", project_folder() / "chapters"});
+        for (const fs::path& folder : folders) {
             std::error_code error;
-            const fs::path file = folder / name;
-            if (!fs::exists(file, error)) continue;
-            if (!is_in_the_tree(file))
-                throw UserError(place + "the include file " + in_quotes(name) +
+            const fs::path place = folder / name;
+            if (!fs::exists(place, error)) continue;
+            if (!is_in_the_tree(place))
+                throw UserError(where + "the include file " + in_quotes(name) +
                                 " is outside of the shader's folder, shaders/ and chapters/: copy it there");
-            return file;
+            return place;
         }
-        throw UserError(place + "cannot find the include file " + in_quotes(name));
+        throw UserError(where + "cannot find the include file " + in_quotes(name));
     }
 
     bool is_in_the_tree(const fs::path& file) const {
@@ -100,7 +109,8 @@ class Includer {
 
     const std::map<std::string, fs::path>& named_;
     std::vector<fs::path> folders_;
-    std::set<fs::path> seen_;
+    const Replacements& replacements_;
+    std::map<fs::path, fs::path> read_;  // canonical places
 };
 
 constexpr struct {
@@ -245,12 +255,10 @@ std::vector<uint32_t> compile(const ShaderSource& source, const ExpandedShader& 
 
 }  // namespace
 
-std::vector<fs::path> shader_files(const ShaderSource& source) {
+std::map<fs::path, fs::path> shader_files(const ShaderSource& source) {
     Includer includer(source);
     includer.expand(source.file);
-    std::vector<fs::path> files{source.file};
-    files.insert(files.end(), includer.included().begin(), includer.included().end());
-    return files;
+    return includer.read();
 }
 
 std::vector<uint32_t> compile_shader(const ShaderSource& source) {
@@ -259,8 +267,7 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
     const std::string key = expanded.preamble + expanded.text + source.file.extension().string() + "/" +
                             std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
                             std::to_string(version.patch);
-    // Two independent 64-bit hashes make a chance collision impossible in practice.
-    const std::string name = "shader-" + std::to_string(hash_text(key)) + "-" + std::to_string(hash_text(key, key.size()));
+    const std::string name = cache_name("shader", key);
     std::vector<uint32_t> words;
     if (const auto cached = read_cache(name)) {
         words.resize(cached->size() / sizeof(uint32_t));

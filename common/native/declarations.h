@@ -20,8 +20,8 @@ class DeclarationReader : protected ExpressionReader {
     }
     std::string structure() {
         std::string text = take(), parameters, initialisers, copies, members;
-        const std::string name = peek(), kind = has_lanes() ? name + "__" : name;
-        declare_type(name);
+        const std::string name = spelled(peek()), kind = has_lanes() ? name + "__" : name;
+        declare_type(peek());
         if (has_lanes())
             text = join({" template <template <typename> class W> ", text, skip(), " ", kind, expect("{")});
         else

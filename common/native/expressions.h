@@ -242,14 +242,14 @@ class ExpressionReader : protected TokenReader, protected Variance {
             const std::string type = take();
             auto sizes = dimensions();
             sizes.erase(sizes.begin());
-            return call("make_array<" + array_type(type, sizes) + ">", word, Call::constructor);
+            return call(" make_array<" + array_type(type, sizes) + ">", word, Call::constructor);
         }
         if (is_type(word))
             return call(scalar_types.contains(word) ? skip() + "scalar<" + word + ">" : take(), word, Call::constructor);
         if (is_name(word) && peek(1) == "(") {
             const auto found = functions_.find(word);
             std::string name = take();
-            if (declared_.contains(word)) name.insert(name.size() - word.size(), "this->");
+            if (declared_.contains(word)) name.insert(name.size() - spelled(word).size(), "this->");
             if (found == functions_.end()) return call(name, word, Call::builtin, outs_of_builtin(word));
             return call(name, word, Call::function, found->second);
         }

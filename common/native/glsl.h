@@ -127,23 +127,25 @@ constexpr auto each(F f, const T& x, const More&... more) {
     }
 }
 
-// Operators on numbers of different types.
+// Operators on numbers of different types. A shift keeps the type of what is shifted.
 template <typename A, typename B>
 concept Mixed = !std::is_same_v<Component<A>, Component<B>> &&
                 (!std::is_arithmetic_v<A> || !std::is_arithmetic_v<B>)&&std::is_arithmetic_v<Component<A>> &&
                 std::is_arithmetic_v<Component<B>>;
-#define LAB_OPERATOR(op)              \
+#define LAB_OPERATOR(op, ...)         \
     template <typename A, typename B> \
     requires Mixed<A, B>              \
-    constexpr auto operator op(const A& a, const B& b) { return as<Common<A, B>>(a) op as<Common<A, B>>(b); }
-LAB_OPERATOR(+)
-LAB_OPERATOR(-)
-LAB_OPERATOR(*)
-LAB_OPERATOR(/)
-LAB_OPERATOR(%)
-LAB_OPERATOR(&)
-LAB_OPERATOR(|)
-LAB_OPERATOR(^)
+    constexpr auto operator op(const A& a, const B& b) { return as<__VA_ARGS__>(a) op as<__VA_ARGS__>(b); }
+LAB_OPERATOR(+, Common<A, B>)
+LAB_OPERATOR(-, Common<A, B>)
+LAB_OPERATOR(*, Common<A, B>)
+LAB_OPERATOR(/, Common<A, B>)
+LAB_OPERATOR(%, Common<A, B>)
+LAB_OPERATOR(&, Common<A, B>)
+LAB_OPERATOR(|, Common<A, B>)
+LAB_OPERATOR(^, Common<A, B>)
+LAB_OPERATOR(<<, Component<A>)
+LAB_OPERATOR(>>, Component<A>)
 #undef LAB_OPERATOR
 
 template <int... i, typename V>
@@ -242,6 +244,7 @@ struct Builtins {
 #undef LAB_NUMBERS
 #undef LAB_SAME
 
+    static float normalize(std::convertible_to<float> auto x) { return float(x) / glm::abs(float(x)); }  // GLM's takes no number
     template <typename A, typename B, typename Weight>
     static constexpr auto mix(const A& a, const B& b, const Weight& weight) {
         if constexpr (std::is_same_v<Component<Weight>, bool>)

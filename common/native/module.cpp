@@ -218,7 +218,7 @@ void* load_library(const std::string& text, const std::vector<std::string>& argu
     for (const auto& argument : arguments) key += " " + argument;
     for (const char* header : {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "bindings.h", "embree.h"})
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
-    const std::string name = "native-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
+    const std::string name = cache_name("native", key);
     const fs::path file = cache_file(name);
     {
         const std::scoped_lock lock(mutex_of(name));  // of two threads that want the same, one waits for what the other compiles

@@ -25,6 +25,10 @@ inline const Names cpp_words{
     "noexcept", "not", "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "register", "reinterpret_cast",
     "requires", "signed", "static_assert", "static_cast", "stderr", "stdin", "stdout", "thread_local", "throw", "try", "typeid",
     "typename", "virtual", "wchar_t", "xor", "xor_eq"};
+// Names that the translation uses itself.
+inline const Names own_words{
+    "Array", "Builtins", "Loop", "Shader", "Span", "copied", "each", "get", "get_array", "get_constant", "glm", "lab", "lanes",
+    "local_size", "make_array", "native", "run_group", "scalar", "std", "swizzle", "swizzled"};
 // clang-format on
 
 inline bool is_vector_type(const std::string& name) {
@@ -160,7 +164,8 @@ class TokenReader {
                         "' means here: use another one, --backend compute");
     }
     static std::string spelled(const std::string& token) {
-        if (cpp_words.contains(token) || token.ends_with('_')) return token + "_";  // so that new and new_ are two names
+        if (cpp_words.contains(token) || own_words.contains(token) || token.ends_with('_'))
+            return token + "_";  // so that new and new_ are two names
         if (std::isdigit(static_cast<unsigned char>(token[0])) || (token[0] == '.' && token.size() > 1)) {
             const bool is_hexadecimal = token.starts_with("0x") || token.starts_with("0X");
             if (is_hexadecimal && std::tolower(token.back()) != 'u') return "int(" + token + ")";  // C++ has an unsigned one

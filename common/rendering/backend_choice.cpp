@@ -34,15 +34,14 @@ bool is_candidate(const RenderJob& job, const Device& device, Backend backend) {
     return (!backend->may_refuse_shaders || job.may_be_refused) && is_suitable(backend, device, *job.scene);
 }
 
-std::string cache_name(const RenderJob& job, const Device& device, const GpuScene& scene) {
+std::string entry_of(const RenderJob& job, const Device& device, const GpuScene& scene) {
     const uint64_t triangles = instanced_triangle_count(scene.scene());
     const auto decade = static_cast<int>(std::log10(static_cast<double>(std::max<uint64_t>(triangles, 1))));
     const auto& description = device.description();
     std::string candidates;
     for (const Backend backend : device.backends())
         if (backend->details && is_candidate(job, device, backend)) candidates += backend->details();
-    return "backend-" + std::to_string(hash_text(description.name + description.driver + candidates)) + "-" +
-           std::to_string(decade);
+    return cache_name("backend", description.name + description.driver + candidates + "-" + std::to_string(decade));
 }
 
 // Null if the program has no backend of this name.
@@ -52,7 +51,7 @@ Backend find_backend(const Device& device, const std::string& name) {
 }
 
 Backend find_fastest(const RenderJob& job, const Device& device, const GpuScene& scene) {
-    const std::string entry = cache_name(job, device, scene);
+    const std::string entry = entry_of(job, device, scene);
     if (const auto cached = read_cache(entry))
         if (const Backend backend = find_backend(device, *cached); backend && is_candidate(job, device, backend)) return backend;
 

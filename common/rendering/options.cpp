@@ -34,8 +34,26 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
             meaning};
 }
 
+// "NAME=FILE" as the canonical path of the chapter's shader NAME, and FILE. The chapter may lack what it may override.
+std::pair<std::filesystem::path, std::filesystem::path> replacement(const Chapter& chapter, const std::string& text) {
+    const size_t middle = std::min(text.find('='), text.size());
+    const std::filesystem::path name = text.substr(0, middle), file = text.substr(std::min(middle + 1, text.size()));
+    const auto chapters = project_folder() / "chapters";
+    const auto place = std::filesystem::weakly_canonical((name.has_parent_path() ? chapters : chapters / chapter.name) / name);
+    std::error_code ignored;  // names that the file system refuses
+    const auto is_file = [&](const auto& path) { return std::filesystem::is_regular_file(path, ignored); };
+    const auto is_override = [&](const char* room) { return is_file(project_folder() / "shaders" / room / name.filename()); };
+    if (name.extension() != ".glsl" || !(is_file(place) || is_override("world") || is_override("engine")))
+        throw UserError("--shader " + text + ": there is no shader " +
+                        in_quotes(place.lexically_relative(project_folder()).string()) +
+                        ": write NAME=FILE, with the name of one of the chapter's shaders");
+    if (!is_file(file)) throw UserError("--shader " + text + ": there is no file " + in_quotes(file.string()));
+    return {place, file};
+}
+
 // Options common to all chapters, in the order of --help.
-void add_options(CLI::App& app, Options& options, std::string& view, const std::vector<std::string>& backends) {
+void add_options(CLI::App& app, const Chapter& chapter, Options& options, std::string& view,
+                 const std::vector<std::string>& backends) {
     auto& [scene, estimator, image, camera, light, samples, appearance, run] = options;
     constexpr uint32_t max_count = 4294967295u;
     const auto whole = [&](const char* name, auto& value, uint32_t low, uint32_t high, const std::string& help) {
@@ -93,6 +111,14 @@ void add_options(CLI::App& app, Options& options, std::string& view, const std::
     app.add_option("--backend", run.backend, "How rays are traced")->check(CLI::IsMember(backends));
     whole("--max-threads-per-pixel", estimator.max_threads_per_pixel, 1, max_count,
           "Threads that share a pixel of a small picture, at most; default: as many as keep the device busy");
+    app.add_option_function<std::vector<std::string>>(
+           "--shader",
+           [&](const auto& given) {
+               for (const auto& each : given) estimator.shaders.insert(replacement(chapter, each));
+           },
+           "Read FILE instead of the chapter's shader NAME, or CHAPTER/NAME of another chapter; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("NAME=FILE");
     app.add_option("--device", run.device, "Number or part of the name of the device");
     app.add_flag("--list-devices", run.list_devices, "Show the devices and what they lack");
     const auto window = [&](const char* name, WindowChoice choice, const char* help) {
@@ -208,7 +234,7 @@ std::optional<Options> parse_options(const Chapter& chapter, std::span<const Bac
     app.add_option("scene", scene, "Scene file (.json or .obj) or the name of one in assets/scenes")->capture_default_str();
     std::vector<std::string> names{"auto"};
     std::ranges::transform(backends, std::back_inserter(names), &BackendRow::name);
-    add_options(app, options, view, names);
+    add_options(app, chapter, options, view, names);
     add_chapter_options(app, chapter, options);
     try {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last one first

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "film/film_image.h"
+#include "gpu/shader_compiler.h"
 #include "rendering/chapter.h"
 #include "scene/scene.h"
 
@@ -40,6 +41,7 @@ struct SceneOptions {
 struct EstimatorOptions {
     std::optional<Strategy> strategy;       // one of the chapter's
     std::map<std::string, size_t> choices;  // name of a chapter's choice -> index of its value
+    Replacements shaders;                   // that are read instead of those in chapters/
     std::optional<uint32_t> max_threads_per_pixel;
     bool operator==(const EstimatorOptions&) const = default;
 };

@@ -125,6 +125,7 @@ Estimator estimator_of(const Chapter& chapter) { return {project_folder() / "cha
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
     Estimator estimator = estimator_of(chapter);
+    estimator.replacements = options.estimator.shaders;
     if (const auto& pixel = options.run.debug_pixel)
         estimator.defines.push_back("ONLY_PIXEL uvec2(" + std::to_string(pixel->x) + "u, " + std::to_string(pixel->y) + "u)");
     if (const auto& view = options.image.view) {

@@ -19,21 +19,24 @@ void require_support(Backend backend, const DeviceDescription& device) {
                       to_string(backend) + "'; these work on it: " + working);
 }
 
-// These shaders of shaders/ and everything they include.
-std::set<std::filesystem::path> files_of(std::initializer_list<const char*> names, const Estimator& estimator) {
-    std::set<std::filesystem::path> files;
+// These shaders of shaders/ and everything they include, as shader_files() returns them.
+std::map<std::filesystem::path, std::filesystem::path> files_of(std::initializer_list<const char*> names,
+                                                                const Estimator& estimator) {
+    std::map<std::filesystem::path, std::filesystem::path> files;
     for (const char* name : names)
-        for (const auto& file :
-             shader_files({.file = project_folder() / "shaders" / name, .named_includes = named_includes(estimator)}))
-            files.insert(file);
+        files.merge(shader_files({.file = project_folder() / "shaders" / name,
+                                  .named_includes = named_includes(estimator),
+                                  .replacements = estimator.replacements}));
     return files;
 }
 
 }  // namespace
 
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator) {
-    const auto own_or_default = [](const std::filesystem::path& own, const char* room) {
-        return std::filesystem::exists(own) ? own : project_folder() / "shaders" / room / own.filename();
+    const auto own_or_default = [&](const std::filesystem::path& own, const char* room) {
+        const bool is_there =
+            std::filesystem::exists(own) || estimator.replacements.contains(std::filesystem::weakly_canonical(own));
+        return is_there ? own : project_folder() / "shaders" / room / own.filename();
     };
     const bool is_observed = !estimator.observed.empty();
     const auto chapter = (is_observed ? estimator.observed : estimator.file).parent_path();
@@ -54,22 +57,26 @@ ShaderSource shader_source(const std::string& name, const GpuScene& scene, const
     ShaderSource source{.file = project_folder() / "shaders" / name,
                         .defines = scene.defines(),
                         .named_includes = named_includes(estimator),
+                        .replacements = estimator.replacements,
                         .edit = estimator.edit};
     source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
     return source;
 }
 
 std::set<std::filesystem::path> shader_files(const Estimator& estimator) {
-    return files_of({"engine/render.comp", "engine/render.rgen", "engine/add_samples.comp", "engine/trace_ray/closest_hit.rchit",
-                     "engine/trace_ray/miss.rmiss"},
-                    estimator);
+    std::set<std::filesystem::path> files;
+    for (const auto& [place, file] : files_of({"engine/render.comp", "engine/render.rgen", "engine/add_samples.comp",
+                                               "engine/trace_ray/closest_hit.rchit", "engine/trace_ray/miss.rmiss"},
+                                              estimator))
+        files.insert(file);
+    return files;
 }
 
 uint64_t estimator_hash(const Estimator& estimator) {
     uint64_t hash = hash_text("");
     for (const auto& define : estimator.defines) hash = hash_text(define + "\n", hash);
     // What render.comp and render.rgen have in common.
-    for (const auto& file :
+    for (const auto& [place, file] :
          files_of({"interface.h", "world/scene.glsl", "world/ray.glsl", "engine/render_samples.glsl"}, estimator))
         hash = hash_text(read_file(file, max_shader_bytes), hash);
     return hash;

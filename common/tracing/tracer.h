@@ -21,6 +21,7 @@ struct Estimator {
     std::vector<std::string> defines = {};
     // If `file` observes another estimator: that one's file, included as "observed.glsl", and an edit to both texts.
     std::filesystem::path observed = {};
+    Replacements replacements = {};
     std::function<std::string(const std::string&)> edit = {};
     // Of an image with few pixels, whose threads share pixels.
     uint32_t max_threads_per_pixel = UINT32_MAX;

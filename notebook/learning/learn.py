@@ -91,8 +91,8 @@ class Workshop:
     def shown(self, bug, expected, before):
         """What a mistake shows in experiments, as text with a number per point: brightness where it differs from the chapter's
         own, or if that is right everywhere, noise and rays. `before` has what earlier experiments have shown."""
-        with grading.program_with(CHAPTERS[bug.chapter], bug.text, bug.file) as program:
-            facts, sights = observe(bug.chapter, program, self.settings(LEVELS), expected, lambda *_: True, MISTAKE_SEED)
+        with grading.replaced(bug.file, bug.text) as shaders:
+            facts, sights = observe(bug.chapter, self.settings(LEVELS) | {"shaders": shaders}, expected, lambda *_: True, MISTAKE_SEED)
         shows = before["shows"] | {name: to_digits(reading.value for reading in seen.readings) for name, seen in facts.items() if not seen.is_right}
         if shows:
             return {"shows": shows}

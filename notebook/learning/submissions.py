@@ -8,7 +8,6 @@ it is true if both agree. What has been graded with the same shaders and experim
 that if the check itself has changed. A person decides whether the facts and names point at what the wrong line means, and whether a single name is
 right: "points" and "name_is_right" in the record, true, false or null, which are kept as long as the answer stays the same.
 """
-import tempfile
 import time
 from pathlib import Path
 from threading import Lock
@@ -38,13 +37,13 @@ def settings(options, seed):
 def untrue(chapter, file, found, those):
     """Numbers of wrong experiments that a second measurement contradicts: (experiment, point, number, second number)."""
     known, contradicted = read_json(grading.expected_file(chapter))["experiments"], []
-    with tempfile.TemporaryDirectory() as folder, Batch() as batch:
-        program, _ = grading.make_tree(CHAPTERS[chapter], file, Path(folder))
+    those = those | {"shaders": grading.replacements(CHAPTERS[chapter], file)}
+    with Batch() as batch:
         for name, seen in found["readings"].items():
             experiment = experiments_of(chapter)[name]
             if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
                 continue
-            sights = [together(seen) for seen in pictures(program, experiment.points, those, SEED, batch, repeats=PICTURES)]
+            sights = [together(seen) for seen in pictures(CHAPTERS[chapter], experiment.points, those, SEED, batch, repeats=PICTURES)]
             anew = readings(experiment.points, sights, known_sights(known[name]))
             contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
                              if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]

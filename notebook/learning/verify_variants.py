@@ -7,10 +7,10 @@ import time
 from pathlib import Path
 
 import numpy as np
-from check.grading import DESCRIPTIONS, SCENES, make_tree
+from check.grading import DESCRIPTIONS, SCENES, replacements
 from course.mistakes import own_shader
 from learning.planting import variants
-from project import CHAPTERS, Parser, number, read_json, run_program, show_progress
+from project import CHAPTERS, Parser, number, program_file, read_json, run_program, show_progress
 from references.images import read_rgb
 
 HERE = Path(__file__).parent
@@ -54,10 +54,9 @@ def render(chapter, file, shader, scene, options, seeds):
     """Images [seed, row, column, channel] and rays per sample, from a chapter's program with this file instead of its shader."""
     images, rays = [], 0
     with tempfile.TemporaryDirectory() as folder:
-        program, _ = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
         picture, report = Path(folder) / "a.exr", Path(folder) / "a.json"
         for seed in seeds:
-            command = [program, scene, *options.split(), "--width", SIZE, "--height", SIZE, "--samples", samples_of(chapter),
+            command = [program_file(CHAPTERS[chapter]), scene, *replacements(CHAPTERS[chapter], file, shader), *options.split(), "--width", SIZE, "--height", SIZE, "--samples", samples_of(chapter),
                        "--seed", seed, "--output", picture, "--report", report, "--headless", "--quiet", "--backend", "compute"]
             ended = run_program(command)
             if ended.returncode != 0:

@@ -13,6 +13,7 @@ Writes its record after each variant, and continues with those that are missing 
 """
 import math
 import re
+import tempfile
 from pathlib import Path
 from threading import Lock
 
@@ -132,8 +133,8 @@ def graded(chapter, text, settings, is_everything):
     shader = shader_of(chapter)
     known = read_json(grading.expected_file(chapter))["experiments"]
     try:
-        with grading.program_with(CHAPTERS[chapter], text, shader) as program:
-            facts, sights = observe(chapter, program, settings, known, (lambda *_: True) if is_everything else is_deciding)
+        with grading.replaced(shader, text) as shaders:
+            facts, sights = observe(chapter, settings | {"shaders": shaders}, known, (lambda *_: True) if is_everything else is_deciding)
         broken = [seen.sentence for seen in facts.values() if re.search(r"glsl:\d+: ", seen.sentence)]
         if broken:
             return {"compiles": False, "why": broken[0]}
@@ -143,8 +144,8 @@ def graded(chapter, text, settings, is_everything):
         deciding += [name for name, seen in sights.items() if is_noisy(facts[name].experiment, seen, known[name])]
         answer = {"compiles": True, "deciding": deciding, "wrong": wrong}
         if not deciding:
-            with grading.program_with(CHAPTERS[chapter], text, shader) as program:
-                file = Path(program).parents[1] / "mutation.glsl"
+            with tempfile.TemporaryDirectory() as folder:
+                file = Path(folder) / "mutation.glsl"
                 file.write_text(text, encoding="utf-8")
                 answer["verdict"] = grading.judge(chapter, file, settings, shader=shader)[0]["verdict"]
         return answer

@@ -5,6 +5,7 @@ import unittest
 from unittest import mock
 
 from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
+import cited_tests
 import mistake
 import project
 from PIL import Image
@@ -14,7 +15,7 @@ from project import CHAPTERS, UserError
 # A chapter that stores its arguments and its shader instead of rendering.
 NOTING = """#!/bin/sh
 echo "$@" >'{folder}/arguments'
-cp "$(dirname "$0")/../chapters/{chapter}/path_trace.glsl" '{folder}/shader'
+for word; do case $word in *.glsl=*) echo "${{word%%=*}}" >'{folder}/place'; cp "${{word#*=}}" '{folder}/shader' ;; esac; done
 """
 
 
@@ -59,8 +60,7 @@ class BugTest(Bugs, ProgramTest):
             mistakes.bugs_of(3)
 
     def test_every_answer_names_what_catches_the_bug(self):
-        text = "\n".join(file.read_text(encoding="utf-8") for file in (PROJECT / "tests").rglob("*.cpp"))
-        known = set(re.findall(r"^TEST(?:_[PF])?\((\w+), (\w+)\)", text, re.MULTILINE))
+        known = cited_tests.written_tests()
         for chapter in CHAPTERS:
             checked = {found.mistake["name"] for found in mistakes.catalogue() if found.chapter == chapter}
             for found in mistakes.bugs_of(chapter):
@@ -115,12 +115,13 @@ class BugTest(Bugs, ProgramTest):
 
     def test_the_window_has_the_broken_shader(self):
         chapter = CHAPTERS[3]
-        program = self.write(f"binaries/{chapter}", NOTING.format(folder=self.folder, chapter=chapter))
+        program = self.write(f"binaries/{chapter}", NOTING.format(folder=self.folder))
         program.chmod(0o755)
         with mock.patch.object(project, "BINARIES", program.parent):
             self.bug(3, 1, "--window", "--scene", "check_room_2")
         arguments = (self.folder / "arguments").read_text()
-        self.assertRegex(arguments, r"check_room\.json --window --max-path-length 2 ")
+        self.assertRegex(arguments, r"check_room\.json --window --shader [^ ]+ --max-path-length 2 ")
+        self.assertEqual((self.folder / "place").read_text(), str(mistakes.bugs_of(3)[0].file.relative_to(PROJECT / "chapters")) + "\n")
         self.assertEqual((self.folder / "shader").read_text(encoding="utf-8"), mistakes.bugs_of(3)[0].text)
 
     def test_what_there_is_not_is_refused(self):

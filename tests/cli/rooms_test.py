@@ -16,25 +16,34 @@ FILES = {
 
 
 class RoomsTest(unittest.TestCase):
-    def upward(self, changed):
-        """Upward includes in a small tree with these files."""
+    def found(self, changed, look=rooms.upward):
+        """What is wrong in a small tree with these files."""
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name).resolve()
             for file, text in {**FILES, **changed}.items():
                 (folder / file).parent.mkdir(parents=True, exist_ok=True)
                 (folder / file).write_text(text, encoding="utf-8")
             with mock.patch.object(rooms, "ROOT", folder):
-                return rooms.upward()
+                return look()
 
     def test_nothing_includes_a_room_above_its_own(self):
         self.assertEqual(rooms.upward(), [])
 
     def test_what_goes_upwards_is_named(self):
-        self.assertEqual(self.upward({}), [])
-        self.assertEqual(self.upward({"common/lower/room.h": '#include "../../tools/upper/program.cpp"\n'}),
+        self.assertEqual(self.found({}), [])
+        self.assertEqual(self.found({"common/lower/room.h": '#include "../../tools/upper/program.cpp"\n'}),
                          ["common/lower/room.h includes tools/upper/program.cpp"])
-        self.assertEqual(self.upward({"chapters/01_a/path_trace.glsl": '#include "../02_b/path_trace.glsl"\n'}),
+        self.assertEqual(self.found({"chapters/01_a/path_trace.glsl": '#include "../02_b/path_trace.glsl"\n'}),
                          ["chapters/01_a/path_trace.glsl includes chapters/02_b/path_trace.glsl"])
+
+    def test_only_programs_include_the_annexes(self):
+        self.assertEqual(rooms.into_the_annexes(), [])
+        rows = "".join(f"| `{room}/` | |\n" for room in ("common/app", "tools/upper", "common/viewer", "common/native", "common/lower"))
+        tree = {"common/README.md": rows, "common/viewer/viewer.h": "", "common/native/module.h": "",
+                "common/app/run.cpp": '#include "viewer/viewer.h"\n#include "native/module.h"\n'}
+        self.assertEqual(self.found(tree, rooms.into_the_annexes), [])
+        for source, annex in (("common/viewer/a.cpp", "native/module.h"), ("tools/upper/a.cpp", "viewer/viewer.h")):
+            self.assertEqual(self.found(tree | {source: f'#include "{annex}"\n'}, rooms.into_the_annexes), [f"{source} includes common/{annex}"])
 
     def test_nothing_outside_uses_the_notebook(self):
         self.assertEqual(rooms.into_the_notebook(), [])

@@ -2,10 +2,11 @@
 
 import os
 import re
+import subprocess
 from pathlib import Path
 
+from program import CHAPTER as CHAPTER_PROGRAM
 from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
-from check.grading import make_tree
 from image_files import Exr
 
 CHAPTER = "01_uniform_sampling"
@@ -24,28 +25,25 @@ HELPER = "vec3 get_grey() { return vec3(0.5); }\n"
 
 
 class ShaderFiles(ProgramTest):
-    """Chapter 1 with another shader, in its own tree, like those that ./lab check makes."""
+    """Chapter 1 with another shader."""
 
     def setUp(self):
         super().setUp()
-        file = self.write("mine.glsl", "")
-        self.program, copies = make_tree(CHAPTER, file, self.folder / "tree")
-        self.shader, = copies
+        self.shader = self.write("mine/path_trace.glsl", "")
+        self.arguments = ["quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--shader=path_trace.glsl=mine/path_trace.glsl"]
 
     def beside(self, name, contents):
         """Writes a file next to the shader."""
-        return self.write(Path("tree/chapters") / CHAPTER / name, contents)
+        return self.write(Path("mine") / name, contents)
 
     def assert_renders(self, shader):
         self.shader.write_bytes(shader)
-        self.render("quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--output=grey.exr",
-                    program=self.program, environment=UNOPTIMISED)
+        self.render(*self.arguments, "--output=grey.exr", environment=UNOPTIMISED)
         self.assertEqual(Exr(self.folder / "grey.exr").mean(), [0.5, 0.5, 0.5])
 
     def assert_shader_refused(self, shader, *words):
         self.shader.write_bytes(shader if isinstance(shader, bytes) else shader.encode())
-        self.assert_refused(["quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--output=no.exr"], *words,
-                            program=self.program)
+        self.assert_refused([*self.arguments, "--output=no.exr"], *words)
 
     def test_line_ends_and_byte_order_mark_of_windows(self):
         self.beside("helper.glsl", b"\xef\xbb\xbf// A helper\r\n" + HELPER.replace("\n", "\r\n").encode())
@@ -92,9 +90,9 @@ class ShaderFiles(ProgramTest):
         self.beside("large.glsl", HELPER + " " * (4 << 20))
         place, outside_words = r"path_trace\.glsl:2: .*", ".* is outside of the shader's folder"
         for name, before, after in (
-                ("/dev/zero", place, outside_words), (str(outside), place, outside_words), ("../../../outside.glsl", place, outside_words),
+                ("/dev/zero", place, outside_words), (str(outside), place, outside_words), ("../outside.glsl", place, outside_words),
                 ("link", place, outside_words), ("link_to_a_folder/outside.glsl", place, outside_words),
-                ("folder/../../../../outside.glsl", place, outside_words), ("nothing", place + "cannot find .*", '"'),
+                ("folder/../../outside.glsl", place, outside_words), ("nothing", place + "cannot find .*", '"'),
                 ("a" * 5000, place + "cannot find .*", ""), ("pipe", "", ": not a regular file"), ("folder", "", ": not a regular file"),
                 ("large.glsl", "", ": the file has 4 MiB, the limit is 1 MiB")):
             self.assert_shader_refused(f'// one\n#include "{name}"\n{GREY}', before + re.escape(name[:40]) + after)
@@ -102,13 +100,38 @@ class ShaderFiles(ProgramTest):
     def test_includes_in_the_tree_may_be_links(self):
         self.beside("helper.glsl", HELPER)
         (self.shader.parent / "link").symlink_to("helper.glsl")
-        self.assert_renders(f'#include "link"\n#include "../{CHAPTER}/helper.glsl"\n{GREY}'.encode())
+        self.assert_renders(f'#include "link"\n#include "../mine/helper.glsl"\n{GREY}'.encode())
 
     def test_paths_that_no_line_directive_can_hold(self):
         for name in ('a "b"', "a\\b"):
-            program, _ = make_tree(CHAPTER, self.shader, self.folder / name)
-            self.assert_refused(["quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--output=no.exr"],
-                                re.escape(name), 'must not contain " or', program=program)
+            shader = self.write(Path(name) / "path_trace.glsl", GREY)
+            self.assert_refused([*self.arguments[:-1], f"--shader=path_trace.glsl={shader}", "--output=no.exr"],
+                                re.escape(name), 'must not contain " or')
+
+    def test_a_name_or_a_file_that_is_not_there(self):
+        chapter = "no shader \"chapters/01_uniform_sampling"
+        for given, words in (("nothing.glsl=mine/path_trace.glsl", f"{chapter}/nothing.glsl\": write NAME=FILE"),
+                             ("03_nothing/path_trace.glsl=mine/path_trace.glsl", "no shader \"chapters/03_nothing/path_trace.glsl\""),
+                             ("chapter.json=quad.json", f"{chapter}/chapter.json\""), ("path_trace.glsl", 'no file ""'),
+                             ("path_trace.glsl=nothing.glsl", 'no file "nothing.glsl"'), ("path_trace.glsl=mine", 'no file "mine"')):
+            self.assert_refused(["quad.json", f"--shader={given}", "--output=no.exr"], f"--shader {given}: there is {words}")
+
+    def test_another_shader_is_another_estimator(self):
+        """Wherever its file is: what it rendered goes on with the same text, but not with the chapter's own shader."""
+        self.assert_renders((HELPER + GREY).encode())
+        self.write("a.glsl", HELPER + GREY)
+        same = ["quad.json", "--width=4", "--height=4", "--samples=2", "--backend=compute", "--resume=grey.exr"]
+        self.render(*same, "--shader=path_trace.glsl=a.glsl", "--output=more.exr", environment=UNOPTIMISED)
+        self.assert_refused([*same, "--output=no.exr"], "shader")
+
+    def test_a_batch_has_a_shader_for_each_picture(self):
+        lines = []
+        for name, grey in (("a", "0.25"), ("b", "0.5"), ("c", "0.25")):
+            self.write(f"{name}.glsl", GREY.replace("get_grey()", f"vec3({grey})"))
+            lines.append(" ".join([*self.arguments[:-1], f"--shader=path_trace.glsl={name}.glsl", f"--output={name}.exr\n"]))
+        ended = subprocess.run([CHAPTER_PROGRAM, "--batch"], input="".join(lines), cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertEqual([Exr(self.folder / f"{name}.exr").mean()[0] for name in "abc"], [0.25, 0.5, 0.25])
 
     def test_long_lines(self):
         blanks = b" " * 300000

@@ -55,6 +55,20 @@ TEST(Native, NamesAndNumbersMayBeThoseOfCpp) {
               (Numbers{1, 1}));
 }
 
+TEST(Native, NamesMayBeThoseThatTheTranslationUses) {
+    EXPECT_EQ(
+        run_shader(
+            "struct Array { float x; };\nstruct Shader { float y; };\nstruct Values { float local_size, get; };\n"
+            "float lanes = 1.0, glm = 2.0, std = 3.0, native = 4.0, each = 5.0;\nfloat copied(float x) { return x; }\n"
+            "float get(float x) { return 2.0 * x; }\nfloat make_array(float x) { return 3.0 * x; }\n"
+            "float swizzle(vec2 x) { return x.y; }",
+            "give(lanes + glm + std + native + each); give(copied(6.0)); give(get(4.0)); give(make_array(3.0));"
+            "vec2 v = vec2(1, 7); give(swizzle(v.xy)); give(Array(8.0).x + Shader(9.0).y); float Span = 5.0;"
+            "give(Values(1.0, Span).get); float scalar = float(uint(3.5)); give(scalar); float swizzled[2] = float[2](1, 2);"
+            "v.yx = vec2(swizzled[1], 0); give(v.y); float get_array = 4.0; give(get_array);"),
+        (Numbers{15, 6, 8, 9, 7, 17, 5, 3, 2, 4}));
+}
+
 TEST(Native, BitsOfNegativeNumbersAreThoseOfTheirWords) {
     EXPECT_EQ(run_shader("",
                          "int x = -2; give(float(bitfieldReverse(x))); ivec2 v = bitfieldReverse(ivec2(-1, 1));"
@@ -101,6 +115,19 @@ TEST(Native, ArraysAreValues) {
                          "float m[2][3]; m[1][2] = 9.0; give(m[1][2]); give(float(m.length()) + float(m[0].length()));"),
               (Numbers{3, 6, 2, 4, 2, 1, 0, 9, 5}));
 }
+
+TEST(Native, FunctionsMayReturnNewArrays) {
+    EXPECT_EQ(run_shader("float[2] pair(float x) { return float[2](x, -x); }", "give(pair(3.0)[1]);"), (Numbers{-3}));
+}
+
+TEST(Native, VectorsAreShiftedByNumbersOfAnotherType) {
+    EXPECT_EQ(run_shader("",
+                         "uvec2 u = uvec2(8, 16); ivec2 i = ivec2(-8, 1); give((u >> 1).y); give((i << 2u).y); give((i >> 1u).x);"
+                         "give((u << ivec2(1, 2)).y); i <<= 1u; give(i.y);"),
+              (Numbers{8, 4, -4, 64, 2}));
+}
+
+TEST(Native, NumbersAreNormalized) { EXPECT_EQ(run_shader("", "give(normalize(-3.0)); give(normalize(2));"), (Numbers{-1, 1})); }
 
 TEST(Native, NumbersAreConverted) {
     EXPECT_EQ(run_shader("",

@@ -1,5 +1,5 @@
 // Writes what a browser needs to render a scene as a chapter does: the arrays that a GPU gets, our hierarchy, the parameters and
-// the reference. FILE.json says where each array of FILE.bin begins; all numbers have 32 bits.
+// the reference, if there is one. FILE.json says where each array of FILE.bin begins; all numbers have 32 bits.
 //     dump_arrays FILE CHAPTER SCENE OPTIONS
 #include <fstream>
 #include <iostream>
@@ -50,11 +50,12 @@ class Dump {
     size_t size_ = 0;  // words so far
 };
 
-// The picture of this scene that has a reference for the wanted path length.
-RenderParameters verdict_parameters(const Chapter& chapter, const Scene& scene, Options options) {
+// The picture of this scene that has a reference for the wanted path length, or else the one that the options describe.
+RenderParameters picture(const Chapter& chapter, const Scene& scene, Options options) {
+    const RenderParameters asked = make_parameters(chapter, scene, options);
     options.image.width = options.image.height = width;
     const auto settings = settings_for_verdict(scene, make_parameters(chapter, scene, options));
-    if (!settings) throw UserError(scene.file.string() + ": has no reference");
+    if (!settings) return asked;
     options.image.width = settings->image_size.x;
     options.image.height = settings->image_size.y;
     options.light.max_path_length = settings->max_path_length;
@@ -63,14 +64,15 @@ RenderParameters verdict_parameters(const Chapter& chapter, const Scene& scene, 
 
 void dump(const std::string& file, const Chapter& chapter, const Options& options) {
     const Scene scene = load_scene(options.scene.file, options.scene.specular);
-    const RenderParameters parameters = verdict_parameters(chapter, scene, options);
-    const auto reference = find_reference(scene, parameters);
-    if (const auto* why_not = std::get_if<std::string>(&reference)) throw UserError(scene.file.string() + ": " + *why_not);
+    const RenderParameters parameters = picture(chapter, scene, options);
     const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets);
     const Bvh bvh = build_bvh(world_triangles(scene));
 
     Dump dump(file);
-    dump.content = {{"defines", arrays.defines()}, {"images", json::array()}};
+    dump.content = {{"defines", arrays.defines()},
+                    {"options", make_estimator(chapter, options).defines},
+                    {"buffers", json::array()},
+                    {"images", json::array()}};
     dump.content["defines"].push_back("BVH_STACK_SIZE " + std::to_string(bvh.stack_size()));
     for (const SceneArray& array : arrays.buffers()) dump.add("buffers", {{"binding", array.binding}}, array.data);
     dump.add("buffers", {{"binding", BINDING_BVH_NODES}}, std::span<const BvhNode>(bvh.nodes));
@@ -78,10 +80,12 @@ void dump(const std::string& file, const Chapter& chapter, const Options& option
     for (const SceneArray& image : arrays.images())
         dump.add("images", {{"binding", image.binding}, {"width", image.width}, {"height", image.height}}, image.data);
     dump.add("parameters", json::object(), std::span(&parameters, 1));
-    const auto& [mean, variance, attributes] = std::get<Reference>(reference);
-    for (const Image* image : {&mean, &*variance})
-        dump.add("reference", {{"width", mean.width}, {"height", mean.height}, {"samples", attributes.at("samples")}},
-                 image->pixels);
+    const auto reference = find_reference(scene, parameters);
+    if (const auto* found = std::get_if<Reference>(&reference))
+        for (const Image* image : {&found->mean, &*found->variance})
+            dump.add("reference",
+                     {{"width", image->width}, {"height", image->height}, {"samples", found->attributes.at("samples")}},
+                     image->pixels);
     dump.close();
 }
 

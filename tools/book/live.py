@@ -1,7 +1,8 @@
 """The lab in the browser: what the pages of a book need to render its chapters.
 
 A line <!-- live: SCENE --> on a chapter's page becomes a frame in which the chapter renders this scene or those of its check. On
-other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. <!-- live: report --> becomes a button that
+other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. <!-- live: PICTURE by
+CHAPTER bug NUMBER --> starts from a mistake of ./lab bug, in one of the chapter's pictures. <!-- live: report --> becomes a button that
 tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
 """
 import base64
@@ -14,14 +15,20 @@ import struct
 import tempfile
 from array import array
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from pathlib import Path
 
 from book.code_blocks import take_out
+from check import facts
+from check.diagnosis import FIRST_SEED
+from check.experiments import SIZE, experiments_of, known_sights, write_scene
+from check.grading import expected_file
 from project import CHAPTERS, ROOT, UserError, chapter_named, description, failure_text, original, program_file, read_json, run_program, scene_of
 
 HERE = Path(__file__).parent / "live"
-SCRIPTS = ["glsl.js", "verdict.js", "renderer.js", "editor.js", "page.js"]
-MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+))? -->$", re.MULTILINE)
+SCRIPTS = ["glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "check.js", "report.js", "page.js"]
+RULES = ["SURE", "TOLERANCE", "CLOSE", "INTERVAL", "DARK", "FEW_PARTS", "CONSTANTS"]  # of facts.py, which facts.js follows
+MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+)(?: bug (\d+))?)? -->$", re.MULTILINE)
 REPORT = "report"
 LARGEST = 2_500_000  # bytes of a scene on a page
 HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halves end at 65504 and lose digits below 6e-5
@@ -30,7 +37,7 @@ SHADERS = {".glsl", ".h", ".frag"}
 
 def frames_of(text, path):
     """{chapter: scene} of a page's markers."""
-    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text) if marker[1] != REPORT}
+    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text) if marker[1] != REPORT and not marker[3]}
 
 
 def chapter_of(marker, path):
@@ -43,12 +50,14 @@ def with_frames(text, path):
     folder = "../" * (len(path.parts) - 1) + "live/"
 
     def frame(marker):
-        scripts = "".join(f'<script src="{folder}{name}"></script>' for name in ["sources.js", *SCRIPTS])
         what = REPORT if marker[1] == REPORT else chapter_of(marker, path)
-        return (f'<link rel="stylesheet" href="{folder}live.css">\n<div class="live" data-chapter="{what}" data-folder="{folder}">'
-                f'<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>{scripts}\n')
+        bug = f' data-bug="{marker[3]}" data-picture="{marker[1]}"' if marker[3] else ""
+        return (f'<div class="live" data-chapter="{what}" data-folder="{folder}"{bug}>'
+                f'<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>\n')
 
-    return MARKER.sub(frame, text)
+    text, count = MARKER.subn(frame, text)
+    scripts = "".join(f'<script src="{folder}{name}"></script>' for name in ["sources.js", *SCRIPTS])
+    return text + (f'\n\n<link rel="stylesheet" href="{folder}live.css">{scripts}\n' if count else "")
 
 
 def shaders():
@@ -81,29 +90,77 @@ def halves(numbers):
     return struct.pack(f"<{len(numbers)}e", *(number / scale for number in numbers)), scale
 
 
-def dumped(chapter, name, folder):
-    """A picture's entry, and the scripts that it loads: {file name: text}."""
-    file = Path(folder) / f"{chapter}_{name}"
+def dump(file, chapter, *scene_and_options):
+    """What dump_arrays writes for a chapter: the description of the arrays, and their bytes."""
     if not program_file("dump_arrays").is_file():
         raise UserError("dump_arrays is not built: ./lab book builds it")
     estimator = CHAPTERS[original(int(chapter[:2]))]  # the program may be that of a tree without the copy
-    process = run_program([program_file("dump_arrays"), file, estimator, scene_of(name), "--max-path-length", length_of(name)])
+    process = run_program([program_file("dump_arrays"), file, estimator, *scene_and_options])
     if process.returncode != 0:
         raise UserError(f"{chapter}: {failure_text(process)}")
-    content, words = read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
+    return read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
 
-    def words_of(entry):
-        return words[4 * entry["first"]:4 * (entry["first"] + entry["count"])]
 
-    (parameters,), references = content.pop("parameters"), content.pop("reference")
-    mean, variance = (array("f", words_of(entry)) for entry in references)
+def numbers_of(entry, content, code="f"):
+    """The numbers of an array, of the type that the code of array.array stands for."""
+    return array(code, content[4 * entry["first"]:4 * (entry["first"] + entry["count"])])
+
+
+def dumped(chapter, name, folder):
+    """A picture's entry, and the scripts that it loads: {file name: text}."""
+    arrays, content = dump(folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name))
+    (parameters,), references, _ = arrays.pop("parameters"), arrays.pop("reference"), arrays.pop("options")  # a page has its own
+    mean, variance = (numbers_of(entry, content) for entry in references)
     (means, mean_scale), (deviations, deviation_scale) = halves(mean), halves([number**0.5 for number in variance])
     reference = {"width": references[0]["width"], "height": references[0]["height"], "samples": float(references[0]["samples"]),
                  "scales": [mean_scale, deviation_scale], "packed": packed(means + deviations)}
-    arrays = content | {"packed": packed(words[:4 * parameters["first"]])}
+    arrays["packed"] = packed(content[:4 * parameters["first"]])
     scene = f"{scene_of(name)}_{hashlib.sha256(json.dumps(arrays).encode()).hexdigest()[:8]}"
-    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": list(array("I", words_of(parameters)))}
-    return entry, {key: f"live.data[{json.dumps(key)}] = {json.dumps(value)};\n" for key, value in ((scene, arrays), (entry["reference"], reference))}
+    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": list(numbers_of(parameters, content, "I"))}
+    return entry, {key: script(key, value) for key, value in ((scene, arrays), (entry["reference"], reference))}
+
+
+def fits(scripts):
+    """Whether a page may load these scripts."""
+    return sum(map(len, scripts.values())) <= LARGEST
+
+
+def script(name, value):
+    return f"live.data[{json.dumps(name)}] = {json.dumps(value)};\n"
+
+
+def experiments_of_page(chapter, folder):
+    """The experiments of ./lab check as a page renders them: their scenes' arrays, each once, and what the chapter's own shader shows."""
+    number = int(chapter[:2])
+    expected, shown, scenes = read_json(expected_file(number))["experiments"], [], []
+    for name, experiment in experiments_of(number).items():
+        points, sights = [], known_sights(expected[name])
+        for index, (point, sight) in enumerate(zip(experiment.points, sights)):
+            file = write_scene(point.scene, folder, f"{chapter}_{name}_{index}")
+            arrays, content = dump(folder / f"{chapter}_point", chapter, file, "--width", str(SIZE), "--height", str(SIZE), *point.options.split(),
+                                   "--seed", str(FIRST_SEED + index))
+            (parameters,) = arrays.pop("parameters")
+            arrays["packed"] = packed(content[:4 * parameters["first"]])
+            options = arrays.pop("options")
+            if arrays not in scenes:
+                scenes.append(arrays)
+            points.append({"at": point.at, "samples": point.samples, "channel": point.channel, "mean": sight.mean, "error": sight.error, "options": options,
+                           "scene": scenes.index(arrays), "parameters": list(numbers_of(parameters, content, "I"))})
+        shown.append({"name": name, "subject": experiment.subject, "varies": experiment.varies, "when": experiment.when, "points": points})
+    # Scenes with the same features share a program.
+    stack = max((define for arrays in scenes for define in arrays["defines"] if define.startswith("BVH_STACK_SIZE")), key=lambda define: int(define.split()[1]))
+    for arrays in scenes:
+        arrays["defines"] = [stack if define.startswith("BVH_STACK_SIZE") else define for define in arrays["defines"]]
+    return {"experiments": shown, "scenes": scenes, "rules": {name: getattr(facts, name) for name in RULES}}
+
+
+def furnace(folder):
+    """A closed room in which every path brings the same light, as chapter 2 weighs by the albedo, 0.5, alone: what is dark there has been lost between triangles."""
+    chapter = CHAPTERS[2]
+    arrays, content = dump(folder / "furnace", chapter, "furnace", "--max-path-length", "6", "--width", "256", "--height", "256")
+    (parameters,), _ = arrays.pop("parameters"), arrays.pop("options")
+    return {"chapter": chapter, "scene": arrays, "packed": packed(content[:4 * parameters["first"]]), "radiance": 2 - 0.5**6,
+            "parameters": list(numbers_of(parameters, content, "I"))}
 
 
 def exercise_of(chapter, texts):
@@ -125,18 +182,30 @@ def bugs_of(chapter):
 def write(folder, frames):
     """Writes the folder `live` of a site. `frames`: {chapter: scene} of its pages."""
     texts, chapters, scripts = shaders(), {}, {}
+    before = dict(pairwise(sorted(frames, reverse=True)))  # the pages' chapters may be compared with
+    names = {chapter: pictures_of(chapter, scene) for chapter, scene in frames.items()}
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
-        jobs = {(chapter, name): pool.submit(dumped, chapter, name, temporary)
-                for chapter, scene in frames.items() for name in pictures_of(chapter, scene)}
-        for (chapter, name), job in jobs.items():
-            entry, files = job.result()
-            told = description(chapter)
-            known = chapters.setdefault(chapter, {"title": told["title"], "strategies": told.get("strategies", []), "pictures": [],
-                                                  "samples": told["check"]["samples"], "checked": told["check"]["references"],
-                                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)})
-            if sum(len(text) for text in files.values()) <= LARGEST:
-                known["pictures"].append(entry)
+        wanted = {(each, name) for chapter in frames for name in names[chapter] for each in (chapter, before.get(chapter)) if each}
+        jobs = {pair: pool.submit(dumped, *pair, Path(temporary)) for pair in sorted(wanted)}
+        experiments = {chapter: pool.submit(experiments_of_page, chapter, Path(temporary)) for chapter in frames}
+        for chapter in frames:
+            told, pictures = description(chapter), []
+            for name in names[chapter]:
+                entry, files = jobs[chapter, name].result()
+                if not fits(files):
+                    continue
+                pictures.append(entry)
                 scripts |= files
+                if chapter in before and not jobs[before[chapter], name].exception():  # it may know no glass
+                    other, files = jobs[before[chapter], name].result()
+                    if fits(files):
+                        entry["before"] = {"chapter": before[chapter], "scene": other["scene"], "parameters": other["parameters"]}
+                        scripts |= files
+            chapters[chapter] = {"title": told["title"], "strategies": told.get("strategies", []), "pictures": pictures,
+                                 "samples": told["check"]["samples"], "checked": told["check"]["references"],
+                                 "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)}
+            scripts[f"experiments_{chapter}"] = script(f"experiments_{chapter}", experiments[chapter].result())
+        scripts["furnace"] = script("furnace", furnace(Path(temporary)))
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")

@@ -3,14 +3,12 @@
 The chapter's experiments run in order, those with a condition (`when`) only if other experiments have met it.
 assets/expected records what the chapter's own shader shows in each, and the notebook what the catalogue's mistakes do to it.
 """
-import tempfile
 import time
-from pathlib import Path
 
 from check.experiments import experiments_of, known_sights, pictures, together, write_scene
 from check.facts import SURE, Fact, fact, readings
 from check.findings import findings, shortened
-from check.grading import DESCRIPTIONS, TOO_MUCH, expected_file, known_mistakes, make_tree, with_names_of
+from check.grading import DESCRIPTIONS, TOO_MUCH, expected_file, known_mistakes, replacements, with_names_of
 from check.names import names_of, ratios_of, similar_to
 from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from report.batch import Batch
@@ -33,12 +31,12 @@ def is_deciding(experiment, _):
     return experiment.decides
 
 
-def look_at(program, points, settings, seed, batch, repeats, expected):
-    """What a program shows at each of these points: a list of Sight. Only a point whose first picture looks wrong is rendered again."""
-    seen = pictures(program, points, settings, seed, batch)
+def look_at(chapter, points, settings, seed, batch, repeats, expected):
+    """What a chapter shows at each of these points: a list of Sight. Only a point whose first picture looks wrong is rendered again."""
+    seen = pictures(CHAPTERS[chapter], points, settings, seed, batch)
     if repeats > 1:
         wrong = [index for index, reading in enumerate(readings(points, map(together, seen), expected)) if not reading.is_right]
-        more = pictures(program, [points[index] for index in wrong], settings, seed + len(points), batch, repeats=repeats - 1)
+        more = pictures(CHAPTERS[chapter], [points[index] for index in wrong], settings, seed + len(points), batch, repeats=repeats - 1)
         for index, sights in zip(wrong, more):
             seen[index] += sights
     return [together(sights) for sights in seen]
@@ -51,7 +49,7 @@ def from_both_ends(items):
     return [items[i // 2 if i % 2 == 0 else count - 1 - i // 2] for i in range(count)]
 
 
-def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIRST_SEED):
+def observe(chapter, settings, expected, chosen=is_called_for, seed=FIRST_SEED):
     """Name -> Fact and name -> list of Sight, for the experiments of a chapter."""
     facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
     experiments = experiments_of(chapter)
@@ -60,7 +58,7 @@ def observe(chapter, program, settings, expected, chosen=is_called_for, seed=FIR
 
     def look(name):
         try:
-            return look_at(program, experiments[name].points, settings, seed, batch, repeats_of(chapter), known_sights(expected[name]))
+            return look_at(chapter, experiments[name].points, settings, seed, batch, repeats_of(chapter), known_sights(expected[name]))
         except UserError as error:  # for example an endless loop that only this scene triggers
             return error
 
@@ -148,11 +146,10 @@ def reason(chapter, facts, sights, known, is_correct):
 def diagnose(chapter, file, settings, shader=None, is_correct=False):
     """What experiments show about a shader, see reason(). If its pictures are correct, only those run that can decide as well."""
     known, started = read_json(expected_file(chapter)) | {"mistakes": known_mistakes(chapter)}, time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
-        program, copies = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
-        facts, sights = observe(chapter, program, settings, known["experiments"], is_deciding if is_correct else is_called_for)
+    settings = settings | {"shaders": replacements(CHAPTERS[chapter], file, shader)}
+    facts, sights = observe(chapter, settings, known["experiments"], is_deciding if is_correct else is_called_for)
     for seen in facts.values():
-        seen.sentence = with_names_of(copies, seen.sentence)
+        seen.sentence = with_names_of(file, seen.sentence)
     return reason(chapter, facts, sights, known, is_correct) | {
         "next": next_step(chapter, file, facts, sights, known["experiments"]), "seconds": round(time.monotonic() - started, 1)}
 

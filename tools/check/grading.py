@@ -5,7 +5,6 @@ chapter's own shader, which are recorded in assets/expected.
 """
 import os
 import re
-import shutil
 import tempfile
 import threading
 import time
@@ -13,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, program_file, read_json, show_progress, text_of
+from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, show_progress, text_of
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
 from report.measurement import new_case, relative, run_case
@@ -83,45 +82,33 @@ def shader_like(chapter, file):
     return estimator.with_name(file.name) if is_named_so else estimator if "path_trace" in functions else most
 
 
-def make_tree(chapter, file, tree, shader=None):
-    """Copies what a chapter's program reads, with `file`, and what belongs to it, instead of the chapter's own shaders; returns the
-    program there, and for each copy the file that it is a copy of."""
-    shutil.copytree(ROOT / "shaders", tree / "shaders")
-    for source in (*ROOT.glob("chapters/*/*.glsl"), *ROOT.glob("chapters/*/chapter.json")):
-        (tree / source.relative_to(ROOT)).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(source, tree / source.relative_to(ROOT))
+def replacement(shader, file):
+    """Options with which a program reads a file instead of a chapter's shader."""
+    return ["--shader", f"{shader.parent.name}/{shader.name}={os.path.abspath(file)}"]
+
+
+def replacements(chapter, file, shader=None):
+    """Options with which a chapter's program reads `file`, and what belongs to it, instead of its own shaders."""
     *others, _ = graded_together(chapter, file)
-    places = {other: ROOT / "chapters" / chapter / other.name for other in others} | {file: shader or shader_like(chapter, file)}
-    copies = {Path(shutil.copy(source, tree / place.relative_to(ROOT))).resolve(): source for source, place in places.items()}
-    for folder in ("assets", "common"):  # an archive by ./lab package has no sources, which the backend native needs
-        if (ROOT / folder).exists():
-            share(ROOT / folder, tree / folder)
-    if (libraries := BINARIES.parent / "lib").exists():  # from an archive by ./lab package
-        share(libraries, tree / "lib")
-    (tree / "bin").mkdir()
-    return shutil.copy(program_file(chapter), tree / "bin"), copies  # a program looks for shaders in parent folders
-
-
-def with_names_of(copies, text):
-    """A text with the files' names instead of those of their copies."""
-    for copy, source in copies.items():
-        text = text.replace(str(copy), printable(relative(source)))
-    return text
-
-
-def share(folder, place):
-    """Windows allows few people to make links."""
-    place.symlink_to(folder) if os.name == "posix" else shutil.copytree(folder, place)
+    places = {ROOT / "chapters" / chapter / other.name: other for other in others} | {shader or shader_like(chapter, file): file}
+    # What neither the chapter nor the framework has is included by these files only, and found beside them.
+    return [word for place, source in places.items() if place.exists() or any(ROOT.glob(f"shaders/*/{place.name}"))
+            for word in replacement(place, source)]
 
 
 @contextmanager
-def program_with(chapter, text, shader=None):
-    """The program of a chapter, given by its folder, in a temporary copy of what it reads, with this text as one of its shaders,
-    by default the estimator."""
+def replaced(shader, text):
+    """Options with which a program reads this text instead of a chapter's shader."""
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "path_trace.glsl"
+        file = Path(folder) / shader.name
         file.write_text(text, encoding="utf-8")
-        yield make_tree(chapter, file, Path(folder) / "tree", shader)[0]
+        yield replacement(shader, file)
+
+
+def with_names_of(file, text):
+    """A text in which this file, and those beside it, have names as the user wrote them."""
+    folder = f"{Path(os.path.abspath(file)).parent.as_posix()}/"
+    return text.replace(printable(folder), printable(relative(file).removesuffix(file.name)))
 
 
 def regions(image):
@@ -149,8 +136,8 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
     samples, own_scenes = SCENES[chapter]
     samples, started = settings["samples"] or samples, time.monotonic()
     with tempfile.TemporaryDirectory() as folder, Batch() as batch:
-        program, copies = make_tree(CHAPTERS[chapter], file, Path(folder), shader)
-        cases = [new_case(*pair, f"chapter {chapter}", program, OPTIONS[chapter])
+        settings = settings | {"shaders": replacements(CHAPTERS[chapter], file, shader)}
+        cases = [new_case(*pair, f"chapter {chapter}", CHAPTERS[chapter], OPTIONS[chapter])
                  for pair in find_references(scenes or own_scenes)]
         for case in cases:
             case |= {"invalid_samples": 0, "picture": 0}
@@ -185,7 +172,7 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
                 if done == EARLY_RUNS * len(cases) < len(work):
                     watch(cases)
         except UserError as error:
-            raise UserError(with_names_of(copies, str(error))) from None
+            raise UserError(with_names_of(file, str(error))) from None
     return cases
 
 

@@ -15,11 +15,11 @@ import time
 from pathlib import Path
 
 import numpy as np
-from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, program_with
+from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, replaced
 from check.words import percent
 from course.mistakes import bugs_of
 from lesson import diff
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, has_low_discrepancy, number, show_progress, text_of
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, has_low_discrepancy, number, program_file, show_progress, text_of
 from references.images import averaged, find_references, read_rgb, scene_file
 from report.measurement import new_case, run_case
 from report.numbers import batches, biases, last_rows, mean_of, runs_in_batches
@@ -52,33 +52,33 @@ def find_scene(word):
         return scene_file(word), None
 
 
-def new_render(chapter, scene, program):
+def new_render(chapter, scene):
     """What to render: with the path length of the reference, and SCALE times as large."""
     file, reference = find_scene(scene)
-    case = new_case(file, reference, f"chapter {chapter}", program, OPTIONS[chapter])
+    case = new_case(file, reference, f"chapter {chapter}", CHAPTERS[chapter], OPTIONS[chapter])
     return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE if reference else 1}
 
 
-def render(case, samples, options):
-    """Adds runs to a case; returns the mean image. With correlated samples, several runs are needed for the error."""
+def render(case, samples, options, shaders):
+    """Adds runs with these options --shader to a case; returns the mean image. With correlated samples, several runs are needed for the error."""
     runs = min(SCRAMBLES, samples) if has_low_discrepancy(case["program"]) else 1
     case |= {"runs": [], "invalid_samples": 0}
     pictures = []
     with tempfile.TemporaryDirectory() as folder:
         picture = Path(folder) / "picture.exr"
         for seed in range(1, runs + 1):
-            report = run_case(case, vars(options), ["--samples", samples // runs, "--seed", seed, "--output", picture])
+            report = run_case(case, vars(options) | {"shaders": shaders}, ["--samples", samples // runs, "--seed", seed, "--output", picture])
             case["runs"].append({"seed": seed, "rows": report["rows"]})
             case["invalid_samples"] += report["invalid_samples"]
             pictures.append(read_rgb(picture))
     return np.mean(pictures, axis=0)
 
 
-def telling_scene(chapter, programs, options):
+def telling_scene(chapter, planted, options):
     """The scene of ./lab check whose picture the bug changes most, judged by the means of tiles with a single sample per
     pixel."""
     def change(scene):
-        right, wrong = (averaged(render(new_render(chapter, scene, program), 1, options), SCALE * TILE) for program in programs)
+        right, wrong = (averaged(render(new_render(chapter, scene), 1, options, shaders), SCALE * TILE) for shaders in ([], planted))
         return np.abs(wrong - right).mean() / right.mean()
 
     return max(SCENES[chapter][1], key=change)
@@ -107,13 +107,13 @@ def verdict(right, wrong):
     return f"nothing shows: {means}; a bias from {100 * max(test['detectable'] for test in tests):.2g} % would show"
 
 
-def show(bug, index, scene, programs, options):
+def show(bug, index, scene, planted, options):
     """Renders with the right shader and with the wrong one, and says what to look for."""
     samples, started = options.samples or 2 * SCENES[bug.chapter][0], time.monotonic()
-    cases = [new_render(bug.chapter, scene, program) for program in programs]
+    cases = [new_render(bug.chapter, scene) for _ in range(2)]
     images = []
-    for case in cases:
-        images.append(render(case, samples, options))
+    for case, shaders in zip(cases, ([], planted)):
+        images.append(render(case, samples, options, shaders))
         show_progress(f"{('right', 'wrong')[len(images) - 1]} picture of {case['scene']}", len(images), len(cases), started)
     path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
     path.parent.mkdir(exist_ok=True)
@@ -125,25 +125,25 @@ def show(bug, index, scene, programs, options):
         print(f"{name:10} {text}")
 
 
-def open_window(bug, scene, program, options):
+def open_window(bug, scene, planted, options):
     """Shows the chapter with the bug, until its window is closed."""
-    case = new_render(bug.chapter, scene, program)
+    case = new_render(bug.chapter, scene)
     length = ["--max-path-length", case["max_path_length"]] if case["reference"] else []
-    command = [program, ROOT / case["scene_file"], "--window", *length, *OPTIONS[bug.chapter], "--backend", options.backend,
+    command = [program_file(case["program"]), ROOT / case["scene_file"], "--window", *planted, *length, *OPTIONS[bug.chapter], "--backend", options.backend,
                *(["--device", options.device] if options.device else [])]
-    result = subprocess.run(list(map(str, command)), cwd=Path(program).parent)
+    result = subprocess.run(list(map(str, command)))
     if result.returncode != 0:
         raise UserError(f"the window of chapter {bug.chapter} ended with exit code {result.returncode}")
 
 
-def sanitize(bug, program, options):
+def sanitize(bug, planted, options):
     """Prints what the sanitizer finds first."""
-    tree = Path(program).parents[1]
     scene = bug.mistake.get("sanitizer", "").split() if not options.scene else []
-    command = [program, *(scene or [find_scene(options.scene or SCENES[bug.chapter][1][0])[0]]), "--headless", "--quiet", "--sanitize",
+    command = [program_file(CHAPTERS[bug.chapter]), *planted, *(scene or [find_scene(options.scene or SCENES[bug.chapter][1][0])[0]]), "--headless", "--quiet", "--sanitize",
                "--width=64", "--height=64", f"--samples={options.samples or 16}", *(["--device", options.device] if options.device else [])]
-    result = subprocess.run(list(map(str, command)), cwd=tree, stderr=subprocess.PIPE, encoding="utf-8")
-    print(f"{'sanitizer':10} {result.stderr.replace(f'{tree}/', '').strip() or 'finds nothing'}")
+    result = subprocess.run(list(map(str, command)), stderr=subprocess.PIPE, encoding="utf-8")
+    text = result.stderr.replace(planted[1].partition("=")[2], str(bug.file)).replace(f"{ROOT.as_posix()}/", "")
+    print(f"{'sanitizer':10} {text.strip() or 'finds nothing'}")
 
 
 def caught_by(bug):
@@ -185,12 +185,11 @@ def main():
     if options.answer:
         answer(bug)
         return
-    chapter, own = CHAPTERS[bug.chapter], text_of(bug.file)
-    with program_with(chapter, own, bug.file) as right, program_with(chapter, bug.text, bug.file) as wrong:
+    with replaced(bug.file, bug.text) as planted:
         if options.sanitize:
-            return sanitize(bug, wrong, options)
-        scene = options.scene or telling_scene(bug.chapter, (right, wrong), options)
+            return sanitize(bug, planted, options)
+        scene = options.scene or telling_scene(bug.chapter, planted, options)
         if options.window:
-            open_window(bug, scene, wrong, options)
+            open_window(bug, scene, planted, options)
         else:
-            show(bug, options.bug, scene, (right, wrong), options)
+            show(bug, options.bug, scene, planted, options)

@@ -3,7 +3,7 @@ import textwrap
 
 from course.bug import caught_by, changes
 from course.mistakes import bugs_of, records
-from project import UserError
+from project import CHAPTERS, UserError
 
 # Name of the mistake -> chapter and reference.
 GALLERY = {mistake["name"]: (chapter, mistake["gallery"]) for chapter, mistakes in records().items()
@@ -26,5 +26,6 @@ def bug_block(name):
     lines = textwrap.dedent("\n".join(line for _, line in rows)).split("\n")
     shown = "\n".join(f"{mark} {line}".rstrip() for (mark, _), line in zip(rows, lines))
     return (f"![Right, wrong and their difference](pictures/bugs_{name}.jpg)\n\n"
-            f"`./lab bug {bug.chapter} {index} --scene {GALLERY[name][1]}` asks: *{bug.question}*\n\n<details><summary>Answer</summary>\n\n"
+            f"`./lab bug {bug.chapter} {index} --scene {GALLERY[name][1]}` asks: *{bug.question}*\n\n"
+            f"<!-- live: {GALLERY[name][1]} by {CHAPTERS[bug.chapter][3:]} bug {index} -->\n\n<details><summary>Answer</summary>\n\n"
             f"```diff\n{shown}\n```\n{bug.mistake['explanation']} `{caught_by(bug)[1]}` catches it.\n")

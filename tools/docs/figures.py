@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from check.grading import OPTIONS, SCENES, program_with
+from check.grading import OPTIONS, SCENES, replaced
 from course.bug import new_render
 from docs import figure_plots, first_steps, tables
 from docs.bug_blocks import GALLERY, find_bug
@@ -54,8 +54,9 @@ class Render:
             if self.rays_per_pixel:
                 options = (*options, "--samples", self.samples_for_rays(folder))
             unfinished = file.with_suffix(".unfinished.exr")
-            with program_with(self.chapter, self.shader) if self.shader else nullcontext(BINARIES / self.chapter) as program:
-                process = run_program([program, self.scene, "--width", self.size, "--height", self.height or self.size, *options,
+            own = ROOT / "chapters" / self.chapter / "path_trace.glsl"
+            with replaced(own, self.shader) if self.shader else nullcontext([]) as shaders:
+                process = run_program([BINARIES / self.chapter, self.scene, *shaders, "--width", self.size, "--height", self.height or self.size, *options,
                                        "--backend", "compute", "--quiet", "--output", unfinished, "--report", report])
             if process.returncode != 0:
                 raise UserError(f"{self.name}: {failure_text(process)}")
@@ -94,7 +95,7 @@ def renders_of_bugs():
     renders = []
     for name, (chapter, scene) in GALLERY.items():
         bug, _ = find_bug(name)
-        case = new_render(chapter, scene, CHAPTERS[chapter])
+        case = new_render(chapter, scene)
         options = ("--samples", 4 * SCENES[chapter][0], "--max-path-length", case["max_path_length"], *OPTIONS[chapter])
         renders += [Render(f"{name}_{which}", CHAPTERS[chapter], Path(case["scene_file"]).stem, case["width"], options,
                            height=case["height"], shader=text) for which, text in (("right", ""), ("wrong", bug.text))]

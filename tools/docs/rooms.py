@@ -1,7 +1,7 @@
 """Draws which rooms include which, as docs/diagrams/rooms.svg, from the lines with #include and import.
 
-The rooms and their order are those of the table in common/README.md: a room may include only rooms below it. The notebook includes
-rooms, and nothing outside includes the notebook.
+The rooms and their order are those of the table in common/README.md: a room may include only rooms below it. Only the programs include
+the two annexes. The notebook includes rooms, and nothing outside includes the notebook.
 """
 import re
 from html import escape
@@ -16,6 +16,7 @@ SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 WIDTH, CELL, LEFT = 640, 16, 190  # in pixels; names are left of the cells
 COLOURS = {"common": "#2f7de1", "shaders": "#2c8f4e", "chapters": "#b86e00", "tools": "#9b62d6"}
 GREY = "#787d83"
+ANNEXES = ("common/viewer", "common/native")
 
 
 def read_rooms():
@@ -62,6 +63,11 @@ def upward():
         wrong += [f"{path.relative_to(ROOT)} includes {target.relative_to(ROOT)}" for target in included_files(path)
                   if target.is_relative_to(ROOT / "chapters") and target.parent.name > path.parent.name]
     return wrong
+
+
+def into_the_annexes():
+    """Sources outside common/app that include the window or the native backend, which the course does without."""
+    return [text for (room, other), text in includes().items() if other in ANNEXES and room != "common/app"]
 
 
 def into_the_notebook():

@@ -68,7 +68,7 @@ def run_once(program, arguments, timeout):
 
 def run_case(case, settings, arguments, run=run_once):
     """The report of one run, with the seconds of the whole command, minus those of a peer's discarded renders. `run` is Batch.run
-    or alike."""
+    or alike. The setting "shaders" has options --shader."""
     with tempfile.TemporaryDirectory() as folder:
         limited = ["prlimit", f"--data={settings['memory_limit'] * 2**30:.0f}"] if settings.get("memory_limit") else []
         limited += ["env", *case["variables"]] if case["variables"] else []
@@ -82,7 +82,7 @@ def run_case(case, settings, arguments, run=run_once):
             command += ["--device", settings["device"]] if settings["device"] else []
         if "--output" not in arguments:
             arguments = [*arguments, "--output", Path(folder) / "picture.exr"]
-        command += ["--report", Path(folder) / "report.json", *arguments]
+        command += [*settings.get("shaders", []), "--report", Path(folder) / "report.json", *arguments]
         started = time.perf_counter()
         limit = settings.get("time_limit")
         try:

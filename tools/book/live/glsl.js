@@ -21,6 +21,7 @@ live.glsl = (() => {
 #define atomicAdd(place, value) (place += (value))
 #define nonuniformEXT(index) (index)
 uniform highp usampler2D web_arrays;
+uniform uvec2 web_places[32];  // of a binding: the first word and the number of words
 uvec4 web_texel(int i) { return texelFetch(web_arrays, ivec2(i & 2047, i >> 11), 0); }
 uint web_pick(uvec4 v, int i) { v *= uvec4(equal(ivec4(i), ivec4(0, 1, 2, 3))); return v.x | v.y | v.z | v.w; }
 float web_pick(vec3 v, int i) { return mix(mix(v.x, v.y, i == 1), v.z, i == 2); }
@@ -127,11 +128,11 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         }
 
         // Functions that read `name[i]` and, for a struct, its members.
-        accessors(type, name, first) {
-            const at = `${first}u + ${this.wordsOf(type)}u * i`, functions = [], struct = this.structs[type];
+        accessors(type, name, binding) {
+            const first = `web_places[${binding}].x`, at = `${first} + ${this.wordsOf(type)}u * i`, functions = [], struct = this.structs[type];
             if (!struct?.some(([, , n]) => n !== undefined)) functions.push(`${type} ${name}_at(uint i) { return ${this.reader(type, at)}; }`);
             // Arrays begin at a texel.
-            if (type === "uvec4") return `uvec4 ${name}_at(uint i) { return web_texel(int(${first / 4}u + i)); }`;
+            if (type === "uvec4") return `uvec4 ${name}_at(uint i) { return web_texel(int((${first} >> 2u) + i)); }`;
             let place = 0;
             for (const [t, member, n] of struct ?? []) {
                 const index = n === undefined ? "" : ", uint j", offset = n === undefined ? "" : ` + ${this.wordsOf(t)}u * j`;
@@ -197,12 +198,11 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
 
     const emptyLines = text => text.replace(/[^\n]/g, "");
 
-    // Translates a chapter's program. `scene`: buffers and images as dump_arrays writes them; `named`: as finder() takes them.
+    // Translates a chapter's program. `scene`: images as dump_arrays writes them; `named`: as finder() takes them.
     // Returns the text, a function from its line numbers to places, and the places of loops.
     function translate({ sources, chapter, named, defines, scene }) {
         const layout = new Layout(sources["shaders/interface.h"]);
         const { lines, places } = expand(sources, "shaders/engine/render.frag", finder(sources, chapter, named));
-        const bindings = name => scene.buffers.find(buffer => buffer.binding === layout.constants[name]) ?? { first: 0, count: 0 };
         let text = lines.join("\n") + "\n";
         text = text.replace(/^[ \t]*#[ \t]*(version|extension|line)\b.*$/gm, "");
         text = limitLoops(text, line => places[line - 1].file.startsWith("chapters/") ? line : 0);
@@ -216,12 +216,12 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
                 written.push(name);
                 return `${type} ${name};${rest}`;
             }
-            const { first, count } = bindings(binding);
-            readable.push({ name, struct: layout.structs[type], length: Math.floor(count / layout.wordsOf(type)) });
-            return layout.accessors(type, name, first) + rest;
+            const number = layout.constants[binding];
+            readable.push({ name, struct: layout.structs[type], length: `int(web_places[${number}].y / ${layout.wordsOf(type)}u)` });
+            return layout.accessors(type, name, number) + rest;
         });
         for (const { name, struct, length } of readable) {
-            text = text.replace(new RegExp(`\\b${name}\\.length\\(\\)`, "g"), String(length));
+            text = text.replace(new RegExp(`\\b${name}\\.length\\(\\)`, "g"), length);
             text = replaceUses(text, name, struct);
         }
         // A fragment has one pixel.
@@ -255,15 +255,11 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         return `${at ? `${at.file}:${at.line}: ` : ""}${match[2].trim()}${hint ? ` (${hint})` : ""}`;
     }
 
-    // Where a shader's #include finds a file: names of the chapter first, then the includer's folder, shaders/ and chapters/.
+    // Where a shader's #include finds a file. A chapter's file takes the place of any that the engine includes by its bare name.
     function finder(sources, chapter, named = {}) {
-        const own = (name, room) => [`chapters/${chapter}/${name}`, `shaders/${room}/${name}`].find(path => path in sources);
-        const names = {
-            "path_trace.glsl": `chapters/${chapter}/path_trace.glsl`, "brdf.glsl": own("brdf.glsl", "world"),
-            "random_words.glsl": own("random_words.glsl", "world"), "sample_loop.glsl": own("sample_loop.glsl", "engine"), ...named
-        };
-        return (name, includer) => Object.hasOwn(names, name) ? names[name]
-            : [includer.replace(/[^/]*$/, ""), "shaders/", "chapters/"].map(folder => folder + name).find(path => path in sources);
+        return (name, includer) => Object.hasOwn(named, name) ? named[name] : [
+            ...(includer.startsWith("shaders/") ? [`chapters/${chapter}/`] : []), includer.replace(/[^/]*$/, ""), "shaders/", "shaders/world/", "chapters/"
+        ].map(folder => folder + name).find(path => path in sources);
     }
 
     return { translate, readableError, Layout, ShaderError };

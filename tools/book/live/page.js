@@ -4,9 +4,9 @@ var live = globalThis.live ?? {};
 globalThis.live = live;
 
 live.page = (() => {
-    const { element } = live, { Renderer, loadData, unpackReference } = live.rendering;
+    const { element } = live, { Renderer, Rendering, loadScene, loadReference } = live.rendering;
     const TYPING = 600;  // milliseconds after the last key until the picture starts again
-    const MOST_SAMPLES = 4096, FIRST_VERDICT = 16;
+    const MOST_SAMPLES = 4096;
     const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
                     ALBEDO: "albedo", NORMALS: "normals" };
 
@@ -21,11 +21,14 @@ live.page = (() => {
     class Frame {
         // `keepsTexts`: whether the reader's texts are read and stored.
         constructor(root, keepsTexts = true) {
-            Object.assign(this, { root, keepsTexts });
+            Object.assign(this, { root, keepsTexts, turn: 0 });
             this.chapter = root.dataset.chapter;
             this.about = live.chapters[this.chapter];
             this.isPaused = false;
-            root.append(element("button", { type: "button", class: "live-start", click: () => this.start() }, `Render this chapter here`),
+            this.renderings = [];  // of this chapter, and perhaps of the one before
+            this.bug = this.about.bugs[root.dataset.bug - 1];
+            if (root.dataset.bug && !this.bug) return;  // a student's book has none
+            root.append(element("button", { type: "button", class: "live-start", click: () => this.start() }, this.bug ? "Find this bug here" : "Render this chapter here"),
                         element("p", {}, "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
                                 "The pictures are noisy at first, and the fan may start."));
         }
@@ -35,6 +38,9 @@ live.page = (() => {
             Frame.active = this;
             this.canvas = element("canvas", { width: "256", height: "256", role: "img", "aria-label": "the picture as it renders" });
             this.overlay = element("canvas", { class: "live-overlay", "aria-hidden": "true" });
+            this.line = element("input", { type: "range", class: "live-line", min: "0", max: "100", value: "50", hidden: "",
+                                           "aria-label": "the line between this chapter, left, and the one before", input: () => this.paint() });
+            this.caption = element("p", { class: "live-numbers" });
             this.verdict = element("p", { class: "live-verdict", role: "status", "aria-live": "polite" }, "starting …");
             this.numbers = element("p", { class: "live-numbers" });
             this.note = element("p", { class: "live-note", role: "status" });
@@ -44,9 +50,13 @@ live.page = (() => {
             await this.editor.readLink();
             this.root.replaceChildren(this.controls(),
                 element("div", { class: "live-columns" },
-                    element("div", { class: "live-picture" }, element("div", { class: "live-canvases" }, this.canvas, this.overlay),
-                            this.verdict, this.plot, this.numbers, this.note),
+                    element("div", { class: "live-picture" }, element("div", { class: "live-canvases" }, this.canvas, this.overlay, this.line),
+                            this.caption, this.verdict, this.plot, this.numbers, this.note),
                     this.editor.root), this.results);
+            if (this.bug) {
+                this.scene.value = Math.max(this.about.pictures.findIndex(({ name }) => name === this.root.dataset.picture), 0);
+                this.plant(this.bug);
+            }
             this.root.classList.add("live-running");
             try {
                 this.renderer = new Renderer(this.canvas);
@@ -71,7 +81,7 @@ live.page = (() => {
 
         stop() {
             Frame.active = null;
-            if (this.renderer) ++this.renderer.run;
+            this.stopRenderings();
             clearTimeout(this.timer);
             this.verdict.textContent = "stopped: only one frame of a page renders at a time";
         }
@@ -92,9 +102,11 @@ live.page = (() => {
             [this.strategy, strategyLabel] = this.select("Light by", strategies.map(name => [name, { both: "both", light: "light samples", bounces: "bounces" }[name]]), restart);
             this.length = element("input", { type: "number", min: "0", max: "100", step: "1", placeholder: "as above", change: restart });
             lengthLabel.append(this.length);
+            this.compared = element("input", { type: "checkbox", change: restart });
             this.pause = this.button("Pause", () => this.setPaused(!this.isPaused));
             const bar = element("div", { class: "live-controls", role: "group", "aria-label": "controls of the picture" }, sceneLabel, viewLabel,
-                                ...(strategies.length > 1 ? [strategyLabel] : []), lengthLabel, this.pause, this.button("Restart", restart),
+                                ...(strategies.length > 1 ? [strategyLabel] : []), lengthLabel,
+                                ...(pictures.some(({ before }) => before) ? [element("label", {}, this.compared, " compare with the chapter before")] : []), this.pause, this.button("Restart", restart),
                                 this.button("Check", () => this.check()));
             if (exercise) bar.append(this.button("Start exercise 1", () => { this.editor.edit(exercise.text, exercise.file); }));
             if (bugs.length) {
@@ -146,44 +158,52 @@ live.page = (() => {
             this.shownView = this.view.value;
         }
 
-        // Loads a picture's data and compiles the reader's texts for it. Returns what Renderer.render() needs; throws ShaderErrors.
-        async prepare(picture) {
-            const { folder } = this.root.dataset, tooLong = this.editor.tooLong;
-            if (tooLong) throw new live.glsl.ShaderError(`${tooLong}:1: the text is longer than any shader needs: is it the right file?`);
-            const [scene, packed] = await Promise.all([loadData(folder, picture.scene), loadData(folder, picture.reference)]);
-            const reference = picture.unpacked ??= await unpackReference(packed);
-            const parameters = Uint32Array.from(picture.parameters), placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
+        stopRenderings() {
+            ++this.turn;
+            for (const { rendering } of this.renderings) rendering.stop();
+            this.renderings = [];
+        }
+
+        // The defines of the page's own options.
+        get options() { return this.strategy.value ? [`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`] : []; }
+
+        // Compiles texts for a picture's scene. Throws ShaderErrors.
+        async prepare({ scene, parameters: words, chapter = this.chapter, options = this.options }, sources) {
+            if (typeof scene === "string") scene = await loadScene(this.root.dataset.folder, scene);
+            const parameters = Uint32Array.from(words), placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
             const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)];
             if (this.length.value !== "") parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(this.length.value), 0), 100);
-            const defines = [...scene.defines], named = {};
-            if (this.strategy.value) defines.push(`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`);
+            const defines = [...scene.defines, ...options], named = {};
             if (this.isView) {
                 defines.push(`VIEW_${this.view.value}`);
                 Object.assign(named, { "path_trace.glsl": "shaders/observation/view.glsl", "sample_loop.glsl": "shaders/engine/sample_loop.glsl" });
             }
-            const translated = live.glsl.translate({ sources: this.editor.sources, chapter: this.chapter, named, defines, scene });
-            this.numbers.textContent = "compiling …";
-            const started = performance.now(), program = await this.renderer.compile(translated);
-            return { program, scene, parameters, size, reference, translated, compileTime: performance.now() - started };
+            const translated = live.glsl.translate({ sources, chapter, named, defines, scene });
+            const started = performance.now(), linked = await this.renderer.compile(translated), compileTime = performance.now() - started;
+            return { rendering: new Rendering(this.renderer, { linked, scene, parameters, size }), translated, chapter, compileTime };
         }
 
-        // Renders a picture; look(film, state) is called at powers of two. Returns whether it came to its end.
+        // Renders a picture; look(film, state, verdict) is called at powers of two. Returns whether it came to its end.
         async renderPicture(picture, target, look) {
-            const turn = this.turn = (this.turn ?? 0) + 1, started = performance.now();
-            ++this.renderer.run;
-            const state = await this.prepare(picture);
-            if (turn !== this.turn) return false;
-            this.state = state;
-            const verdict = new live.statistics.LiveVerdict(state.reference, ...state.size);
-            try {
-                return await this.draw(state, verdict, target, look, started) && turn === this.turn;
-            } finally { this.renderer.gl.deleteProgram(state.program); }
-        }
-
-        draw(state, verdict, target, look, started) {
-            return this.renderer.render({
-                ...state, target, isPaused: () => this.isPaused || document.hidden,
-                shown: () => this.renderer.show({ scale: 1, isSrgb: this.view.value !== "NORMALS" }),
+            this.stopRenderings();
+            const { turn, editor: { tooLong } } = this, started = performance.now(), { before } = picture;
+            if (tooLong) throw new live.glsl.ShaderError(`${tooLong}:1: the text is longer than any shader needs: is it the right file?`);
+            this.numbers.textContent = "compiling …";
+            const reference = picture.unpacked ??= await loadReference(this.root.dataset.folder, picture.reference);
+            const state = await this.prepare(picture, this.editor.sources), { rendering } = state, states = [state];
+            if (turn === this.turn && this.compared.checked && before) states.push(await this.prepare(before, live.sources));
+            if (turn !== this.turn) {
+                for (const { rendering } of states) rendering.stop();
+                return false;
+            }
+            this.renderings = states;
+            this.line.hidden = states.length < 2;
+            this.caption.textContent = "";
+            const verdict = new live.statistics.LiveVerdict(reference, ...rendering.size), other = states[1]?.rendering;
+            const isPaused = (a, b) => this.isPaused || document.hidden || b && a.busy > b.busy && b.samples < MOST_SAMPLES;  // whoever has had more time waits
+            other?.render({ target: () => MOST_SAMPLES, isPaused: () => isPaused(other, rendering), shown: () => this.paint(), look: film => this.compare(film, reference) });
+            return rendering.render({
+                target, isPaused: () => isPaused(rendering, other), shown: () => this.paint(),
                 preview: film => {
                     this.checkLoops(film, state);
                     this.times ??= { compile: state.compileTime, first: performance.now() - started };
@@ -191,16 +211,32 @@ live.page = (() => {
                 look: film => {
                     this.checkLoops(film, state);
                     if (film.samples === verdict.nextSamples) verdict.add(film);
-                    look(film, state, verdict);
+                    look(film, reference, verdict);
                 }
             });
         }
 
+        // Shows what is rendered: this chapter's up to the line, then that of the chapter before.
+        paint() {
+            const [own, other] = this.renderings.map(({ rendering }) => rendering);
+            if (!own) return;
+            const [width] = own.size, end = other ? Math.round(width * this.line.value / 100) : width;
+            this.renderer.show(other ? [[own, end], [other, width]] : [[own, end]], this.view.value !== "NORMALS");
+            this.overlay.style.clipPath = `inset(0 ${100 * (1 - end / width)}% 0 0)`;
+        }
+
+        // What both chapters have reached in the same time. A film of the chapter before is compared with the reference, too.
+        compare(film, reference) {
+            const words = (chapter, samples, error) => `chapter ${parseInt(chapter)}: ${samples} samples, error ${(100 * error).toPrecision(2)} %`;
+            const [{ chapter }, other] = this.renderings, own = this.errors.at(-1);
+            if (own && film.samples > 1) this.caption.textContent = `After the same time, left ${words(chapter, ...own)}; right ${words(other.chapter, film.samples, live.statistics.relativeError(film, reference).error)}.`;
+        }
+
         // Throws if a loop had to be ended: then the samples are wrong.
-        checkLoops(film, state) {
+        checkLoops(film, { rendering, translated }) {
             if (!film.stuck) return;
-            const { file, line } = state.translated.loop(film.stuck);
-            ++this.renderer.run;
+            const { file, line } = translated.loop(film.stuck);
+            rendering.stop();
             throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end`);
         }
 
@@ -213,8 +249,19 @@ live.page = (() => {
             this.drawOverlay();
             this.results.replaceChildren();
             try {
-                await this.renderPicture(picture, () => MOST_SAMPLES, (film, state, verdict) => this.show(film, state, verdict, started));
+                await this.renderPicture(picture, () => MOST_SAMPLES, (...all) => this.show(...all, started));
             } catch (error) { this.report(error); }
+        }
+
+        async check() {
+            if (!this.renderer) return;
+            clearTimeout(this.timer);
+            this.setPaused(false);
+            this.compared.checked = false;
+            this.view.value = "picture";
+            this.length.value = "";
+            if (this.strategy.value) this.strategy.selectedIndex = 0;
+            try { await live.check(this, MOST_SAMPLES); } catch (error) { this.report(error); }
         }
 
         report(error) {
@@ -224,11 +271,10 @@ live.page = (() => {
             } else this.fail(error.message);
         }
 
-        show(film, state, verdict, started) {
+        show(film, reference, verdict, started) {
             this.editor.showError("");
-            this.film = film;
-            this.latest = verdict;
-            const seconds = (performance.now() - started) / 1000, { means, error } = live.statistics.relativeError(film, state.reference);
+            Object.assign(this, { film, reference, latest: verdict });
+            const seconds = (performance.now() - started) / 1000, { means, error } = live.statistics.relativeError(film, reference);
             this.means = means;
             const hasReference = !this.isView && this.length.value === "";
             const isBiased = verdict.verdict?.isBiased;
@@ -244,10 +290,10 @@ live.page = (() => {
 
         // What is not the picture itself: differences, the verdict's map, noise. One pixel of the overlay is one of the reference or a tile.
         drawOverlay() {
-            const { film, state, overlay, latest } = this, view = this.view.value;
+            const { film, reference, overlay, latest } = this, view = this.view.value;
             overlay.hidden = !film || !["difference", "bias", "noise"].includes(view) || view === "bias" && !latest.verdict;
             if (overlay.hidden) return;
-            const { reference } = state, mean = reference.mean.reduce((sum, r) => sum + r, 0) / reference.mean.length;
+            const mean = reference.mean.reduce((sum, r) => sum + r, 0) / reference.mean.length;
             const paint = (width, height, value) => {
                 [overlay.width, overlay.height] = [width, height];
                 const image = new ImageData(width, height);
@@ -272,88 +318,13 @@ live.page = (() => {
                 `<text x="2" y="${y(first[1]) + 4}">${percent(first[1])}</text><text x="2" y="${y(last[1]) + 4}">${percent(last[1])}</text>` +
                 `<text x="${x(first[0])}" y="106" text-anchor="middle">${first[0]}</text><text x="${x(last[0])}" y="106" text-anchor="middle">${last[0]}</text></svg>`;
         }
-
-        // The verdicts on the scenes of ./lab check, one after the other.
-        async check() {
-            if (!this.renderer) return;
-            const { checked, pictures, samples } = this.about, rows = [], enough = Math.max(samples, FIRST_VERDICT);
-            clearTimeout(this.timer);
-            this.setPaused(false);
-            this.view.value = "picture";
-            this.length.value = "";
-            this.errors = [];
-            for (const name of checked) {
-                const picture = pictures.find(p => p.name === name);
-                if (!picture) { rows.push([name, "is too large for a page: ./lab check renders it"]); continue; }
-                this.scene.value = pictures.indexOf(picture);
-                let last;
-                try {
-                    const started = performance.now(), target = () => last && last.verdict && last.verdict.samples >= enough ? 0 : MOST_SAMPLES;
-                    const done = await this.renderPicture(picture, target, (film, state, verdict) => { last = verdict; this.show(film, state, verdict, started); });
-                    if (!done) return;
-                } catch (error) { this.report(error); return; }
-                rows.push([name, last.text]);
-                this.results.replaceChildren(element("table", {}, ...rows.map(row => element("tr", {}, ...row.map(cell => element("td", {}, cell))))));
-            }
-            const isBiased = rows.some(([, text]) => text.startsWith("biased"));
-            this.results.prepend(element("p", {}, element("strong", {}, isBiased ? "Biased: the estimator is wrong on a scene." : "Correct on all scenes, as far as these samples tell."),
-                                 " ./lab check says more: where a bias begins, and how noisy the estimator is."));
-        }
-    }
-
-    // Tries chapters one after the other, and writes what a developer wants to know about the device.
-    class Report {
-        static chapters = ["next_event_estimation", "dielectrics", "light_probes"];
-        static patience = 120;  // seconds for a chapter
-
-        constructor(root) {
-            this.root = root;
-            this.text = element("textarea", { readonly: "", rows: "16", "aria-label": "the report" });
-            this.frames = element("div");
-            root.append(element("button", { type: "button", class: "live-start", click: () => this.run() }, "Try it"), this.text, this.frames);
-        }
-
-        say(line) { this.text.value += `${line}\n`; }
-
-        async run() {
-            this.text.value = "";
-            this.say(navigator.userAgent);
-            this.say(`screen ${screen.width} x ${screen.height}, ${navigator.hardwareConcurrency} threads`);
-            for (const name of Report.chapters) {
-                const chapter = Object.keys(live.chapters).find(folder => folder.endsWith(name));
-                if (chapter) await this.try(chapter);
-            }
-            this.frames.replaceChildren();
-            this.say("done");
-        }
-
-        async try(chapter) {
-            const root = element("div", { "data-chapter": chapter, "data-folder": this.root.dataset.folder }), started = performance.now();
-            this.frames.replaceChildren(root);
-            const frame = root.frame = new Frame(root, false), seconds = () => (performance.now() - started) / 1000;
-            await frame.start();
-            if (frame.renderer && !this.isKnown) {
-                const { gl, parallel, device } = frame.renderer;
-                this.say(`device ${device.name}; textures up to ${gl.getParameter(gl.MAX_TEXTURE_SIZE)}; ${parallel ? "compiles" : "does not compile"} beside the page`);
-                this.isKnown = true;
-            }
-            const isOver = () => frame.latest?.verdict || frame.verdict.classList.contains("live-failed") || seconds() > Report.patience;
-            while (!isOver()) await live.rendering.pause(100);
-            this.say(`\n${chapter}: ${frame.verdict.textContent}`);
-            if (frame.times) this.say(`compiled in ${frame.times.compile.toFixed(0)} ms, first picture after ${frame.times.first.toFixed(0)} ms; ${frame.numbers.textContent}`);
-            if (frame.editor.error.textContent) this.say(frame.editor.error.textContent);
-            if (frame.losses) this.say(`the browser took the GPU away ${frame.losses} times`);
-            frame.stop();
-            frame.renderer?.gl.getExtension("WEBGL_lose_context")?.loseContext();
-        }
     }
 
     function init() {
         for (const root of document.querySelectorAll("div.live")) {
-            if (root.frame || root.report) continue;  // each frame of a page brings this script
             root.replaceChildren();
-            if (root.dataset.chapter === "report") root.report = new Report(root);
-            if (root.dataset.chapter in live.chapters) root.frame = new Frame(root);
+            if (root.dataset.chapter === "report") root.report = new live.Report(root, Frame);
+            if (root.dataset.chapter in live.chapters) root.frame = new Frame(root, !root.dataset.bug);
         }
     }
     if (document.readyState === "loading") addEventListener("DOMContentLoaded", init); else init();

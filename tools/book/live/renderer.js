@@ -5,6 +5,8 @@ globalThis.live = live;
 
 live.rendering = (() => {
     const WIDTH = 2048;  // texels of the arrays' texture, which every device allows
+    const MOST_PROGRAMS = 16;  // that are kept
+    const FILM = [0, 1, 2];  // its textures
     const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
     const FULL_SCREEN = `#version 300 es
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
@@ -12,7 +14,6 @@ void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2
 precision highp float;
 precision highp int;
 uniform highp usampler2D film_before[3];
-uniform float scale;
 uniform bool is_srgb;
 out vec4 colour;
 void main() {
@@ -20,7 +21,7 @@ void main() {
     if (texelFetch(film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
     uvec4 a = texelFetch(film_before[0], place, 0), b = texelFetch(film_before[1], place, 0), c = texelFetch(film_before[2], place, 0);
     vec3 mean = (uintBitsToFloat(a.xyz) + uintBitsToFloat(uvec3(a.w, b.xy))) / float(max(c.y, 1u));
-    vec3 shown = clamp(scale * mean, 0.0, 1.0);
+    vec3 shown = clamp(mean, 0.0, 1.0);
     vec3 curved = mix(12.92 * shown, 1.055 * pow(shown, vec3(1.0 / 2.4)) - 0.055, greaterThan(shown, vec3(0.0031308)));
     colour = vec4(c.z > 0u ? vec3(1.0, 0.0, 1.0) : is_srgb ? curved : shown, 1.0);
 }`;
@@ -50,13 +51,24 @@ void main() {
         return exponent === 0 ? fraction * 2 ** -24 : (1 + fraction / 1024) * 2 ** (exponent - 15);
     }
 
-    async function unpackReference({ width, height, samples, scales, packed }) {
+    const unpackWords = async packed => new Uint32Array(await unpack(packed));
+
+    // A scene, with its words.
+    async function loadScene(folder, name) {
+        const scene = await loadData(folder, name);
+        scene.words ??= await unpackWords(scene.packed);
+        return scene;
+    }
+
+    async function loadReference(folder, name) {
+        const { width, height, samples, scales, packed } = await loadData(folder, name);
         const halves = new Uint16Array(await unpack(packed)), count = 3 * width * height;
         const mean = Float64Array.from(halves.subarray(0, count), half => scales[0] * floatOfHalf(half));
         const variance = Float64Array.from(halves.subarray(count), half => (scales[1] * floatOfHalf(half)) ** 2);
         return { width, height, samples, mean, variance };
     }
 
+    // The device: what all pictures of a page share.
     class Renderer {
         // Throws an Error that says what the reader can do.
         constructor(canvas) {
@@ -64,19 +76,14 @@ void main() {
             this.gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
             if (!this.gl) throw new Error("this browser offers no WebGL 2: update it, or switch graphics acceleration on in its settings");
             this.layout = new live.glsl.Layout(live.sources["shaders/interface.h"]);
-            this.run = 0;  // the number of the current render: an earlier one that finds another number ends
             this.make();
         }
 
         // What has to be made again after the browser has taken the context away.
         make() {
-            const { gl } = this;
-            this.parallel = gl.getExtension("KHR_parallel_shader_compile");
+            this.parallel = this.gl.getExtension("KHR_parallel_shader_compile");
             this.display = this.link(FULL_SCREEN, DISPLAY);
-            this.arrays = gl.createTexture();
-            this.probe = gl.createTexture();
-            this.films = [];
-            this.loaded = null;
+            this.compiled = new Map();  // the last programs by their text, the oldest first
         }
 
         // The name of the device, and whether a program draws in place of one.
@@ -86,8 +93,9 @@ void main() {
             return { name, isSlow: /swiftshader|llvmpipe|softpipe|basic render|software/i.test(name) };
         }
 
+        // A program, and the place of a uniform.
         link(vertex, fragment) {
-            const { gl } = this, program = gl.createProgram();
+            const { gl } = this, program = gl.createProgram(), places = {};
             for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
                 const shader = gl.createShader(kind);
                 gl.shaderSource(shader, text);
@@ -95,62 +103,104 @@ void main() {
                 gl.attachShader(program, shader);
             }
             gl.linkProgram(program);
-            return program;
+            return { program, place: name => places[name] ??= gl.getUniformLocation(program, name) };
         }
 
-        // Compiles a translated shader. Throws a ShaderError with the place in the reader's files.
+        // Compiles a translated shader, or returns one of the last. Throws a ShaderError with the place in the reader's files.
         async compile(translated) {
-            const { gl, parallel } = this, program = this.link(FULL_SCREEN, translated.text);
+            const { gl, parallel, compiled } = this, linked = compiled.get(translated.text) ?? this.link(FULL_SCREEN, translated.text), { program } = linked;
+            compiled.delete(translated.text);
             while (parallel && !gl.isContextLost() && !gl.getProgramParameter(program, parallel.COMPLETION_STATUS_KHR)) await pause(5);
             if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
                 const logs = gl.getAttachedShaders(program).map(shader => gl.getShaderInfoLog(shader) ?? "");
                 gl.deleteProgram(program);
                 throw new live.glsl.ShaderError(live.glsl.readableError(logs.find(log => log.trim()) ?? gl.getProgramInfoLog(program) ?? "", translated.place));
             }
-            return program;
-        }
-
-        // Copies a scene's arrays to the device.
-        async load(scene) {
-            if (this.loaded === scene) return;
-            const { gl } = this, words = new Uint32Array(await unpack(scene.packed)), height = Math.ceil(words.length / 4 / WIDTH);
-            const texels = new Uint32Array(4 * WIDTH * height);
-            texels.set(words);
-            this.image(this.arrays, gl.RGBA32UI, WIDTH, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
-            const probe = scene.images.find(image => image.binding === this.layout.constants.BINDING_LIGHT_PROBE);
-            if (probe) {
-                const values = new Float32Array(words.buffer, 4 * probe.first, probe.count);
-                this.image(this.probe, gl.RGBA32F, probe.width, probe.height, gl.RGBA, gl.FLOAT, values);
+            compiled.set(translated.text, linked);
+            if (compiled.size > MOST_PROGRAMS) {
+                const [[oldest, { program }]] = compiled;
+                compiled.delete(oldest);
+                gl.deleteProgram(program);
             }
-            this.loaded = scene;
+            return linked;
         }
 
-        image(texture, format, width, height, layout, type, data) {
-            const { gl } = this;
+        image(format, width, height, layout, type, data) {
+            const { gl } = this, texture = gl.createTexture();
             gl.activeTexture(gl.TEXTURE0);
             gl.bindTexture(gl.TEXTURE_2D, texture);
             gl.texImage2D(gl.TEXTURE_2D, 0, format, width, height, 0, layout, type, data);
             for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+            return texture;
         }
 
-        // An empty film. Two take turns, since a shader cannot write what it reads.
-        makeFilm(width, height) {
-            const { gl } = this, frame = gl.createFramebuffer(), textures = [0, 1, 2].map(() => gl.createTexture());
+        // Sets the texture of a uniform.
+        bind({ place }, name, unit, texture) {
+            const { gl } = this;
+            gl.activeTexture(gl.TEXTURE0 + unit);
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.uniform1i(place(name), unit);
+        }
+
+        // Shows pictures of one size side by side: each up to the `end` of its part, in pixels.
+        show(parts, isSrgb) {
+            const { gl, display } = this, [[{ size }]] = parts;
+            if (gl.isContextLost()) return;
+            if (gl.canvas.width !== size[0] || gl.canvas.height !== size[1]) [gl.canvas.width, gl.canvas.height] = size;
+            gl.useProgram(display.program);
+            gl.uniform1i(display.place("is_srgb"), isSrgb ? 1 : 0);
+            gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+            gl.viewport(0, 0, ...size);
+            gl.enable(gl.SCISSOR_TEST);
+            let start = 0;
+            for (const [picture, end] of parts) {
+                picture.bindFilm(display, picture.isFirstPass ? 1 : 0);
+                gl.scissor(start, 0, end - start, size[1]);
+                gl.drawArrays(gl.TRIANGLES, 0, 3);
+                start = end;
+            }
+        }
+    }
+
+    // A picture of a scene with a compiled program.
+    class Rendering {
+        constructor(renderer, { linked, scene, parameters, size }) {  // `busy`: milliseconds of draws
+            Object.assign(this, { renderer, gl: renderer.gl, linked, size, samples: 0, busy: 0, isFirstPass: true, isStopped: false });
+            const { gl, layout } = renderer, { words } = scene, height = Math.ceil(words.length / 4 / WIDTH), texels = new Uint32Array(4 * WIDTH * height);
+            texels.set(words);
+            this.arrays = renderer.image(gl.RGBA32UI, WIDTH, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
+            const probe = scene.images.find(image => image.binding === layout.constants.BINDING_LIGHT_PROBE);
+            if (probe) this.probe = renderer.image(gl.RGBA32F, probe.width, probe.height, gl.RGBA, gl.FLOAT, new Float32Array(words.buffer, 4 * probe.first, probe.count));
+            // Two films take turns, since a shader cannot write what it reads.
+            this.films = [this.makeFilm(), this.makeFilm()];
+            gl.useProgram(linked.program);
+            this.setStruct("RenderParameters", "parameters", parameters);
+            for (const { binding, first, count } of scene.buffers) gl.uniform2ui(linked.place(`web_places[${binding}]`), first, count);
+        }
+
+        makeFilm() {
+            const { gl, size } = this, frame = gl.createFramebuffer();
+            const textures = FILM.map(() => this.renderer.image(gl.RGBA32UI, ...size, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null));
             gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-            textures.forEach((texture, i) => {
-                this.image(texture, gl.RGBA32UI, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null);
-                gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, texture, 0);
-            });
+            for (const i of FILM) gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, textures[i], 0);
             gl.disable(gl.SCISSOR_TEST);
-            gl.drawBuffers([0, 1, 2].map(i => gl.COLOR_ATTACHMENT0 + i));
-            for (let i = 0; i < 3; ++i) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
+            gl.drawBuffers(FILM.map(i => gl.COLOR_ATTACHMENT0 + i));
+            for (const i of FILM) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
             return { frame, textures };
         }
 
+        // Ends render() at its next draw.
+        stop() {
+            const { gl, films, arrays, probe } = this;
+            if (this.isStopped) return;
+            this.isStopped = true;
+            for (const texture of [arrays, probe, ...films.flatMap(film => film.textures)]) gl.deleteTexture(texture ?? null);
+            for (const { frame } of films) gl.deleteFramebuffer(frame);
+        }
+
         // Sets the members of a uniform struct from words. Returns the words behind it.
-        setStruct(program, type, name, words) {
-            const { gl } = this, place = gl.getUniformLocation(program, name), numbers = words.slice(0, 4);
-            const floats = new Float32Array(numbers.buffer);
+        setStruct(type, name, words) {
+            const { gl, linked, renderer: { layout } } = this, place = linked.place(name), numbers = words.slice(0, 4), floats = new Float32Array(numbers.buffer);
             switch (type) {
                 case "float": gl.uniform1f(place, floats[0]); break;
                 case "vec3": gl.uniform3fv(place, floats.subarray(0, 3)); break;
@@ -158,41 +208,21 @@ void main() {
                 case "uint": gl.uniform1ui(place, numbers[0]); break;
                 case "uvec2": gl.uniform2uiv(place, numbers.subarray(0, 2)); break;
                 default:
-                    for (const [t, member] of this.layout.structs[type]) words = this.setStruct(program, t, `${name}.${member}`, words);
+                    for (const [t, member] of layout.structs[type]) words = this.setStruct(t, `${name}.${member}`, words);
                     return words;
             }
-            return words.subarray(this.layout.wordsOf(type));
+            return words.subarray(layout.wordsOf(type));
         }
 
-        bindFilm(program, film) {
-            const { gl } = this;
-            gl.useProgram(program);
-            film.textures.forEach((texture, i) => {
-                gl.activeTexture(gl.TEXTURE0 + i);
-                gl.bindTexture(gl.TEXTURE_2D, texture);
-            });
-            gl.uniform1iv(gl.getUniformLocation(program, "film_before"), [0, 1, 2]);
-        }
-
-        // Shows the latest picture. `display`: {scale, isSrgb}.
-        show({ scale, isSrgb }) {
-            const { gl, size, films, isFirstPass } = this;
-            if (!films.length || gl.isContextLost()) return;
-            if (gl.canvas.width !== size[0] || gl.canvas.height !== size[1]) [gl.canvas.width, gl.canvas.height] = size;
-            gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-            gl.disable(gl.SCISSOR_TEST);
-            gl.viewport(0, 0, ...size);
-            this.bindFilm(this.display, films[isFirstPass ? 1 : 0]);
-            gl.uniform1f(gl.getUniformLocation(this.display, "scale"), scale);
-            gl.uniform1i(gl.getUniformLocation(this.display, "is_srgb"), isSrgb ? 1 : 0);
-            gl.drawArrays(gl.TRIANGLES, 0, 3);
+        bindFilm(linked, film) {
+            for (const i of FILM) this.renderer.bind(linked, `film_before[${i}]`, i, this.films[film].textures[i]);
         }
 
         // The film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a stuck loop.
         read() {
             const { gl, size: [width, height], films } = this, count = width * height;
             gl.bindFramebuffer(gl.FRAMEBUFFER, films[0].frame);
-            const [a, b, c] = [0, 1, 2].map(i => {
+            const [a, b, c] = FILM.map(i => {
                 const words = new Uint32Array(4 * count);
                 gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
                 gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
@@ -211,38 +241,29 @@ void main() {
             return film;
         }
 
-        // Renders until `target()` samples are reached or another render starts. Calls `look(film)` at 1, 2, 4, … samples and the
-        // target, and before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns whether it was not replaced.
-        async render({ program, scene, parameters, size, target, isPaused, preview = () => {}, look, shown }) {
-            const run = ++this.run, { gl } = this;
-            await this.load(scene);
-            if (run !== this.run) return false;
-            this.size = size;
-            for (const film of this.films) {
-                film.textures.forEach(texture => gl.deleteTexture(texture));
-                gl.deleteFramebuffer(film.frame);
-            }
-            this.films = [this.makeFilm(...size), this.makeFilm(...size)];
-            this.samples = 0;
-            this.isFirstPass = true;
-            gl.useProgram(program);
-            this.setStruct(program, "RenderParameters", "parameters", parameters);
-            let rows = 8, step = 1, isPreview = true;
+        // Renders until `target()` samples are reached or stop() is called. Calls `look(film)` at 1, 2, 4, … samples and the target, and
+        // before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns whether it was not stopped.
+        // `pace`: how much fits into a draw, from the last picture if it was like this one.
+        async render({ target, isPaused = () => false, preview = () => {}, look, shown = () => {} }, pace = { rows: 8, step: 1 }) {
+            const { gl, size } = this;
+            let { rows, step } = pace, isPreview = true;
             while (this.samples < target()) {
                 const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1), next = Math.min(this.samples + step, look_at, target());
                 for (let row = 0; row < size[1];) {
-                    while (isPaused() && run === this.run) await pause(50);
-                    if (run !== this.run || gl.isContextLost()) return false;
+                    while (!this.isStopped && isPaused()) await pause(10);
+                    if (this.isStopped || gl.isContextLost()) return false;
                     const started = performance.now();
-                    this.draw(program, row, Math.min(rows, size[1] - row), next, isPreview);
+                    this.draw(row, Math.min(rows, size[1] - row), next, isPreview);
                     await this.finished();
-                    if (run !== this.run || gl.isContextLost()) return false;
+                    if (this.isStopped || gl.isContextLost()) return false;
                     row += rows;
                     const time = performance.now() - started;
+                    if (!isPreview) this.busy += time;  // which may include a driver's compiler
                     if (time < SHORT && rows < size[1]) rows *= 2;
                     else if (time < SHORT && row >= size[1]) step *= 2;
                     else if (time > LONG && step > 1) step = Math.ceil(step / 2);
                     else if (time > LONG) rows = Math.max(1, Math.floor(rows / 2));
+                    Object.assign(pace, { rows, step });
                     if (this.isFirstPass) shown();
                 }
                 this.films.reverse();
@@ -260,17 +281,15 @@ void main() {
             return true;
         }
 
-        draw(program, row, rows, target, isPreview) {
-            const { gl, films, size, samples } = this;
-            this.bindFilm(program, films[0]);
-            for (const [unit, name, texture] of [[3, "web_arrays", this.arrays], [4, "light_probe", this.probe]]) {
-                gl.activeTexture(gl.TEXTURE0 + unit);
-                gl.bindTexture(gl.TEXTURE_2D, texture);
-                gl.uniform1i(gl.getUniformLocation(program, name), unit);
-            }
-            gl.uniform1ui(gl.getUniformLocation(program, "target_samples"), target);
-            gl.uniform1ui(gl.getUniformLocation(program, "samples_per_pixel"), target - samples);
-            gl.uniform1i(gl.getUniformLocation(program, "is_preview"), isPreview ? 1 : 0);
+        draw(row, rows, target, isPreview) {
+            const { gl, linked, linked: { place }, films, size, samples } = this;
+            gl.useProgram(linked.program);
+            this.bindFilm(linked, 0);
+            this.renderer.bind(linked, "web_arrays", 3, this.arrays);
+            this.renderer.bind(linked, "light_probe", 4, this.probe ?? null);
+            gl.uniform1ui(place("target_samples"), target);
+            gl.uniform1ui(place("samples_per_pixel"), target - samples);
+            gl.uniform1i(place("is_preview"), isPreview ? 1 : 0);
             gl.bindFramebuffer(gl.FRAMEBUFFER, films[1].frame);
             gl.viewport(0, 0, ...size);
             gl.enable(gl.SCISSOR_TEST);
@@ -287,5 +306,5 @@ void main() {
         }
     }
 
-    return { Renderer, loadData, unpackReference, pause };
+    return { Renderer, Rendering, loadData, loadScene, loadReference, unpackWords, pause };
 })();
