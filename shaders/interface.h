@@ -133,12 +133,12 @@ SHARED_CONSTANT MAX_PROBE_CELL_ROWS = 2048u;
 
 // A pinhole camera: the ray through image position (s, t) in [-1,1]^2 (t down) is forward + s right - t up.
 struct Camera {
-    vec3 position;
-    vec3 forward;  // unit length
-    vec3 right;    // scaled by tan(horizontal field of view / 2)
-    vec3 up;       // scaled by tan(vertical field of view / 2)
-    float aperture_radius;
-    float focus_distance;  // of the plane in focus, along `forward`
+    vec3 position;          // of the pinhole, or of the middle of the lens
+    vec3 forward;           // unit length
+    vec3 right;             // scaled by tan(horizontal field of view / 2)
+    vec3 up;                // scaled by tan(vertical field of view / 2)
+    float aperture_radius;  // of the lens; 0 is a pinhole
+    float focus_distance;   // of the plane in focus, along `forward`
 };
 
 // Constant during a render.
