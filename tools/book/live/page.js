@@ -10,6 +10,7 @@ live.page = (() => {
     const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
                     ALBEDO: "albedo", NORMALS: "normals" };
 
+    const percent = error => `${Number((100 * error).toPrecision(2))} %`;
     const isOfSurfaces = view => /^[A-Z]/.test(view ?? "");  // instead of radiance
 
     // Red for positive, blue for negative, white for 0; saturated at 1.
@@ -227,7 +228,7 @@ live.page = (() => {
 
         // What both chapters have reached in the same time. A film of the chapter before is compared with the reference, too.
         compare(film, reference) {
-            const words = (chapter, samples, error) => `chapter ${parseInt(chapter)}: ${samples} samples, error ${(100 * error).toPrecision(2)} %`;
+            const words = (chapter, samples, error) => `chapter ${parseInt(chapter)}: ${samples} samples, error ${percent(error)}`;
             const [{ chapter }, other] = this.renderings, own = this.errors.at(-1);
             if (own && film.samples > 1) this.caption.textContent = `After the same time, left ${words(chapter, ...own)}; right ${words(other.chapter, film.samples, live.statistics.relativeError(film, reference).error)}.`;
         }
@@ -282,7 +283,7 @@ live.page = (() => {
             this.verdict.textContent = this.isView ? "this view shows surfaces, not light" : !hasReference ? "no verdict: there is no reference for this path length" : verdict.text;
             if (hasReference) this.errors.push([film.samples, error]);
             this.numbers.textContent = `${film.samples} samples a pixel, ${seconds.toFixed(1)} s, ${(film.rays / seconds / 1e6).toFixed(2)} million rays per second` +
-                (film.samples === 1 ? "" : hasReference ? `, error ${(100 * error).toPrecision(2)} %` : "") +
+                (film.samples === 1 ? "" : hasReference ? `, error ${percent(error)}` : "") +
                 (film.invalid ? `; ${film.invalid} samples are infinite or no numbers: their pixels are magenta` : "");
             this.drawPlot();
             this.drawOverlay();
@@ -311,7 +312,7 @@ live.page = (() => {
             if (points.length < 2) { this.plot.replaceChildren(); return; }
             const x = samples => 34 + 21 * Math.log2(samples), largest = Math.max(...points.map(([, error]) => error));
             const y = error => 8 + 80 * Math.log(largest / error) / Math.log(largest / Math.min(...points.map(([, e]) => e), largest / 8));
-            const [first, last] = [points[0], points.at(-1)], percent = error => `${(100 * error).toPrecision(2)} %`;
+            const [first, last] = [points[0], points.at(-1)];
             const line = points.map(([samples, error]) => `${x(samples).toFixed(1)},${y(error).toFixed(1)}`).join(" ");
             this.plot.innerHTML = `<svg viewBox="0 0 300 110" role="img" aria-label="error against samples: ${percent(first[1])} after ${first[0]}, ${percent(last[1])} after ${last[0]}">` +
                 `<polyline points="${line}"/>` + points.map(([samples, error]) => `<circle cx="${x(samples)}" cy="${y(error)}" r="2.5"/>`).join("") +
