@@ -281,6 +281,12 @@ class ExperimentsTest(unittest.TestCase):
             described |= set(file.get("experiments", {}))
             self.assertLessEqual(set(file["uses"]), described, f"chapter {chapter}")
 
+    def test_points_that_are_channels_of_one_colour_do_not_claim_all_colours(self):
+        for chapter in experiment_files():
+            for one in experiments_of(chapter).values():
+                if all(point.channel is not None for point in one.points) and all(point.scene == one.points[0].scene for point in one.points):
+                    self.assertEqual(one.varies, "the channel", f"{one.name}: a grey wall may be right")
+
     def test_points_differ_in_what_they_say(self):
         made = experiment("x", {"subject": "s", "scene": {"lamp": {"size": 1, "emits": 2}, "plate": {"size": 3}}, "options": "--a 1",
                                 "points": [{"at": "one"}, {"at": "two", "scene": {"lamp": {"size": 4}, "plate": None}, "options": "--b 2"}]}, 8)
