@@ -10,7 +10,7 @@ LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
 
 class Rate:
-    """Counts of trials. `alone` counts those with a single name, `right` those where that is the mistake, `fitting` those where the
+    """Counts of trials. `alone` counts those with a single name that fits, `right` those where that is the mistake, `fitting` those where the
     mistake is among the names that fit, `among` those where it is among these or those that may fit, and `told` those with facts
     or names."""
 
@@ -18,7 +18,7 @@ class Rate:
         large = [trial for trial in trials if trial["bias"] >= LARGE_BIAS or trial["noise"] >= LARGE_NOISE]
         self.tried, self.large = len(trials), len(large)
         self.found, self.found_of_large = (sum(trial["verdict"] != "correct" for trial in some) for some in (trials, large))
-        alone = [trial for trial in trials if len(trial["named"]) == 1]
+        alone = [trial for trial in trials if len(trial["named"]) == 1 and trial["fits"]]
         self.alone, self.right = len(alone), sum(trial["named"] == [trial["mistake"]] for trial in alone)
         among = [trial for trial in trials if trial["mistake"] in trial["named"]]
         self.among, self.fitting = len(among), sum(trial["fits"] for trial in among)

@@ -87,10 +87,6 @@ class ConfusionTest(unittest.TestCase):
         own = rates(self.record())["new seeds"]
         self.assertGreaterEqual(own.fitting / own.found, 0.9, "in all numbers, if the shader is the one that was measured")
 
-    def test_a_name_that_may_fit_is_never_told_alone(self):
-        for key, trial in self.record()["trials"].items():
-            self.assertTrue(trial["fits"] or len(trial["named"]) != 1, key)
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -50,6 +50,22 @@ class FactsTest(unittest.TestCase):
         self.assertNotIn("factor", seen([1.23] * 4).sentence, "no well-known constant")
         self.assertNotIn("factor", seen([3.1] * 4, error=0.1).sentence, "3 or π")
 
+    def test_what_a_single_point_shows_is_no_constant(self):
+        for values in ([1.0, 0.6366, 1.0], [0.9, 0.6366, 0.5], [0.6366]):
+            self.assertNotIn("as by a factor", seen(values).sentence, values)
+            for told in findings([seen(values)]):
+                self.assertNotIn("as by a factor", told.told()["text"], values)
+        throughout, partly = seen([2.0] * 3, subject="light of the sky"), seen([1.0, 2.0, 1.0])
+        self.assertIn("factor 2", findings([throughout, partly])[0].told()["text"])
+
+    def test_a_law_holds_at_every_point_within_its_own_error(self):
+        eta = {"value": "η"}
+        root = [(1 / value)**0.5 for value in (1.2, 1.5, 2.0)]
+        self.assertIn("follows the root of 1 / η", seen(root, eta, (1.2, 1.5, 2.0)).sentence)
+        off = [root[0], root[1] * 1.03, root[2]]
+        self.assertNotIn("follows", seen(off, eta, (1.2, 1.5, 2.0)).sentence)
+        self.assertIn("follows", seen(off, eta, (1.2, 1.5, 2.0), error=0.02).sentence)
+
     def test_a_power_law_is_told_of_the_quantity_that_it_follows(self):
         angles = {"cos": "the cosine of this angle", "sin": "the sine of this angle"}
         self.assertIn("follows 1 / the cosine of this angle;", seen([1.064, 1.305, 2.0, 3.864], angles).sentence)
@@ -98,14 +114,28 @@ class FindingsTest(unittest.TestCase):
         others = [seen([1.0, value, 2 * value], subject=f"light {i}") for i, value in enumerate((1.1, 1.3, 1.7, 2.3))]
         told = self.told(*others, law, seen([1.0, 0.7, 0.5], subject="light 5"))
         self.assertEqual([each["text"] for each in told], ["off by 1 / the cosine of the angle: light of a lamp",
-                                                           "too bright, up to 4.60 times: light 0; light 1; light 2; light 3",
+                                                           "too bright, up to 4.60 times: light 3; light 2; light 1; light 0",
                                                            "too dark, down to 0.50 times: light 5"])
+
+    def test_the_finding_with_the_most_evidence_is_told_first_and_shown_next(self):
+        weak = seen([0.0, 1.0, 1.0], subject="light of the sky", name="sky")
+        strong = [seen([2.0] * 3, subject=f"light {i}", name=f"light_{i}", error=error) for i, error in enumerate((0.05, 0.001))]
+        first, second = self.told(weak, *strong)
+        self.assertRegex(first["text"], "2.00 .* times as bright as it should be")
+        self.assertEqual(first["evidence"], [strong[1].sentence, strong[0].sentence], "the most precise first")
+        self.assertEqual(second["text"], "nothing is there: light of the sky")
+        facts = {each.experiment.name: each for each in (weak, *strong)}
+        sights = {name: [sight(1.0)] * 3 for name in facts}
+        expected = {name: {} for name in facts}
+        with mock.patch.object(diagnosis, "write_scene", side_effect=lambda scene, folder, name: grading.ROOT / f"{name}.json"), \
+                mock.patch.object(diagnosis, "known_sights", return_value=[sight(0.5)] * 3):
+            self.assertIn("light_1.json", diagnosis.next_step(3, Path("mine.glsl"), facts, sights, expected))
 
     def test_light_where_none_should_be_and_what_is_no_number_are_not_forgotten(self):
         invalid = fact(Experiment("x", "light of a lamp", "", [Point({}, "a")]), [Sight(1.0, 0.1, 1.0, 0.1, 2.0, 1.0, invalid=3)], [sight(1.0)])
-        told = self.told(seen([2.0, 0.3], expected=[0.5, 0.0], subject="light of the sky"), invalid)
+        told = self.told(seen([2.0, 2.0, 0.3], expected=[0.5, 0.5, 0.0], subject="light of the sky"), invalid)
         self.assertEqual(sorted(each["text"].split(":")[0] for each in told),
-                         ["2.00 ± 0.02 times as bright as it should be (as by a factor 2)", "infinite or not a number", "light where none should be"])
+                         ["2.00 ± 0.01 times as bright as it should be (as by a factor 2)", "infinite or not a number", "light where none should be"])
 
     def test_a_text_is_short_whatever_the_experiments_are_called(self):
         for chapter in experiment_files():
@@ -197,6 +227,14 @@ class SimilarNamesTest(unittest.TestCase):
             self.assertEqual([head for head, _ in hint_lines(result)], heads)
             self.assertEqual(headline(result), ("biased", first))
 
+    def test_a_single_name_that_may_fit_is_no_headline_and_leaves_the_next_experiment(self):
+        found = {"facts": [{"text": "f", "evidence": ["long"]}], "right": [], "next": "./lab run 3", "mistakes": [{"hint": "1?", "slide": "s"}]}
+        scene = {"scene": "room", "verdict": "biased", "image": [{"value": -0.2, "is_biased": True}], "tiles": []}
+        for fits, heads in ((False, ["seen", "not sure", "maybe", "read again", "next"]), (True, ["seen", "read again"])):
+            result = {"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found | {"fits": fits}, "scenes": [scene]}
+            self.assertEqual([head for head, _ in hint_lines(result)], heads)
+            self.assertEqual(headline(result)[1] == "1?", fits)
+
     def test_a_few_facts_are_enough(self):
         facts = [{"text": f"fact {i}", "evidence": []} for i in range(MOST_FACTS + 3)]
         found = {"facts": facts, "right": [], "next": None, "mistakes": [], "fits": False}
@@ -242,6 +280,12 @@ class ExperimentsTest(unittest.TestCase):
         for chapter, file in experiment_files().items():
             described |= set(file.get("experiments", {}))
             self.assertLessEqual(set(file["uses"]), described, f"chapter {chapter}")
+
+    def test_points_that_are_channels_of_one_colour_do_not_claim_all_colours(self):
+        for chapter in experiment_files():
+            for one in experiments_of(chapter).values():
+                if all(point.channel is not None for point in one.points) and all(point.scene == one.points[0].scene for point in one.points):
+                    self.assertEqual(one.varies, "the channel", f"{one.name}: a grey wall may be right")
 
     def test_points_differ_in_what_they_say(self):
         made = experiment("x", {"subject": "s", "scene": {"lamp": {"size": 1, "emits": 2}, "plate": {"size": 3}}, "options": "--a 1",

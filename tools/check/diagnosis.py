@@ -110,11 +110,12 @@ def is_noisy(experiment, sights, expected):
 
 
 def next_step(chapter, file, facts, sights, expected):
-    """How the student can see the first wrong thing: writes a scene file and returns it in a command, with the value to expect."""
-    name, seen = next(((name, seen) for name, seen in facts.items() if not seen.is_right and seen.readings), (None, None))
+    """How the student can see the first fact that is told: writes a scene file and returns it in a command, with the value to expect."""
+    seen = next((seen for finding in findings(facts.values()) for seen in finding.facts if seen.readings), None)
     if not seen:
         return None
-    worst = max(range(len(seen.readings)), key=lambda i: abs(seen.readings[i].value - seen.readings[i].expected))
+    name = seen.experiment.name
+    worst = max(range(len(seen.readings)), key=lambda i: seen.readings[i].evidence)
     point, folder = seen.experiment.points[worst], ROOT / f"output/check_{chapter}"
     try:
         folder.mkdir(parents=True, exist_ok=True)

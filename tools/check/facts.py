@@ -16,7 +16,6 @@ CONSTANTS = {"π²": math.pi**2, "2π": 2 * math.pi, "4": 4.0, "π": math.pi, "3
              "2/3": 2 / 3, "2/π": 2 / math.pi, "1/2": 0.5, "1/3": 1 / 3, "1/π": 1 / math.pi, "1/4": 0.25, "1/(2π)": 0.5 / math.pi,
              "1/π²": math.pi**-2}
 FEW_PARTS = 0.03  # a named constant is reported only if the interval is narrower than this fraction of it
-FIT = 0.04  # relative deviation allowed for the points of a law, as lamps have a size
 POWERS = {-3: "the third power of 1 / {}", -2: "the square of 1 / {}", -1: "1 / {}", -0.5: "the root of 1 / {}", 0.5: "the root of {}",
           1: "{}", 2: "the square of {}", 3: "the third power of {}"}
 FUNCTIONS = {"value": lambda x: x, "rest": lambda x: 1 - x, "per": math.exp, "cos": lambda x: math.cos(math.radians(x)), "sin": lambda x: math.sin(math.radians(x))}
@@ -42,6 +41,11 @@ class Reading:
     @property
     def is_surely_right(self):
         return self.is_right and abs(self.value - self.expected) + INTERVAL * self.error <= CLOSE
+
+    @property
+    def evidence(self):
+        """By how many standard errors it is wrong, none being taken for less than the tolerance."""
+        return abs(self.value - self.expected) / math.hypot(self.error, TOLERANCE)
 
     @property
     def is_beyond_doubt(self):
@@ -89,7 +93,8 @@ def number(value, error):
 
 
 def constant(value, error):
-    """The name of the only well-known constant that a number can be, in brackets; or nothing."""
+    """The name of the only well-known constant that a number can be, in brackets; or nothing. For what all points of an experiment
+    share: a single number may be near a constant by chance."""
     width = INTERVAL * error + 0.003 * value
     fitting = [name for name, known in CONSTANTS.items() if abs(value - known) <= width]
     return f" (as by a factor {fitting[0]})" if len(fitting) == 1 and width <= FEW_PARTS * value else ""
@@ -111,7 +116,7 @@ def power_law(experiment, those):
     values = np.array([reading.value for reading in those])
     if len(those) < 3 or not experiment.quantity or values.min() <= 0:
         return None
-    errors = np.array([math.hypot(reading.error / reading.value, FIT / 3) for reading in those])
+    errors = np.array([reading.error / reading.value + TOLERANCE / 3 for reading in those])
     arguments = {function: np.log([FUNCTIONS[function](points[reading.at]) for reading in those]) for function in experiment.quantity}
     if "per" in arguments:
         powers = [(float(np.polyfit(arguments["per"], np.log(values), 1, w=1 / errors)[0]),)]
@@ -123,7 +128,7 @@ def power_law(experiment, those):
         mean, error = float(np.average(offsets, weights=errors**-2)), float((errors**-2).sum()**-0.5)
         if np.ptp(expected) < 6 * errors.max() or np.any(np.abs(offsets - mean) > 3 * errors):
             continue
-        if sum(map(bool, those_powers)) > 1 and abs(mean) > FIT + 2 * error:  # two powers and a factor would fit almost anything
+        if sum(map(bool, those_powers)) > 1 and abs(mean) > TOLERANCE + 2 * error:  # two powers and a factor would fit almost anything
             continue
         phrases = [POWERS[power].format(words) for power, words in zip(those_powers, experiment.quantity.values()) if power in POWERS]
         if "per" in arguments:
@@ -145,13 +150,13 @@ def sentence(experiment, those):
     elif wrong:
         common, law = common_value(lit), power_law(experiment, lit)
         if common and len(wrong) == len(lit):
-            words.append(f"{number(*common)} times as bright as it should be{constant(*common)}{whatever}")
+            words.append(f"{number(*common)} times as bright as it should be{constant(*common) if len(lit) > 1 else ''}{whatever}")
         else:
             if law:
                 factor, error, phrase = law
                 is_per = "per" in experiment.quantity
                 once = f", and once by {number(factor, error)}" if is_per else f" times {number(factor, error)}"
-                words.append(f"wrong by a factor {'of' if is_per else 'that follows'} {phrase}{'' if abs(factor - 1) < 2 * error + FIT else once}")
+                words.append(f"wrong by a factor {'of' if is_per else 'that follows'} {phrase}{'' if abs(factor - 1) < 2 * error + TOLERANCE else once}")
             words.append(", ".join(map(in_words, wrong)).replace(" times", " times as bright as it should be", 1))
             right = [reading.at for reading in lit if reading.is_surely_right]
             words += [f"right: {', '.join(right)}"] if right else []
@@ -163,7 +168,7 @@ def sentence(experiment, those):
 def in_words(reading):
     if reading.value == 0:
         return f"{reading.at}: nothing"
-    return f"{reading.at}: {number(reading.value, reading.error)} times{constant(reading.value, reading.error)}"
+    return f"{reading.at}: {number(reading.value, reading.error)} times"
 
 
 def fact(experiment, sights, expected):

@@ -8,6 +8,7 @@ from check.facts import TOLERANCE, common_value, constant, number, power_law
 
 LONGEST = 100  # characters of a finding's text
 SHARE = 0.5  # of what is wrong: a factor that fewer experiments have in common is a coincidence
+INVALID = "infinite or not a number"
 BOUNCES = 4  # at most, of an experiment
 
 
@@ -16,6 +17,7 @@ class Finding:
     """A way of being wrong, and the facts that are."""
     way: str
     facts: list = field(default_factory=list)
+    is_vague: bool = False  # too bright or too dark, and nothing else in common
 
     def told(self):
         subjects = sorted(dict.fromkeys(seen.experiment.subject for seen in self.facts), key=len)
@@ -92,8 +94,25 @@ def side(those):
     return f"too dark, down to {min(values):.2f} times" if max(values) < 1 else f"{min(values):.2f} to {max(values):.2f} times as bright"
 
 
+def is_wrong_throughout(seen):
+    """Whether all points of an experiment with several are wrong."""
+    return 1 < len(wrong_readings(seen)) == sum(not reading.is_dark for reading in seen.readings)
+
+
+def strongest(seen):
+    return max((reading.evidence for reading in seen.readings), default=math.inf)
+
+
+def rank(finding):
+    """What findings are ordered by: what is not even a number first, what has only its side in common last, and the more points are
+    beyond doubt, the earlier."""
+    points = sum(reading.is_beyond_doubt for seen in finding.facts for reading in seen.readings)
+    return finding.way == INVALID, not finding.is_vague, points
+
+
 def findings(facts):
-    """The wrong ones of some facts by what they have in common: a list of Finding, those that say most about the cause first."""
+    """The wrong ones of some facts by what they have in common: a list of Finding, those with the most evidence first, as are the
+    facts of each."""
     wrong, found, others = [seen for seen in facts if not seen.is_right], {}, []
     bounces = factor_of_bounces(wrong)
 
@@ -102,7 +121,7 @@ def findings(facts):
 
     for seen in wrong:
         if seen.invalid:
-            add("infinite or not a number", seen)
+            add(INVALID, seen)
     for seen in wrong:
         if way := own_way(seen, bounces):
             add(way, seen)
@@ -112,10 +131,13 @@ def findings(facts):
             add("light where none should be", seen)
     factors = [(common, those) for common, those in same_factors(others) if common and len(those) >= SHARE * len(wrong)]
     for common, those in factors:
-        add(f"{number(*common)} times as bright as it should be{constant(*common)}", *those)
+        add(f"{number(*common)} times as bright as it should be{constant(*common) if any(map(is_wrong_throughout, those)) else ''}", *those)
     rest = [seen for seen in others if not any(seen is each for _, those in factors for each in those)]
     for is_bright in (True, False):
         those = [seen for seen in rest if any(reading.value > 1 for reading in wrong_readings(seen)) == is_bright]
         if those:
             add(side(those), *those)
-    return list(found.values())
+            found[side(those)].is_vague = True
+    for finding in found.values():
+        finding.facts.sort(key=strongest, reverse=True)
+    return sorted(found.values(), key=rank, reverse=True)

@@ -99,7 +99,7 @@ def hint_lines(result):
         lines.append(("read again", f"{slides} (docs/slides.md), chapters/{CHAPTERS[result['chapter']]}/README.md"))
     if len(mistakes) > 1 and found["fits"]:
         lines.append(("not sure", f"{len(mistakes)} common mistakes show the same in all experiments"))
-    if found["next"] and len(mistakes) != 1:
+    if found["next"] and not (found["fits"] and len(mistakes) == 1):
         lines.append(("next", found["next"]))
     return lines
 

@@ -59,9 +59,9 @@ live.facts = (() => {
         const lit = readings.filter(reading => !reading.isDark), wrong = lit.filter(reading => !reading.isRight), words = [];
         const whatever = lit.length > 1 ? `, whatever ${varies}` : "", common = wrong.length ? commonValue(lit) : null;
         if (wrong.length && lit.every(({ value }) => value === 0)) words.push(`nothing of it is there${whatever}`);
-        else if (common && wrong.length === lit.length) words.push(`${number(common)} times as bright as it should be${constant(common)}${whatever}`);
+        else if (common && wrong.length === lit.length) words.push(`${number(common)} times as bright as it should be${lit.length > 1 ? constant(common) : ""}${whatever}`);
         else if (wrong.length) {
-            const told = wrong.map(reading => `${reading.at}: ${reading.value === 0 ? "nothing" : `${number(reading)} times${constant(reading)}`}`);
+            const told = wrong.map(reading => `${reading.at}: ${reading.value === 0 ? "nothing" : `${number(reading)} times`}`);
             const right = lit.filter(reading => reading.isSurelyRight).map(reading => reading.at);
             words.push(told.join(", ").replace(" times", " times as bright as it should be"), ...(right.length ? [`right: ${right.join(", ")}`] : []));
         }
