@@ -131,7 +131,7 @@ SHARED_NUMBER LIGHT_PROBE_PROBABILITY = 0.5f;
 SHARED_CONSTANT MAX_PROBE_CELL_COLUMNS = 4096u;
 SHARED_CONSTANT MAX_PROBE_CELL_ROWS = 2048u;
 
-// A pinhole camera: the ray through image position (s, t) in [-1,1]^2 (t down) is forward + s right - t up.
+// A camera: with a pinhole, the ray through image position (s, t) in [-1,1]^2 (t down) is forward + s right - t up.
 struct Camera {
     vec3 position;          // of the pinhole, or of the middle of the lens
     vec3 forward;           // unit length
@@ -143,8 +143,8 @@ struct Camera {
 
 // Constant during a render.
 struct RenderParameters {
-    Camera camera;
-    uvec2 image_size;
+    Camera camera;          // where camera rays begin, and where they go
+    uvec2 image_size;       // in pixels
     uvec2 seed_key;         // scrambles the start states of the random numbers
     uint first_sample;      // index of this render's first sample in every pixel
     uint max_path_length;   // number of bounces after which a path ends: 0 shows emission only
