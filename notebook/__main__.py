@@ -13,7 +13,7 @@ import project  # noqa: E402  (found by the line above)
 
 QUESTIONS = {  # name: module
     "ages": "tables.ages", "assets": "makers.make", "confusion": "learning.confusion", "export": "tables.export", "false_alarms": "measure.false_alarms",
-    "figures": "tables.figures", "hard_cases": "measure.hard_cases", "learn": "learning.learn", "mistakes": "mistakes.cpp_mistake",
+    "figures": "tables.figures", "hard_cases": "measure.hard_cases", "learn": "learning.learn", "lens_points": "measure.lens_points", "mistakes": "mistakes.cpp_mistake",
     "mutations": "mistakes.mutations", "native_speed": "measure.native_speed", "peer": "peers.peer", "report": "peers.report", "sizes": "tables.sizes",
     "submissions": "learning.submissions", "variants": "learning.verify_variants",
 }

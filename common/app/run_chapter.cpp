@@ -167,9 +167,9 @@ void print_warnings(const Chapter& chapter, const RenderJob& job) {
         {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"}};
     for (const auto& [is_left_out, what] : left_out) {
         if (!is_left_out) continue;
-        const std::string scene = job.scene->file.string(), use = ": use a chapter that does not, see ./lab run";
+        const std::string scene = job.scene->file.string(), use = ": use a chapter that can render it, see ./lab run";
         if (!job.options.run.report.empty())
-            throw UserError("--report: " + chapter.name + " leaves out the " + what + " of " + scene + use);
+            throw UserError("--report: " + chapter.name + " cannot render the " + what + " of " + scene + use);
         warnings.push_back(scene + ": " + chapter.name + " leaves out its " + what + use);
     }
     for (const auto& warning : warnings)

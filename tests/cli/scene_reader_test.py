@@ -84,6 +84,7 @@ KEYS = {
     "translation": ("meshes/0/translation", [1, 0, 0]), "axis": ("meshes/0/rotation/axis", [1, 0, 0]),
     "degrees": ("meshes/0/rotation/degrees", 40), "position": ("camera/position", [0, 1, 3]),
     "target": ("camera/target", [0, 1, 0]), "up": ("camera/up", [1, 0, 0]), "vertical_fov": ("camera/vertical_fov", 50),
+    "aperture_diameter": ("camera/aperture_diameter", 0.1), "focus_distance": ("camera/focus_distance", 2),
     "radiance": ("background/radiance", 0.5), "light_probe": ("background", PROBE),
     "intensity": ("background", {**PROBE, "intensity": 3}), "rotation_degrees": ("background", {**PROBE, "rotation_degrees": 90}),
 }

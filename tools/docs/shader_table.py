@@ -9,7 +9,7 @@ from project import CHAPTERS, ROOT, UserError, course, table
 
 INTERFACE = "shaders/interface.h"
 TOPICS = {  # heading: sources
-    "Rays": ["shaders/world/ray.glsl", "shaders/engine/trace_ray/compute.glsl", "shaders/engine/render_samples.glsl"],
+    "Rays": ["shaders/world/ray.glsl", "shaders/world/camera.glsl", "shaders/engine/trace_ray/compute.glsl", "shaders/engine/render_samples.glsl"],
     "The point that a ray hits": ["shaders/world/shading_data.glsl", "shaders/world/frame.glsl"],
     "Random numbers": ["shaders/world/random.glsl", "shaders/world/random_words.glsl"],
     "Materials": ["shaders/world/scene.glsl", "shaders/world/brdf.glsl", "shaders/world/materials.glsl", "shaders/world/materials/phong.glsl"],

@@ -1,0 +1,49 @@
+"""Whether one point in four dimensions for pixel and lens pays: errors of chapter 12 with it, and with a point of its own for each.
+
+    ./lab notebook lens_points [--runs 8] [--output FILE.json]
+
+Both take turns, with another seed in each run. The errors are those that the halves of the samples tell.
+"""
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
+
+CHAPTER, SHADER = "12_lens", "camera.glsl"
+JOINT = "get_joint_numbers(seed, on_aperture, in_pixel);"
+PADDED = "on_aperture = get_random_numbers(seed); in_pixel = get_random_numbers(seed);"
+APERTURES, SAMPLES = (0.03, 0.1, 0.3), 1024
+
+
+def measure(shader, aperture, seed, folder):
+    """Mean squared error by samples, of one picture."""
+    report = folder / "report.json"
+    subprocess.run([program_file(CHAPTER), "focus", "--headless", "--quiet", "--width=150", "--height=100", f"--samples={SAMPLES}", f"--seed={seed}",
+                    "--max-path-length=1", f"--aperture-diameter={aperture}", f"--shader={SHADER}={shader}", f"--output={folder / 'picture.exr'}",
+                    f"--report={report}"], check=True)
+    content = read_json(report)
+    return content["device"], {str(row["samples"]): row["mse"] for row in content["rows"] if row["samples"] >= 16}
+
+
+def main():
+    parser = Parser("./lab notebook lens_points", __doc__)
+    parser.add_argument("--runs", type=number(int, 2), default=8, help="default: 8")
+    parser.add_argument("--output", type=Path, default=ROOT / "notebook/records/lens/llvmpipe.json", metavar="FILE.json")
+    options, rows, started = parser.parse_args(), [], time.monotonic()
+    text = (ROOT / "chapters" / CHAPTER / SHADER).read_text(encoding="utf-8")
+    with tempfile.TemporaryDirectory() as name:
+        folder, shaders = Path(name), {"joint": text, "padded": text.replace(JOINT, PADDED)}
+        assert shaders["padded"] != text
+        for way, content in shaders.items():
+            (folder / f"{way}.glsl").write_text(content, encoding="utf-8")
+        for aperture in APERTURES:
+            errors = {way: [] for way in shaders}
+            for run in range(options.runs):
+                for way, runs in errors.items():
+                    device, found = measure(folder / f"{way}.glsl", aperture, 1 + run, folder)
+                    runs.append(found)
+                show_progress("lens_points", len(rows) * options.runs + run + 1, len(APERTURES) * options.runs, started)
+            rows.append({"aperture_diameter": aperture, **errors})
+    write_json(options.output, {"device": device, "scene": "focus", "max_path_length": 1, "rows": rows}, 4)
