@@ -66,12 +66,10 @@ static void interrupt(int signal) {
     if (!repeats(signal)) std::signal(signal, SIG_DFL);
 }
 
-static void handle_ending_signals(void (*handler)(int)) {
+void install_interrupt_handler() {
     for (const int signal : ending_signals)
-        if (!is_ignored(signal)) std::signal(signal, handler);
+        if (!is_ignored(signal)) std::signal(signal, interrupt);
 }
-
-void install_interrupt_handler() { handle_ending_signals(interrupt); }
 
 void interrupt_after([[maybe_unused]] double seconds) {
 #ifndef _WIN32
@@ -81,7 +79,8 @@ void interrupt_after([[maybe_unused]] double seconds) {
 }
 
 void remove_interrupt_handler() {
-    handle_ending_signals(SIG_DFL);
+    for (const int signal : ending_signals)  // one that repeats may still come, and is no reason to die before the last word
+        if (!is_ignored(signal) && !repeats(signal)) std::signal(signal, SIG_DFL);
 #ifndef _WIN32
     alarm(0);
     std::signal(SIGALRM, SIG_DFL);

@@ -149,7 +149,7 @@ def run_tool(tool):
 def run_program(command, **options):
     """Runs a program without input and captures its output. Ctrl-C does not reach it, since it has its own session."""
     return subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True,
-                          **{"cwd": ROOT, "encoding": "utf-8", "errors": "replace", "start_new_session": True, **options})
+                          **{"cwd": ROOT, "encoding": "utf-8", "errors": "backslashreplace", "start_new_session": True, **options})
 
 
 def run_to_end(command, what, expected=0, **options):
