@@ -7,7 +7,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
-from project import ROOT, UserError, show_progress
+from project import ROOT, UserError, printable, show_progress
 
 POLLING = 0.5  # seconds
 STARVED = 10  # times its limit that a program may take if other programs keep it from computing for as long
@@ -90,7 +90,7 @@ class Worker:
         if is_late.is_set():
             raise subprocess.TimeoutExpired(self.program, timeout)
         self.errors.seek(0)
-        errors = self.errors.read().decode("utf-8", "replace").replace(f"line {self.count} of the standard input: ", "")
+        errors = printable(self.errors.read()).replace(f"line {self.count} of the standard input: ", "")
         return subprocess.CompletedProcess([*self.program, *arguments], code, "", errors)
 
     def end(self, is_idle):
