@@ -1,6 +1,7 @@
 #include "viewer/inspection_drawing.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "inspection/hemisphere_view.h"
 #include "inspection/projection.h"
@@ -8,10 +9,33 @@
 namespace lab {
 namespace {
 
+constexpr uint32_t blue = IM_COL32(60, 200, 255, 255);
+
 // Radiance as the picture shows it at exposure 0.
 uint32_t colour_of(const vec3& radiance) {
     const auto channel = [&](int i) { return std::lround(255 * linear_to_srgb(radiance[i])); };
     return IM_COL32(channel(0), channel(1), channel(2), 255);
+}
+
+// Where a lens shows the point that a camera ray hits, if that ray leaves the lens at `start`: the plane in focus is sharp, so it
+// is the place of the point in which the ray crosses this plane.
+std::optional<vec2> seen_through_lens(const Camera& camera, const vec3& start, const vec3& hit) {
+    const float depth = glm::dot(hit - camera.position, camera.forward);
+    return project(camera, start + camera.focus_distance / depth * (hit - start));
+}
+
+// The lens as the picture shows it: all its points together blur the hit to a disc. The camera ray starts at one of them.
+void draw_lens(ImDrawList& list, const Placement& placement, const Camera& camera, const PathVertex& first) {
+    constexpr int corners = 64;
+    for (int i = 0; i < corners; ++i) {
+        const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / corners;
+        const vec3 rim = std::cos(angle) * glm::normalize(camera.right) + std::sin(angle) * glm::normalize(camera.up);
+        const auto position = seen_through_lens(camera, camera.position + camera.aperture_radius * rim, first.position);
+        if (position) list.PathLineTo(placement.at(*position));
+    }
+    list.PathStroke(blue, ImDrawFlags_Closed, 1);
+    const auto pixel = seen_through_lens(camera, first.origin, first.position), hit = project(camera, first.position);
+    if (pixel && hit) list.AddLine(placement.at(*pixel), placement.at(*hit), blue, 2);
 }
 
 }  // namespace
@@ -40,15 +64,18 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
             draw_line(vertex.position, light.point.value_or(far_away(vertex.position, light.direction)),
                       light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200), 1);
     for (const PathVertex& vertex : vertices) {
-        if (vertex.parent < 0) continue;  // the camera's own ray is a single point in the picture
+        if (vertex.parent < 0) {  // a pinhole's own ray is a single point in the picture
+            if (camera.aperture_radius > 0 && vertex.is_hit) draw_lens(list, placement, camera, vertex);
+            continue;
+        }
         const vec3 start = vertices[static_cast<size_t>(vertex.parent)].position;
         const vec3 end = vertex.is_hit ? vertex.position : far_away(start, vertex.direction);
-        draw_line(start, end, IM_COL32(60, 200, 255, 255), 2);
+        draw_line(start, end, blue, 2);
     }
     for (size_t i = 0; i < vertices.size(); ++i) {
         const auto position = vertices[i].is_hit ? project(camera, vertices[i].position) : std::nullopt;
         if (!position) continue;
-        const uint32_t colour = i == chosen ? IM_COL32(255, 80, 200, 255) : IM_COL32(60, 200, 255, 255);
+        const uint32_t colour = i == chosen ? IM_COL32(255, 80, 200, 255) : blue;
         const ImVec2 at = placement.at(*position);
         list.AddCircleFilled(at, i == chosen ? 6.0f : 4.0f, colour);
         const std::string name = "x" + std::to_string(i + 1);

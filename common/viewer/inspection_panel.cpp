@@ -92,12 +92,8 @@ void InspectionPanel::draw_controls(Session& session) {
     }
     const auto& path = inspection_.path();
     const bool has_point = path && !is_beside_ && !path->vertices.empty() && path->vertices.front().is_hit;
-    if (session.chapter().lens && has_point && ImGui::Button("Focus on the point that was clicked")) {
-        CameraPose pose = session.camera();
-        const vec3 forward = session.build().job.parameters.camera.forward;
-        pose.focus_distance = glm::dot(path->vertices.front().position - pose.position, forward);
-        session.set_camera(pose);
-    }
+    if (session.chapter().lens && has_point && ImGui::Button("Focus on the point that was clicked"))
+        session.focus_on(path->vertices.front().position);
     if (ImGui::CollapsingHeader("look inside")) {
         int overlay = static_cast<int>(overlay_.shown);
         ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));

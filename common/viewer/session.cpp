@@ -35,6 +35,12 @@ void Session::set_camera(const CameraPose& pose) {
     if (pose.focus_distance != before.focus_distance) camera.focus_distance = pose.focus_distance;
 }
 
+void Session::focus_on(const vec3& point) {
+    CameraPose pose = camera();
+    pose.focus_distance = glm::dot(point - pose.position, build_->job.parameters.camera.forward);
+    set_camera(pose);
+}
+
 // Flags apply to the scene on the command line only.
 CameraOptions Session::first_camera() const {
     return wanted_.scene.file == first_options_.scene.file ? first_options_.camera : CameraOptions{};

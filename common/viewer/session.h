@@ -42,6 +42,7 @@ class Session {
     // while the picture stays. Impossible changes are reverted, and message() says why.
     void change(const Options& options) { wanted_ = options; }
     void set_camera(const CameraPose& pose);
+    void focus_on(const vec3& point);  // in front of the camera
     void reset_camera() { wanted_.camera = first_camera(); }
     bool has_moved() const { return wanted_.camera != first_camera(); }
     void open_scene(const std::filesystem::path& file);  // with its own camera and background

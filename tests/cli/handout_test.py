@@ -153,7 +153,7 @@ Another is code of chapter 7.
         includes = [(file, name) for file in shaders
                     for name in re.findall(r'^#include "(.*)"', file.read_text(encoding="utf-8"), re.MULTILINE)]
         self.assertGreater(len(includes), 50)
-        given = {"path_trace.glsl", "observed.glsl", "observed_sample_loop.glsl"}  # supplied by the programs
+        given = {"path_trace.glsl", "camera.glsl", "observed.glsl", "observed_sample_loop.glsl"}  # supplied by the programs
         self.assertEqual([(file, name) for file, name in includes if name not in given and
                           not any((folder / name).exists() for folder in (file.parent, tree / "shaders", tree / "chapters", tree))], [])
 

@@ -5,9 +5,8 @@ import shutil
 import subprocess
 import unittest
 
-import numpy as np
-
 from tools_path import PROJECT, TOOLS  # first: it finds the others
+import numpy as np
 from book.live import RULES
 from check import facts
 from check.experiments import SIZE, Experiment, Point, Sight, look, together

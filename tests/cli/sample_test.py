@@ -11,7 +11,7 @@ import mistake
 import numpy as np
 from lesson import sample, sample_plots
 
-NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-point", "points"]
+NAMES = ["1d", "kd", "numbers", "blog-hash", "uniform-angles", "cosine", "light-point", "points", "lens"]
 
 
 class SampleTest(ProgramTest):

@@ -58,7 +58,7 @@ TEST_P(LensDisc, ShowsADiscOfTheRightSizeAndBrightness) {
     const auto& [name, distance, side, aperture] = GetParam();
     const double c = aperture * std::abs(distance - focus) / distance, s = side * focus / distance;
     const double field = 1.2 * (c + s), pixel = field / lens_settings(1).width;
-    constexpr uint32_t batch_count = 32;
+    constexpr uint32_t batch_count = 40;
     const Batches batches = render_batches(seen(lamp(distance, side), aperture, field), lens_settings(1024), batch_count);
     std::vector<double> areas, squares, centres;
     for (const auto& image : batches.images) {

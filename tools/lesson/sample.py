@@ -41,7 +41,7 @@ class Playground:
     others: Callable = lambda points: points[:, 1]  # another coordinate, uniform from 0 to 1 and independent of the first
     other: str = "u_y"
     dimensions: int = 2
-    kind: str = "square"  # how points are drawn: square, disk (directions from above) or triangle
+    kind: str = "square"  # how points are drawn: square, disk (directions from above), aperture or triangle
     is_pixel: bool = False  # whether the points are samples of one pixel, rather than the first of as many pixels
     chapter: str = next(iter(CHAPTERS.values()))  # whose shader generates the points
 
@@ -76,6 +76,10 @@ KINDS = {
     "light points": ("light points", {
         "integrals": [Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])], "coordinate": "w_1", "kind": "triangle",
         "others": lambda w: w[:, 1] / np.maximum(1 - w[:, 0], 1e-30), "other": "w_2 / (1 - w_1)"}),
+    "lens points": ("lens points", {
+        "integrals": [Integral("∫ r² dA over the unit disc", lambda k: math.pi / 2, lambda p: math.pi * (p**2).sum(axis=1))],
+        "coordinate": "r²", "coordinates": lambda p: (p**2).sum(axis=1), "kind": "aperture",
+        "others": lambda p: np.arctan2(p[:, 1], p[:, 0]) / (2 * math.pi) + 0.5, "other": "φ"}),
     "pixel": ("numbers", {"integrals": [DARTS, MEAN_SQUARE], "coordinate": "u_x", "is_pixel": True}),
 }
 

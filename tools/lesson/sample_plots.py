@@ -15,7 +15,7 @@ def scatter(axis, kind, points):
     points = points[:SHOWN]
     is_line = points.shape[1] == 1
     axis.plot(points[:, 0], np.arange(len(points)) if is_line else points[:, 1], ".", color=COLOURS[0], markersize=2.5, markeredgewidth=0)
-    if kind == "disk":
+    if kind in ("disk", "aperture"):
         angle = np.linspace(0, 2 * np.pi, 200)
         axis.plot(np.cos(angle), np.sin(angle), color="#666666", linewidth=0.8)
     if kind == "triangle":
@@ -24,7 +24,7 @@ def scatter(axis, kind, points):
         axis.set(xlabel="u", ylabel="index of the sample")
         return
     axis.set_aspect("equal")
-    names = {"disk": ("ω_x", "ω_y"), "triangle": ("w_1", "w_2"), "square": ("u_x", "u_y")}[kind]
+    names = {"disk": ("ω_x", "ω_y"), "aperture": ("x", "y"), "triangle": ("w_1", "w_2"), "square": ("u_x", "u_y")}[kind]
     axis.set(xlabel=names[0], ylabel=names[1])
 
 

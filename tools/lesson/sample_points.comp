@@ -4,6 +4,9 @@
 #ifdef LIGHT_POINTS
 #define FEATURE_LIGHT_TRIANGLES
 #endif
+#ifdef LENS_POINTS
+#define FEATURE_LENS
+#endif
 #include "observation/estimator_stub.glsl"
 
 layout(scalar, binding = 0) writeonly buffer Results { float results[]; };
@@ -55,6 +58,15 @@ void write_point(uint i, uvec2 seed) {
 void write_point(uint i, uvec2 seed) {
     run_estimator(seed);
     for (int axis = 0; axis < 2; ++axis) results[COLUMNS * i + axis] = light_barycentrics[axis];
+}
+#elif defined(LENS_POINTS)
+#include "camera.glsl"
+// A point of the aperture of radius 1: where a camera ray starts.
+void write_point(uint i, uvec2 seed) {
+    parameters.image_size = uvec2(1u);
+    parameters.camera = Camera(vec3(0.0), vec3(0.0, 0.0, -1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), 1.0, 1.0);
+    vec2 point = sample_camera_ray(uvec2(0u), seed).origin.xy;
+    for (int axis = 0; axis < 2; ++axis) results[COLUMNS * i + axis] = point[axis];
 }
 #elif defined(BLOG_HASH)
 // The hash that the blog uses for random numbers, at hit points on a floor: rows of 256 with a distance of 0.02.

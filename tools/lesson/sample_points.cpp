@@ -20,11 +20,9 @@ struct Sampler {
     std::string define;  // of sample_points.comp
     uint32_t columns;    // numbers of a point; 0: DIMENSIONS
 };
-const std::map<std::string, Sampler> samplers{{"numbers", {"NUMBERS", 0}},
-                                              {"sobol", {"SOBOL", 2}},
-                                              {"blog-hash", {"BLOG_HASH", 2}},
-                                              {"directions", {"DIRECTIONS", 4}},
-                                              {"light points", {"LIGHT_POINTS", 2}}};
+const std::map<std::string, Sampler> samplers{{"numbers", {"NUMBERS", 0}},           {"sobol", {"SOBOL", 2}},
+                                              {"blog-hash", {"BLOG_HASH", 2}},       {"directions", {"DIRECTIONS", 4}},
+                                              {"light points", {"LIGHT_POINTS", 2}}, {"lens points", {"LENS_POINTS", 2}}};
 
 // As in sample_points.comp.
 struct Inputs {

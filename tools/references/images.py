@@ -41,9 +41,9 @@ def read_rgb(path):
 
 
 def averaged(image, scale):
-    """The image with blocks of scale x scale pixels averaged."""
-    height, width, channels = image.shape
-    return image.reshape(height // scale, scale, width // scale, scale, channels).mean(axis=(1, 3))
+    """The image with blocks of scale x scale pixels averaged. What is left at its edges is dropped."""
+    height, width = image.shape[0] // scale, image.shape[1] // scale
+    return image[:height * scale, :width * scale].reshape(height, scale, width, scale, -1).mean(axis=(1, 3))
 
 
 def read_reference(path):
