@@ -18,7 +18,7 @@ from check.findings import LONGEST, findings
 from check.grading import RUNS, expected_file, first_seed
 from check.names import names_of, similar_to
 from check.words import MOST_FACTS, headline, hint_lines, laid_out
-from project import course, read_json
+from project import chapter_named, course, read_json
 
 
 def sight(mean, error=0.001):
@@ -313,6 +313,18 @@ class ExperimentsTest(unittest.TestCase):
                 middle = [sum(corner[i] for corner in face) / len(face) for i in range(3)]
                 self.assertGreater(sign * sum(c * n for c, n in zip(middle, normal(face))), 0, shape)
 
+
+    def test_strips_and_corners_lie_where_they_say(self):
+        def points(chapter, name):
+            return [(point.at, point.scene) for point in experiments_of(int(chapter_named(chapter)[:2]))[name].points]
+
+        for at, scene in points("lens", "lens_disc"):
+            if "strip" in at:
+                width, height = (max(corner[axis] for corner in faces_of(scene["lamp"])[0]) for axis in (0, 1))
+                self.assertEqual(width > height, "horizontal" in at, at)
+        for at, scene in points("next_event_estimation", "corners_of_a_lamp"):
+            hidden = [sum(corner[axis] for corner in faces_of(scene["plate"])[0]) for axis in (0, 2)]
+            self.assertEqual([hidden[0] > 0, hidden[1] > 0], ["left" in at, "behind" in at], at)
 
     def test_materials_are_rough_and_scenes_have_keys_only_where_they_say_so(self):
         plate = {"centre": [0, 0, 0], "faces": [0, 1, 0], "size": 1}
