@@ -45,12 +45,15 @@ SHARED_CONSTANT BINDING_OTHER_SIDES = 20u;
 SHARED_CONSTANT BINDING_PROBE_CELLS = 21u;
 SHARED_CONSTANT BINDING_TEXTURE_SIZES = 22u;
 SHARED_CONSTANT BINDING_MICROFACETS = 23u;
+// Of chapters with a light tree, and of the backend `native`. Macros leave the shaders of the others as they are.
+#define BINDING_LIGHT_NODES 24u
+#define BINDING_LIGHT_LEAVES 25u
+#define BINDING_LIGHT_PLACES 26u
+#define BINDING_WORLD_TRIANGLES 27u
+#define BINDING_FIRST_WORLD_TRIANGLES 28u
 #ifdef __cplusplus
-SHARED_CONSTANT BINDING_COUNT = 24u;
+SHARED_CONSTANT BINDING_COUNT = 27u;
 #endif
-// Of the backend `native` alone. Macros leave the shaders of the others as they are.
-#define BINDING_WORLD_TRIANGLES 24u
-#define BINDING_FIRST_WORLD_TRIANGLES 25u
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -114,6 +117,23 @@ struct LightTriangle {
     uint threshold;         // this entry stands for itself if a random 32-bit word is below, else its `alias` does
     uint alias;             // index into the table
     float inverse_density;  // A/P: area in square scene units over the probability of being chosen
+};
+
+// A node of the tree over emissive triangles, see common/scene/light_tree.h.
+struct LightNode {
+    vec3 centre;       // of a sphere around its triangles, in world space
+    float radius;      // of the sphere, in scene units
+    vec3 axis;         // of a cone around its triangles' normals, unit length
+    float cos_spread;  // cosine of the largest angle between the axis and a normal
+    float power;       // share of the scene's area times luminance
+    uint child;  // index of its first child, which the second follows; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
+};
+#define IS_LIGHT_LEAF 0x80000000u
+
+// What a ray that hits an emissive triangle needs to know of its leaf.
+struct LightLeaf {
+    uint trail;  // from the root downwards, beginning at the lowest bit: 1 where the path takes the second child
+    float area;  // of the triangle, in square scene units
 };
 
 // A cell of the light probe in the alias table of all of them, see common/scene/light_table.h.

@@ -99,9 +99,10 @@ std::vector<std::string> course_chapters() {
 Chapter load_chapter(const std::string& name) {
     const auto file = project_folder() / "chapters" / name / "chapter.json";
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
-    const JsonObject root(content, file.string(), "the chapter",
-                          {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics",
-                           "microfacets", "low_discrepancy", "options", "choices", "check", "exercise", "tests", "measure"});
+    const JsonObject root(
+        content, file.string(), "the chapter",
+        {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics", "microfacets",
+         "light_tree", "low_discrepancy", "options", "choices", "check", "exercise", "tests", "measure"});
     // The last four are for others: tools/check/grading.py, tools/course/handout.py, tests/support/chapters.cpp,
     // tools/report/studies.py.
     if (root.has("check"))
@@ -115,6 +116,7 @@ Chapter load_chapter(const std::string& name) {
             .unlimited_path_length = root.boolean("unlimited_path_length").value_or(false),
             .dielectrics = root.boolean("dielectrics").value_or(false),
             .microfacets = root.boolean("microfacets").value_or(false),
+            .light_tree = root.boolean("light_tree").value_or(false),
             .low_discrepancy = root.boolean("low_discrepancy").value_or(false),
             .options = read_options(root),
             .choices = read_choices(root, file.string())};

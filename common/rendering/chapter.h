@@ -41,6 +41,7 @@ struct Chapter {
     bool unlimited_path_length = false;         // regardless of the scene; --max-path-length still limits it
     bool dielectrics = false;                   // whether its estimator handles them
     bool microfacets = false;                   // likewise for rough metal, plastic and glass (Pr)
+    bool light_tree = false;                    // light samples choose a triangle by a tree over all of them
     bool low_discrepancy = false;               // brings its own points, random_words.glsl, which are not independent
     std::vector<ChapterOption> options = {};
     std::vector<ChapterChoice> choices = {};

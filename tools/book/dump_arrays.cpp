@@ -66,7 +66,8 @@ void dump(const std::string& file, const Chapter& chapter, const Options& option
     const RenderParameters parameters = verdict_parameters(chapter, scene, options);
     const auto reference = find_reference(scene, parameters);
     if (const auto* why_not = std::get_if<std::string>(&reference)) throw UserError(scene.file.string() + ": " + *why_not);
-    const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets);
+    const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets,
+                             chapter.light_tree);
     const Bvh bvh = build_bvh(world_triangles(scene));
 
     Dump dump(file);
