@@ -125,8 +125,9 @@ struct LightNode {
     float radius;      // of the sphere, in scene units
     vec3 axis;         // of a cone around its triangles' normals, unit length
     float cos_spread;  // cosine of the largest angle between the axis and a normal
-    float power;       // share of the scene's area times luminance
-    uint child;  // index of its first child, which the second follows; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
+    float power;  // area times luminance, as a share of the scene's; times the root's radius², so that no quotient leaves the
+                  // range of float
+    uint child;   // index of its first child, which the second follows; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
 };
 #define IS_LIGHT_LEAF 0x80000000u
 

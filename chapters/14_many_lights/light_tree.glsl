@@ -31,14 +31,12 @@ float get_cos_beyond(float cos_a, float cos_b, float sin_b) {
     return cos_a * cos_b + sqrt(max(1.0 - cos_a * cos_a, 0.0)) * sin_b;
 }
 
-// At least as large as any light that a point gets from the node's triangles, but for a factor that all nodes share. 0 only where
-// no light can arrive.
+// An estimate of the light that a point gets from the node's triangles, if nothing is in between. 0 only where none can arrive.
 float get_importance(LightNode node, Receiver x) {
     vec3 to_node = node.centre - x.position;
-    float distance = length(to_node), scale = light_nodes[0].radius / max(distance, node.radius);
-    float importance = node.power * scale * scale;
+    float distance = length(to_node);
     // Within the sphere, light may come from anywhere.
-    if (distance <= node.radius) return importance;
+    if (distance <= node.radius) return node.power / (node.radius * node.radius);
 
     // From x_k the sphere fills a cone about ω with this half angle, or a little less than we say because of rounding errors.
     vec3 omega = to_node / distance;
@@ -50,11 +48,10 @@ float get_importance(LightNode node, Receiver x) {
     float cos_light = get_cos_beyond(-dot(node.axis, omega), node.cos_spread, sin_spread);
     cos_light = get_cos_beyond(cos_light, cos_size, sin_size);
     if (cos_light <= 0.0) return 0.0;
-    importance *= cos_light;
 
     // The smallest angle θ at x_k.
-    if (x.normal != vec3(0.0)) importance *= max(get_cos_beyond(dot(x.normal, omega), cos_size, sin_size), 0.0);
-    return importance;
+    float cos_surface = x.normal == vec3(0.0) ? 1.0 : get_cos_beyond(dot(x.normal, omega), cos_size, sin_size);
+    return node.power * cos_light * max(cos_surface, 0.0) / (distance * distance);
 }
 
 // The probability of the first of two children, given that one is chosen. `is_dead_end` says that neither can be.

@@ -83,7 +83,10 @@ class Builder {
   public:
     explicit Builder(std::vector<Light> lights)
         : lights_(std::move(lights)), nodes_(2 * lights_.size() - 1), trails_(lights_.size()) {
-        for (const Light& light : lights_) total_power_ += light.power;
+        Cluster all;
+        for (const Light& light : lights_) all.add(light);
+        const double diameter = glm::length(all.high - all.low);
+        if (all.power > 0) unit_ = 0.25 * diameter * diameter / all.power;
         // The first levels one after the other, then their subtrees in parallel.
         std::vector<Part> parts{{0, 1, 0, lights_.size(), 0, 0}};
         while (!parts.empty() && parts.size() < 64) {
@@ -140,7 +143,7 @@ class Builder {
                 .radius = static_cast<float>((1 + shader_rounding) * radius),
                 .axis = axis,
                 .cos_spread = static_cast<float>(std::max(cosine - shader_rounding, -1.0)),
-                .power = total_power_ > 0 ? static_cast<float>(cluster.power / total_power_) : 0,
+                .power = static_cast<float>(unit_ * cluster.power),
                 .child = 0};
     }
 
@@ -187,7 +190,7 @@ class Builder {
 
     static constexpr size_t most_bins = 12;
     std::vector<Light> lights_;
-    double total_power_ = 0;
+    double unit_ = 0;
     std::vector<LightNode> nodes_;
     std::vector<uint32_t> trails_;
 };
