@@ -91,6 +91,7 @@ TEST_F(InspectionTest, AClickFollowsAPathAndADragDoesNot) {
     drag({500, 400}, {520, 400});
     EXPECT_FALSE(inspection().selection());
     click(500, 450);
+    ASSERT_TRUE(inspection().selection());
     wait_until("a path", [&] { return inspection().path().has_value() && inspection().has_hemisphere(); });
     const RecordedPath path = *inspection().path();
     ASSERT_FALSE(path.vertices.empty());
