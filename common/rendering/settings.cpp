@@ -92,9 +92,10 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
 
 std::string camera_flags(const CameraPose& pose, char separator) {
     std::string lens;
-    if (pose.aperture_diameter > 0) lens = std::string(" --aperture-diameter") + separator + exact_text(pose.aperture_diameter);
-    if (pose.aperture_diameter > 0 && pose.focus_distance > 0)
-        lens += std::string(" --focus-distance") + separator + exact_text(pose.focus_distance);
+    if (pose.aperture_diameter > 0) {
+        lens = std::string(" --aperture-diameter") + separator + exact_text(pose.aperture_diameter);
+        if (pose.focus_distance > 0) lens += std::string(" --focus-distance") + separator + exact_text(pose.focus_distance);
+    }
     return "--camera-position" + (separator + exact_text(pose.position)) + " --camera-target" + separator +
            exact_text(pose.target) + " --camera-up" + separator + exact_text(pose.up) + " --vertical-fov" + separator +
            exact_text(pose.vertical_fov) + lens;

@@ -66,8 +66,10 @@ CameraPose CameraControl::move(const CameraPose& pose, const CameraMotion& motio
 std::string camera_json(const CameraPose& pose) {
     const auto array = [](const vec3& v) { return "[" + exact_text(v, ", ") + "]"; };
     std::string lens;
-    if (pose.aperture_diameter > 0) lens = ", \"aperture_diameter\": " + exact_text(pose.aperture_diameter);
-    if (pose.aperture_diameter > 0 && pose.focus_distance > 0) lens += ", \"focus_distance\": " + exact_text(pose.focus_distance);
+    if (pose.aperture_diameter > 0) {
+        lens = ", \"aperture_diameter\": " + exact_text(pose.aperture_diameter);
+        if (pose.focus_distance > 0) lens += ", \"focus_distance\": " + exact_text(pose.focus_distance);
+    }
     return "\"camera\": {\"position\": " + array(pose.position) + ", \"target\": " + array(pose.target) +
            ", \"up\": " + array(pose.up) + ", \"vertical_fov\": " + exact_text(pose.vertical_fov) + lens + "}";
 }

@@ -91,32 +91,33 @@ def halves(numbers):
 
 
 def dump(file, chapter, *scene_and_options):
-    """What dump_arrays writes for a chapter: the description of the arrays, and their bytes."""
+    """What dump_arrays writes for a chapter: a scene's arrays as a page loads them, the parameters, the estimator's defines, and the
+    pictures of the reference, if there is one, as (description, numbers)."""
     if not program_file("dump_arrays").is_file():
         raise UserError("dump_arrays is not built: ./lab book builds it")
     estimator = CHAPTERS[original(int(chapter[:2]))]  # the program may be that of a tree without the copy
     process = run_program([program_file("dump_arrays"), file, estimator, *scene_and_options])
     if process.returncode != 0:
         raise UserError(f"{chapter}: {failure_text(process)}")
-    return read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
+    arrays, content = read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
 
+    def numbers(entry, code):
+        return array(code, content[4 * entry["first"]:4 * (entry["first"] + entry["count"])])
 
-def numbers_of(entry, content, code="f"):
-    """The numbers of an array, of the type that the code of array.array stands for."""
-    return array(code, content[4 * entry["first"]:4 * (entry["first"] + entry["count"])])
+    (parameters,), options = arrays.pop("parameters"), arrays.pop("options")
+    reference = [(entry, numbers(entry, "f")) for entry in arrays.pop("reference", [])]
+    return arrays | {"packed": packed(content[:4 * parameters["first"]])}, list(numbers(parameters, "I")), options, reference
 
 
 def dumped(chapter, name, folder):
     """A picture's entry, and the scripts that it loads: {file name: text}."""
-    arrays, content = dump(folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name))
-    (parameters,), references, _ = arrays.pop("parameters"), arrays.pop("reference"), arrays.pop("options")  # a page has its own
-    mean, variance = (numbers_of(entry, content) for entry in references)
+    arrays, parameters, _, reference = dump(folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name))
+    (told, mean), (_, variance) = reference
     (means, mean_scale), (deviations, deviation_scale) = halves(mean), halves([number**0.5 for number in variance])
-    reference = {"width": references[0]["width"], "height": references[0]["height"], "samples": float(references[0]["samples"]),
+    reference = {"width": told["width"], "height": told["height"], "samples": float(told["samples"]),
                  "scales": [mean_scale, deviation_scale], "packed": packed(means + deviations)}
-    arrays["packed"] = packed(content[:4 * parameters["first"]])
     scene = f"{scene_of(name)}_{hashlib.sha256(json.dumps(arrays).encode()).hexdigest()[:8]}"
-    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": list(numbers_of(parameters, content, "I"))}
+    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": parameters}
     return entry, {key: script(key, value) for key, value in ((scene, arrays), (entry["reference"], reference))}
 
 
@@ -137,15 +138,12 @@ def experiments_of_page(chapter, folder):
         points, sights = [], known_sights(expected[name])
         for index, (point, sight) in enumerate(zip(experiment.points, sights)):
             file = write_scene(point.scene, folder, f"{chapter}_{name}_{index}")
-            arrays, content = dump(folder / f"{chapter}_point", chapter, file, "--width", str(SIZE), "--height", str(SIZE), *point.options.split(),
-                                   "--seed", str(FIRST_SEED + index))
-            (parameters,) = arrays.pop("parameters")
-            arrays["packed"] = packed(content[:4 * parameters["first"]])
-            options = arrays.pop("options")
+            arrays, parameters, options, _ = dump(folder / f"{chapter}_point", chapter, file, "--width", str(SIZE), "--height", str(SIZE),
+                                                  *point.options.split(), "--seed", str(FIRST_SEED + index))
             if arrays not in scenes:
                 scenes.append(arrays)
             points.append({"at": point.at, "samples": point.samples, "channel": point.channel, "mean": sight.mean, "error": sight.error, "options": options,
-                           "scene": scenes.index(arrays), "parameters": list(numbers_of(parameters, content, "I"))})
+                           "scene": scenes.index(arrays), "parameters": parameters})
         shown.append({"name": name, "subject": experiment.subject, "varies": experiment.varies, "when": experiment.when, "points": points})
     # Scenes with the same features share a program.
     stack = max((define for arrays in scenes for define in arrays["defines"] if define.startswith("BVH_STACK_SIZE")), key=lambda define: int(define.split()[1]))
@@ -157,10 +155,8 @@ def experiments_of_page(chapter, folder):
 def furnace(folder):
     """A closed room in which every path brings the same light, as chapter 2 weighs by the albedo, 0.5, alone: what is dark there has been lost between triangles."""
     chapter = CHAPTERS[2]
-    arrays, content = dump(folder / "furnace", chapter, "furnace", "--max-path-length", "6", "--width", "256", "--height", "256")
-    (parameters,), _ = arrays.pop("parameters"), arrays.pop("options")
-    return {"chapter": chapter, "scene": arrays, "packed": packed(content[:4 * parameters["first"]]), "radiance": 2 - 0.5**6,
-            "parameters": list(numbers_of(parameters, content, "I"))}
+    arrays, parameters, _, _ = dump(folder / "furnace", chapter, "furnace", "--max-path-length", "6", "--width", "256", "--height", "256")
+    return {"chapter": chapter, "scene": arrays, "radiance": 2 - 0.5**6, "parameters": parameters}
 
 
 def exercise_of(chapter, texts):

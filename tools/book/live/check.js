@@ -28,13 +28,13 @@ live.check = (() => {
 
     // What the shader shows at a point of an experiment. What looks wrong is rendered again with other random numbers.
     async function sightOf(frame, experiment, point, { scenes, rules }, pace) {
-        const arrays = scenes[point.scene], words = await live.rendering.unpackWords(arrays.packed), sights = [];
+        const sights = [];
         const place = frame.renderer.layout.offsetOf("RenderParameters", "seed_key");
         const isWrong = () => !live.facts.fact(experiment, experiment.points.map(each => each === point ? live.facts.together(sights) : each), rules).isRight;
         do {
             const parameters = Uint32Array.from(point.parameters);
             parameters[place] ^= Math.imul(sights.length, 0x9e3779b9);
-            const state = await frame.prepare({ scene: { ...arrays, words }, parameters, options: point.options }, frame.editor.sources), { rendering } = state;
+            const state = await frame.prepare({ scene: scenes[point.scene], parameters, options: point.options }, frame.editor.sources), { rendering } = state;
             frame.renderings = [state];
             let film;
             const done = await rendering.render({ target: () => point.samples, isPaused: () => document.hidden, look: latest => { frame.checkLoops(latest, state); film = latest; } }, pace);

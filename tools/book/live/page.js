@@ -4,7 +4,7 @@ var live = globalThis.live ?? {};
 globalThis.live = live;
 
 live.page = (() => {
-    const { element } = live, { Renderer, Rendering, loadScene, loadReference } = live.rendering;
+    const { element } = live, { Renderer, Rendering, loadData, loadReference, unpackWords } = live.rendering;
     const TYPING = 600;  // milliseconds after the last key until the picture starts again
     const MOST_SAMPLES = 4096;
     const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
@@ -170,7 +170,8 @@ live.page = (() => {
 
         // Compiles texts for a picture's scene. Throws ShaderErrors.
         async prepare({ scene, parameters: words, chapter = this.chapter, options = this.options }, sources) {
-            if (typeof scene === "string") scene = await loadScene(this.root.dataset.folder, scene);
+            if (typeof scene === "string") scene = await loadData(this.root.dataset.folder, scene);
+            scene.words ??= await unpackWords(scene.packed);
             const parameters = Uint32Array.from(words), placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
             const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)];
             if (this.length.value !== "") parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(this.length.value), 0), 100);

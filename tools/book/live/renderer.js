@@ -53,13 +53,6 @@ void main() {
 
     const unpackWords = async packed => new Uint32Array(await unpack(packed));
 
-    // A scene, with its words.
-    async function loadScene(folder, name) {
-        const scene = await loadData(folder, name);
-        scene.words ??= await unpackWords(scene.packed);
-        return scene;
-    }
-
     async function loadReference(folder, name) {
         const { width, height, samples, scales, packed } = await loadData(folder, name);
         const halves = new Uint16Array(await unpack(packed)), count = 3 * width * height;
@@ -306,5 +299,5 @@ void main() {
         }
     }
 
-    return { Renderer, Rendering, loadData, loadScene, loadReference, unpackWords, pause };
+    return { Renderer, Rendering, loadData, loadReference, unpackWords, pause };
 })();

@@ -34,9 +34,9 @@ live.Report = (() => {
 
         // Renders a furnace: pixels that are not as bright as all others have lost rays between triangles.
         async furnace(frame) {
-            const { scene, packed, chapter, radiance, parameters } = await live.rendering.loadData(this.root.dataset.folder, "furnace"), samples = 64;
+            const { scene, chapter, radiance, parameters } = await live.rendering.loadData(this.root.dataset.folder, "furnace"), samples = 64;
             frame.stopRenderings();
-            const words = await live.rendering.unpackWords(packed), state = await frame.prepare({ scene: { ...scene, words }, parameters, chapter, options: [] }, live.sources);
+            const state = await frame.prepare({ scene, parameters, chapter, options: [] }, live.sources);
             let film;
             await state.rendering.render({ target: () => samples, look: latest => { film = latest; } });
             state.rendering.stop();
