@@ -50,10 +50,11 @@ class LivePages(Site):
         self.frame(f"[...frame.root.querySelectorAll('button')].find(button => button.textContent === '{name}').click()")
 
     def edit(self, old, new):
-        """Edits the chapter's estimator as a reader does."""
-        self.frame(f"""(() => {{ const field = frame.editor.field, text = field.value.replace({json.dumps(old)}, {json.dumps(new)});
-            if (text === field.value) throw new Error("nothing changed");
-            field.value = text; field.dispatchEvent(new Event("input")); }})()""")
+        """Edits the first file with that text as a reader does."""
+        self.frame(f"""(() => {{ const {{ editor }} = frame, {{ field, texts }} = editor;
+            editor.open(editor.files.find(file => texts[file].includes({json.dumps(old)})));
+            field.value = field.value.replace({json.dumps(old)}, {json.dumps(new)});
+            field.dispatchEvent(new Event("input")); }})()""")
 
     def error(self):
         self.wait("frame.editor.error.textContent", "an error")
@@ -108,19 +109,20 @@ class LivePagesTest(LivePages, unittest.TestCase):
             self.browser.evaluate("localStorage.clear()")
 
     def test_texts_are_kept_and_shared(self):
+        text = f"frame.editor.sources['{ESTIMATOR}']"
         self.start(3)
         self.edit("vec3 radiance = vec3(0.0);", "vec3 radiance = vec3(0.5);")
         link = self.browser.evaluate(f"{FRAME}.editor.link()")
         self.start(3)
-        self.assertIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+        self.assertIn("vec3(0.5)", self.frame(text))
         self.frame("frame.editor.reset()")
         self.start(3)
-        self.assertNotIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+        self.assertNotIn("vec3(0.5)", self.frame(text))
         self.start(3, "#" + link.partition("#")[2])
-        self.assertIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+        self.assertIn("vec3(0.5)", self.frame(text))
         self.start(3, "#live=damaged")
         self.assertIn("damaged", self.frame("frame.note.textContent"))
-        self.assertNotIn("vec3(0.5)", self.frame("frame.editor.field.value"))
+        self.assertNotIn("vec3(0.5)", self.frame(text))
 
     def test_another_tab_that_changes_the_text(self):
         self.start(3)

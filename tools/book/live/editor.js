@@ -27,9 +27,10 @@ live.Editor = (() => {
         try { return localStorage.getItem(keyOf(path)); } catch { return null; }
     }
 
-    // The files that a chapter is made of: its estimator and what it includes from chapters/.
+    // The files that a chapter is made of: that of its lesson, its estimator, and what it includes from chapters/.
     function filesOf(chapter) {
-        const files = [`chapters/${chapter}/path_trace.glsl`];
+        const estimator = `chapters/${chapter}/path_trace.glsl`;
+        const files = [...new Set([live.chapters[chapter].exercise?.file ?? estimator, estimator])];
         const own = Object.keys(live.sources).filter(path => path.startsWith(`chapters/${chapter}/`) && !files.includes(path));
         files.push(...own.sort());
         for (const file of files)
