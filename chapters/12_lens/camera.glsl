@@ -34,7 +34,7 @@ void get_joint_numbers(inout uvec2 seed, out vec2 first, out vec2 second) {
 
 // A uniform point of the unit disc. Squares around the centre of the unit square become circles (Shirley and Chiu, "A Low
 // Distortion Map Between Disk and Square", 1997). Chapter 2's polar map is as uniform, but cuts the disc open along an axis and
-// squeezes the squares near the centre, so stratified numbers stay less even.
+// squeezes the squares near the centre. The page compares the errors of both.
 vec2 sample_disc(vec2 u) {
     vec2 p = 2.0 * u - 1.0;
     bool is_beside = abs(p.x) > abs(p.y);

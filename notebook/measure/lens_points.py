@@ -1,8 +1,9 @@
-"""Whether one point in four dimensions for pixel and lens pays: errors of chapter 12 with it, and with a point of its own for each.
+"""Whether one point in four dimensions for pixel and lens pays, and the concentric map of the disc: errors of chapter 12 with both, with
+a point of its own for pixel and lens, and with chapter 2's polar map.
 
     ./lab notebook lens_points [--runs 8] [--output FILE.json]
 
-Both take turns, with another seed in each run. The errors are those that the halves of the samples tell.
+All take turns, with another seed in each run. The errors are those that the halves of the samples tell.
 """
 import subprocess
 import tempfile
@@ -15,6 +16,8 @@ from tables.ages import stamped
 CHAPTER, SHADER = "12_lens", "camera.glsl"
 JOINT = "get_joint_numbers(seed, on_aperture, in_pixel);"
 PADDED = "on_aperture = get_random_numbers(seed); in_pixel = get_random_numbers(seed);"
+DISC = "sample_disc(on_aperture);"
+POLAR = "sqrt(on_aperture.x) * vec2(cos(2.0 * PI * on_aperture.y), sin(2.0 * PI * on_aperture.y));"
 APERTURES, SAMPLES = (0.03, 0.1, 0.3), 1024
 
 
@@ -35,8 +38,8 @@ def main():
     options, rows, started = parser.parse_args(), [], time.monotonic()
     text = (ROOT / "chapters" / CHAPTER / SHADER).read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as name:
-        folder, shaders = Path(name), {"joint": text, "padded": text.replace(JOINT, PADDED)}
-        assert shaders["padded"] != text
+        folder, shaders = Path(name), {"joint": text, "padded": text.replace(JOINT, PADDED), "polar": text.replace(DISC, POLAR)}
+        assert len(set(shaders.values())) == len(shaders)
         for way, content in shaders.items():
             (folder / f"{way}.glsl").write_text(content, encoding="utf-8")
         for aperture in APERTURES:
