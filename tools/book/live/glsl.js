@@ -15,17 +15,18 @@ live.glsl = (() => {
         [/syntax error|unexpected/, "is a semicolon or a bracket missing here or before?"],
         [/undeclared identifier|no matching overloaded function/, "is the name right, and do the types of the arguments fit?"]];
 
-    // Everything that the ES language lacks, and accessors of the texture that holds the scene's arrays.
+    // Everything that the ES language lacks, and accessors of the textures that hold the scene's arrays.
     const PRELUDE = `
 #define precise
 #define atomicAdd(place, value) (place += (value))
 #define nonuniformEXT(index) (index)
-uniform highp usampler2D web_arrays;
+uniform highp usampler2D web_words;    // of the scene's arrays, one a texel
+uniform highp usampler2D web_arrays;  // the same, four a texel
 uniform uvec2 web_places[32];  // of a binding: the first word and the number of words
 uvec4 web_texel(int i) { return texelFetch(web_arrays, ivec2(i & 2047, i >> 11), 0); }
 uint web_pick(uvec4 v, int i) { v *= uvec4(equal(ivec4(i), ivec4(0, 1, 2, 3))); return v.x | v.y | v.z | v.w; }
 float web_pick(vec3 v, int i) { return mix(mix(v.x, v.y, i == 1), v.z, i == 2); }
-uint web_word(uint i) { return web_pick(web_texel(int(i >> 2u)), int(i & 3u)); }
+uint web_word(uint i) { return texelFetch(web_words, ivec2(i & 2047u, i >> 11u), 0).x; }
 float web_float(uint i) { return uintBitsToFloat(web_word(i)); }
 float fma(float a, float b, float c) { return a * b + c; }
 vec3 fma(vec3 a, vec3 b, vec3 c) { return a * b + c; }

@@ -4,7 +4,7 @@ var live = globalThis.live ?? {};
 globalThis.live = live;
 
 live.rendering = (() => {
-    const WIDTH = 2048;  // texels of the arrays' texture, which every device allows
+    const WIDTH = 2048;  // texels of the arrays' textures, which every device allows
     const MOST_PROGRAMS = 16;  // that are kept
     const FILM = [0, 1, 2];  // its textures
     const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
@@ -161,7 +161,9 @@ void main() {
             Object.assign(this, { renderer, gl: renderer.gl, linked, size, samples: 0, busy: 0, isFirstPass: true, isStopped: false });
             const { gl, layout } = renderer, { words } = scene, height = Math.ceil(words.length / 4 / WIDTH), texels = new Uint32Array(4 * WIDTH * height);
             texels.set(words);
+            // The tree is read by four words. Compilers for Direct3D take twice as long where a single word is picked out of four.
             this.arrays = renderer.image(gl.RGBA32UI, WIDTH, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
+            this.words = renderer.image(gl.R32UI, WIDTH, 4 * height, gl.RED_INTEGER, gl.UNSIGNED_INT, texels);
             const probe = scene.images.find(image => image.binding === layout.constants.BINDING_LIGHT_PROBE);
             if (probe) this.probe = renderer.image(gl.RGBA32F, probe.width, probe.height, gl.RGBA, gl.FLOAT, new Float32Array(words.buffer, 4 * probe.first, probe.count));
             // Two films take turns, since a shader cannot write what it reads.
@@ -279,7 +281,8 @@ void main() {
             gl.useProgram(linked.program);
             this.bindFilm(linked, 0);
             this.renderer.bind(linked, "web_arrays", 3, this.arrays);
-            this.renderer.bind(linked, "light_probe", 4, this.probe ?? null);
+            this.renderer.bind(linked, "web_words", 4, this.words);
+            this.renderer.bind(linked, "light_probe", 5, this.probe ?? null);
             gl.uniform1ui(place("target_samples"), target);
             gl.uniform1ui(place("samples_per_pixel"), target - samples);
             gl.uniform1i(place("is_preview"), isPreview ? 1 : 0);
