@@ -213,6 +213,16 @@ class CheckTest(Checking, ProgramTest):
         with self.in_one_scene():
             self.assertEqual(self.check_few(self.write("mine.glsl", text.replace("vec3 path_trace(", own)))[0], 0)
 
+    def test_a_tile_that_rare_paths_reach_is_not_dark_where_all_runs_miss_them(self):
+        """The focus scene has a tile of sky that the rim of a blurred lamp grazes: half of all checks of the right shader miss it."""
+        reference = grading.reference_regions(PROJECT / "assets/references/focus_5.exr")
+        floor = grading.TILE_FLOOR * sum(reference["mean"][:3]) / 3
+        for difference, is_biased in ((3, False), (20, True)):
+            means = list(reference["mean"])
+            means[3 + 13] -= difference * floor  # the second tile of the second row
+            runs = [{"seed": seed, "rows": [{"samples": 16, "mean": means}]} for seed in range(1, 13)]
+            self.assertEqual([test["is_biased"] for test in grading.biases(runs, reference, 3000)].count(True), is_biased)
+
     def test_memory_is_limited(self):
         code, _, err = self.run_tool("check", 3, "--memory-limit", 0.1, "--runs", 2, "--samples", 1)
         self.assertEqual(code, 2)

@@ -1,5 +1,6 @@
 // The lens: what is out of focus becomes a disc of the right size and brightness.
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
 #include "support/expect_statistics.h"
@@ -9,16 +10,21 @@
 namespace lab {
 namespace {
 
+using glm::dmat3;
 using glm::dvec2;
+using glm::dvec3;
 
 constexpr double focus = 4;  // distance of the plane in focus
 
-// The camera at the origin looks along -Z. Its picture shows a square of this side in the plane in focus.
+// The camera at the origin looks along -Z. Its picture shows a square of this side in the plane in focus. Camera and scene are
+// turned together, so that a lens along axes of the scene shows.
 Scene seen(const Scene& scene, double aperture_diameter, double field = 2) {
+    const dmat3 turn(glm::rotate(glm::dmat4(1), 0.7, glm::normalize(dvec3(1, 2, 0.5))));
     Scene result = scene;
+    for (vec3& position : result.positions) position = turn * dvec3(position);
     result.camera = {.position = {0, 0, 0},
-                     .target = {0, 0, -1},
-                     .up = {0, 1, 0},
+                     .target = turn * dvec3(0, 0, -1),
+                     .up = turn * dvec3(0, 1, 0),
                      .vertical_fov = static_cast<float>(glm::degrees(2 * std::atan(0.5 * field / focus))),
                      .aperture_diameter = static_cast<float>(aperture_diameter),
                      .focus_distance = static_cast<float>(focus)};

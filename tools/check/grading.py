@@ -27,6 +27,7 @@ SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for nu
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
 OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) else [] for number, says in DESCRIPTIONS.items()}
 TILE = 16  # pixels
+TILE_FLOOR = 5e-4  # of the mean of the image: see reference_regions()
 FALSE_ALARMS = 0.001  # over all checks of correct shaders
 TOO_MUCH = 1.5  # times the error of a sample or its rays
 # The fraction of the technique's gain, on the scale of the error's logarithm, that a shader may lose; and a factor of the error
@@ -123,9 +124,12 @@ def reference_regions(file):
     reference = read_reference(file)
     height, width, _ = reference.mean.shape
     deviation = np.sqrt(reference.variance).mean(axis=2, keepdims=True)
+    # A tile that a few paths of all the runs reach has no spread where they miss it: differences there that are a small fraction
+    # of the image's mean count as noise.
+    floor = (TILE_FLOOR * reference.mean.mean())**2
     variance = regions(reference.variance)[:3] + regions(deviation**2)[1:]
     pixels = [height * width] * 3 + [TILE**2] * (len(variance) - 3)
-    return {"mean": regions(reference.mean), "variance": [v / n for v, n in zip(variance, pixels)],
+    return {"mean": regions(reference.mean), "variance": [v / n + (floor if n == TILE**2 else 0) for v, n in zip(variance, pixels)],
             "freedom": reference.freedom}
 
 
