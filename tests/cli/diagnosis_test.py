@@ -210,6 +210,13 @@ class SimilarNamesTest(unittest.TestCase):
         self.assertEqual(self.names(angle=[0.6, 0.5, 2.0, 1.0], size=[1.0] * 3), [], "one point of four")
         self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 5.0], size=[1.6] * 3), [], "directions alone")
 
+    def test_a_point_that_is_right_contradicts_a_small_difference_unless_it_is_too_vague(self):
+        known = {"everywhere": {"shows": {"angle": "1.08 1.08 0.92 2"}}}
+        self.assertEqual(similar_to({"angle": seen([1.0, 1.0, 1.0, 2.0])}, known), [])
+        self.assertEqual(similar_to({"angle": seen([1.08, 1.08, 0.92, 2.0])}, known), ["everywhere"])
+        self.assertEqual(similar_to({"angle": seen([0.92, 0.92, 1.08, 2.0])}, known), [], "to the other side")
+        self.assertEqual(similar_to({"angle": seen([1.04, 1.04, 0.96, 2.0], error=0.015)}, known), ["everywhere"], "cannot be told apart")
+
     def test_they_are_told_only_where_none_fits(self):
         known = {"experiments": {}, "mistakes": {name: entry | {"hint": "?", "slide": "s"} for name, entry in self.KNOWN.items()}}
         for values, fits, names in (([1.0, 2.0, 4.0, 8.0], True, ["brighter"]), ([1.0, 2.0, 4.0, 5.0], False, ["brighter"])):
