@@ -188,7 +188,9 @@ def parse(name, description):
     parser.add_argument("--anew", action="store_true", help="measure everything again")
     parser.add_argument("--chapters", type=number(int, 1), nargs="+", default=project.course(), metavar="N", help="default: all")
     add_device_options(parser)
-    return parser.parse_args()
+    options = parser.parse_args()
+    grading.stay_in_the_driver(options.backend)
+    return options
 
 
 def main():

@@ -82,6 +82,7 @@ def main():
     parser.add_argument("--only", nargs="+", default=[""], metavar="TEXT", help="submissions whose names begin so")
     add_device_options(parser)
     options = parser.parse_args()
+    grading.stay_in_the_driver(options.backend)
     path = RECORDS / f"check/{options.record}.json"
     record = read_json(path) if path.exists() else {"submissions": {}}
     folders = sorted(file.parent for file in options.folder.glob("*/submission.json") if file.parent.name.startswith(tuple(options.only)))

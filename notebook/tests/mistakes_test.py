@@ -1,6 +1,8 @@
 """./lab notebook mistakes and mutations: they themselves take hours; whether the code still has their places is seen at once."""
 
 import json
+import os
+import sys
 import unittest
 from unittest import mock
 
@@ -25,6 +27,13 @@ class MutationsTest(unittest.TestCase):
             changed = mutations.mutations(chapter)
             self.assertGreaterEqual(len(changed), 10, chapter)
             self.assertLessEqual(set(unchanged.get(name_of(chapter), {})), set(changed), f"chapter {chapter}: stale")
+
+    def test_it_grades_as_a_student_is_graded_without_the_cpp_compiler(self):
+        with (mock.patch.dict(os.environ), mock.patch.object(sys, "argv", ["mutations", "--list", "--chapters", "12"]),
+              mock.patch("builtins.print")):
+            os.environ.pop("LAB_WITHOUT_NATIVE", None)
+            mutations.main()
+            self.assertEqual(os.environ.get("LAB_WITHOUT_NATIVE"), "1")
 
     def test_each_kind_of_change_is_made(self):
         text = "a = b * f(x, 2.0) - c;\n    if (!d) break;\n"

@@ -13,7 +13,7 @@ import tools_path  # noqa: F401  (first: it finds the others)
 from check import diagnosis, grading
 from check.diagnosis import reason, right_ones
 from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
-from check.facts import fact
+from check.facts import DARK, fact
 from check.findings import LONGEST, findings
 from check.grading import RUNS, expected_file, first_seed
 from check.names import names_of, similar_to
@@ -210,6 +210,13 @@ class SimilarNamesTest(unittest.TestCase):
         self.assertEqual(self.names(angle=[0.6, 0.5, 2.0, 1.0], size=[1.0] * 3), [], "one point of four")
         self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 5.0], size=[1.6] * 3), [], "directions alone")
 
+    def test_a_point_that_is_right_contradicts_a_small_difference_unless_it_is_too_vague(self):
+        known = {"everywhere": {"shows": {"angle": "1.08 1.08 0.92 2"}}}
+        self.assertEqual(similar_to({"angle": seen([1.0, 1.0, 1.0, 2.0])}, known), [])
+        self.assertEqual(similar_to({"angle": seen([1.08, 1.08, 0.92, 2.0])}, known), ["everywhere"])
+        self.assertEqual(similar_to({"angle": seen([0.92, 0.92, 1.08, 2.0])}, known), [], "to the other side")
+        self.assertEqual(similar_to({"angle": seen([1.04, 1.04, 0.96, 2.0], error=0.015)}, known), ["everywhere"], "cannot be told apart")
+
     def test_they_are_told_only_where_none_fits(self):
         known = {"experiments": {}, "mistakes": {name: entry | {"hint": "?", "slide": "s"} for name, entry in self.KNOWN.items()}}
         for values, fits, names in (([1.0, 2.0, 4.0, 8.0], True, ["brighter"]), ([1.0, 2.0, 4.0, 5.0], False, ["brighter"])):
@@ -350,6 +357,12 @@ class ExpectedTest(unittest.TestCase):
         self.assertTrue(self.known())
         for chapter, entry in self.known().items():
             self.assertEqual(list(entry["experiments"]), list(experiments_of(chapter)), f"chapter {chapter}: ./lab notebook learn")
+
+    def test_every_lit_point_is_bright_enough_to_be_judged(self):
+        """Beside a much brighter one it counts as dark, where only light that should not be there is wrong."""
+        dim = {(chapter, name) for chapter, known in self.known().items() for name, seen in known["experiments"].items()
+               if any(0 < mean <= DARK * max(seen["mean"]) for mean in seen["mean"])}
+        self.assertEqual(dim, {(11, "frosted_ray")}, "whose lobe is dark beside the refracted ray")
 
     def test_levels_have_the_seeds_of_a_check_so_that_renders_are_compared_one_by_one(self):
         seeds = [str(first_seed(0) + run) for run in range(RUNS)]

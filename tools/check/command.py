@@ -13,7 +13,6 @@ and a page with pictures, and continues after an interruption. For autograders s
 Exit code: 0 correct, 1 biased, noisy or expensive, 2 cannot be graded; with --all: 0, or 2 if some cannot be graded.
 """
 import json
-import os
 import sys
 import tempfile
 import traceback
@@ -22,7 +21,7 @@ from pathlib import Path
 from check.formats import as_gradescope, as_github
 from check.diagnosis import diagnose, verdict_with
 from check.folder import UNGRADED, grade_all
-from check.grading import DESCRIPTIONS, MOST_RUNS, RUNS, SCENES, first_seed, graded_together, judge
+from check.grading import DESCRIPTIONS, MOST_RUNS, RUNS, SCENES, first_seed, graded_together, judge, stay_in_the_driver
 from check.words import detail_lines, hints_of, laid_out, scene_words, short_lines, tell_early
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable, text_of
 from report.measurement import relative
@@ -129,8 +128,7 @@ def main():
     try:
         options = parse()
         refuse(options)
-        if options.backend != "native":  # a submission's shader stays in the driver, unless requested otherwise
-            os.environ["LAB_WITHOUT_NATIVE"] = "1"
+        stay_in_the_driver(options.backend)
         file = options.file or ROOT / "chapters" / CHAPTERS[options.chapter] / "path_trace.glsl"
         options.chapter = original(options.chapter)
         if options.folder:

@@ -39,6 +39,12 @@ PATIENCE = 10  # a check of RUNS runs may take this many times the limit of a si
 VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first one that any scene has wins
 
 
+def stay_in_the_driver(backend):
+    """Keeps what is graded from the C++ compiler unless `native` is requested: compiling takes it longer than a check's pictures."""
+    if backend != "native":
+        os.environ["LAB_WITHOUT_NATIVE"] = "1"
+
+
 def first_seed(seed):
     """The seed of the first run of a check with this --seed. Checks with different ones share no render. None uses the seeds from
     2 * MOST_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the seeds of --seed

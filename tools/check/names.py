@@ -66,13 +66,18 @@ def names_of(facts, sights, known, expected):
 
 def likeness(shown, facts):
     """How much of what is wrong a mistake explains, from 0 to 1, and how many points contradict it: over the points that are wrong in
-    either, 1 where the numbers fit, 1/2 where both are too bright or both too dark, and 0 where they contradict each other."""
+    either, 1 where both are too bright or both too dark by the same, 1/2 where by something else, and 0 where they contradict each other.
+    A point that is too vague to tell whether it does counts as none."""
     marks = []
     for reading, known, off in compared(shown, facts):
         both = [reading, replace(reading, value=known)]
-        if not all(one.is_right for one in both):
-            sides = {0 if one.is_right else math.copysign(1, one.value - one.expected) for one in both}
-            marks.append(1.0 if off <= FITS else 0.5 if len(sides) == 1 else 0.0)
+        sides = {0 if one.is_right else math.copysign(1, one.value - one.expected) for one in both}
+        if sides == {0}:
+            continue
+        if len(sides) == 1:
+            marks.append(1.0 if off <= FITS else 0.5)
+        elif abs(reading.value - known) > FITS * reading.error:
+            marks.append(0.0)
     return fmean(marks) if marks else 0.0, marks.count(0.0)
 
 
