@@ -55,7 +55,7 @@ TEST(Media, FreeFlightsAreDistributedExponentially) {
     for (const float depth : {0.1f, 1.0f, 3.0f}) {
         Scene scene = filled(box({-1, -1, -0.5f}, {1, 1, 0}), {2 * depth, vec3(0), 0});
         scene.background = vec3(1);
-        expect_mean("optical depth " + std::to_string(depth), mean_of(seen(scene, {0, 0, 3}, {0, 0, 0}), media_settings(32)),
+        expect_mean("optical depth " + std::to_string(depth), mean_of(seen(scene, {0, 0, 3}, {0, 0, 0}), media_settings(64)),
                     std::exp(-depth), 0.01, 3);
     }
 }
