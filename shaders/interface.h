@@ -102,12 +102,14 @@ struct Medium {
     float anisotropy;  // mean cosine of the angle by which it changes its direction, in (-1,1)
 };
 
-// What an instance does with the medium that a path is in.
+// What becomes of the medium that a path is in where it meets an instance.
 SHARED_CONSTANT BOUNDARY_NONE = 0u;   // a surface
 SHARED_CONSTANT BOUNDARY_GLASS = 1u;  // what its glass refracts gets to its other side
 SHARED_CONSTANT BOUNDARY_OPEN = 2u;   // no surface at all: everything goes on
+
+// What an instance does with the medium that a path is in, as constants above, and the media on its two sides.
 struct Boundary {
-    uint kind;
+    uint kind;     // one of the constants above
     uint inside;   // index into the media, behind its front
     uint outside;  // the same before it
 };
