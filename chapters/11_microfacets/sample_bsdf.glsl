@@ -76,7 +76,7 @@ float get_bsdf_density(ShadingData s, vec3 in_direction) {
     return get_smooth_density(s, in_direction);
 }
 
-// Samples ω_i, with the density get_bsdf_density() unless only one direction is possible.
+// Samples the next direction as the material scatters light, whatever it is.
 BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return sample_microfacets(s, seed);

@@ -37,7 +37,7 @@ class SceneFiles(ProgramTest):
         self.refuse("", "scene")
 
     def test_a_misspelt_scene_lists_all(self):
-        self.refuse("cornel_box", "cornel_box: there is no such scene", "cornell_box, focus, furnace, glass,", "torus")
+        self.refuse("cornel_box", "cornel_box: there is no such scene", "cornell_box, focus, fog, furnace, glass,", "torus")
 
     def test_neither_scene_nor_mesh(self):
         self.write("picture.png", b"\x89PNG")
