@@ -1,6 +1,6 @@
 """What light samples gain in fog: errors and seconds of chapter 13's strategies, for light that was scattered once and for all of it.
 
-    ./lab notebook media_strategies [--runs 8] [--output FILE.json]
+    ./lab notebook media_strategies [--runs 4] [--output FILE.json]
 
 All take turns, with another seed in each run. The errors are those that the halves of the samples tell.
 """
@@ -18,7 +18,7 @@ LIGHT = {"scattered once": ["--only-path-length=1"], "all light": []}
 
 def main():
     parser = Parser("./lab notebook media_strategies", __doc__)
-    parser.add_argument("--runs", type=number(int, 2), default=8, help="default: 8")
+    parser.add_argument("--runs", type=number(int, 2), default=4, help="default: 4")
     parser.add_argument("--output", type=Path, default=ROOT / "notebook/records/media/native.json", metavar="FILE.json")
     options, rows, started = parser.parse_args(), [], time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
@@ -28,7 +28,7 @@ def main():
             for run in range(options.runs):
                 for strategy, found in products.items():
                     subprocess.run([program_file(CHAPTER), "fog", "--headless", "--quiet", "--backend=native", "--width=96", "--height=64",
-                                    "--samples=512", f"--seed={1 + run}", f"--strategy={strategy}", *chosen, f"--output={folder}/picture.exr",
+                                    "--samples=256", f"--seed={1 + run}", f"--strategy={strategy}", *chosen, f"--output={folder}/picture.exr",
                                     f"--report={report}"], check=True)
                     content = read_json(report)
                     found.append(content["rows"][-1]["mse"] * content["rows"][-1]["seconds"])
