@@ -133,10 +133,9 @@ def reference_regions(file):
     # A tile that a few paths of all the runs reach has no spread where they miss it: differences there that are a small fraction
     # of the image's mean count as noise.
     floor = (TILE_FLOOR * reference.mean.mean())**2
-    variance = regions(reference.variance)[:3] + regions(deviation**2)[1:]
-    pixels = [height * width] * 3 + [TILE**2] * (len(variance) - 3)
-    return {"mean": regions(reference.mean), "variance": [v / n + (floor if n == TILE**2 else 0) for v, n in zip(variance, pixels)],
-            "freedom": reference.freedom}
+    channels, tiles = regions(reference.variance)[:3], regions(deviation**2)[1:]
+    variance = [v / (height * width) for v in channels] + [v / TILE**2 + floor for v in tiles]
+    return {"mean": regions(reference.mean), "variance": variance, "freedom": reference.freedom}
 
 
 def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shader=None):

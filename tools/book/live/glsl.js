@@ -20,7 +20,7 @@ live.glsl = (() => {
 #define precise
 #define atomicAdd(place, value) (place += (value))
 #define nonuniformEXT(index) (index)
-uniform highp usampler2D web_words;    // of the scene's arrays, one a texel
+uniform highp usampler2D web_words;   // of the scene's arrays, one a texel
 uniform highp usampler2D web_arrays;  // the same, four a texel
 uniform uvec2 web_places[32];  // of a binding: the first word and the number of words
 uvec4 web_texel(int i) { return texelFetch(web_arrays, ivec2(i & 2047, i >> 11), 0); }
