@@ -74,7 +74,10 @@ void draw_progress(const Session& session, double frames_per_second) {
                   short_number(static_cast<double>(session.rays()) / seconds) + " rays, " +
                   std::to_string(std::lround(frames_per_second)) + " frames");
     constexpr double wanted = 0.01;
-    if (const auto error = session.relative_error(); error && *error > wanted)
+    // One line whatever it says, so that the controls below keep their places.
+    if (session.is_building())
+        ImGui::TextUnformatted("building ...");
+    else if (const auto error = session.relative_error(); error && *error > wanted)
         ImGui::TextWrapped("noise %.3g %%, 1 %% in %s", 100 * *error,
                            duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
     else if (error)
@@ -82,7 +85,6 @@ void draw_progress(const Session& session, double frames_per_second) {
     else
         ImGui::TextUnformatted(session.reduction() > 1 && !session.is_stuck() ? "reduced while the camera moves"
                                                                               : "error not known yet");
-    if (session.is_building()) ImGui::TextUnformatted("building ...");
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.45f, 0.4f, 1.0f));
     if (!session.message().empty()) text_in_words(session.message());
     ImGui::PopStyleColor();

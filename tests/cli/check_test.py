@@ -226,7 +226,8 @@ class CheckTest(Checking, ProgramTest):
     def test_memory_is_limited(self):
         code, _, err = self.run_tool("check", 3, "--memory-limit", 0.1, "--runs", 2, "--samples", 1)
         self.assertEqual(code, 2)
-        self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")
+        # Shaders that the driver has compiled before need less, so that one picture or another may be done.
+        self.assertRegex(err, r"\A(\d+ %, [^\n]*\n)*error: [^\n]{12,}\n\Z")
 
     def test_checks_with_other_seeds_share_no_render(self):
         """Also with more runs: otherwise a false alarm would recur with another --seed."""

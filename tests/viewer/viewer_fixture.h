@@ -152,6 +152,15 @@ class ViewerTest : public testing::Test {
         run_frames(2);
     }
 
+    // Clicks a control until that has had its effect: controls move as long as lines above them change.
+    void click_until(const std::function<vec2()>& place, const std::function<bool()>& is_done) {
+        for (int attempt = 0; attempt < 5 && !is_done(); ++attempt) {
+            const vec2 at = place();
+            click(at.x, at.y);
+        }
+        EXPECT_TRUE(is_done());
+    }
+
     // Moves the pointer with the button held down. GLFW reports a button once, but Dear ImGui before 1.87 polls its state every
     // frame.
     void drag(const vec2& from, const vec2& to) {

@@ -72,12 +72,7 @@ TEST_F(ViewerTest, TypingIntoAFieldDoesNotMoveTheCamera) {
     open(make_options());
     const CameraPose before = session().camera();
     EXPECT_FALSE(ImGui::GetIO().WantTextInput) << "no field has the focus at first";
-    // The field moves as long as controls above it appear.
-    for (int attempt = 0; attempt < 5 && !ImGui::GetIO().WantTextInput; ++attempt) {
-        const vec2 field = viewer_->controls().seed_field();
-        click(field.x, field.y);
-    }
-    ASSERT_TRUE(ImGui::GetIO().WantTextInput);
+    click_until([&] { return viewer_->controls().seed_field(); }, [] { return ImGui::GetIO().WantTextInput; });
     hold(GLFW_KEY_W, 3);
     run_frames(1);
     EXPECT_EQ(session().camera().position, before.position);
@@ -123,24 +118,23 @@ TEST_F(ViewerTest, LobesAreShownAsOnWhereTheSceneHasThem) {
             for (uint32_t x = at.x - 4; x < at.x + 4; ++x) blue += shown.pixels[4 * (size_t{y} * shown.width + x) + 2] > 150;
         return blue > 2;
     };
-    const auto click_box = [&] {
-        const vec2 box = viewer_->controls().lobes_box();
-        click(box.x, box.y);
+    const auto box = [&] { return viewer_->controls().lobes_box(); };
+    const auto switch_lobes = [&](bool on) {
+        click_until(box, [&] { return session().options().scene.specular == on; });
         finish_build();
     };
     wait_until("samples", [&] { return session().samples() >= 1 && session().reduction() == 1; });
     EXPECT_FALSE(is_checked());
-    click_box();
-    EXPECT_TRUE(session().options().scene.specular);
+    switch_lobes(true);
     EXPECT_TRUE(is_checked());
-    click_box();
-    EXPECT_FALSE(session().options().scene.specular);
+    switch_lobes(false);
 
     session().open_scene(scenes / "glossy.json");
     finish_build();
     wait_until("samples", [&] { return session().samples() >= 1 && session().reduction() == 1; });
     EXPECT_TRUE(is_checked());
-    click_box();
+    click(box().x, box().y);
+    finish_build();
     EXPECT_FALSE(session().options().scene.specular) << "the scene's own lobes cannot be switched";
     EXPECT_TRUE(is_checked());
 }
