@@ -9,11 +9,13 @@ namespace lab {
 namespace {
 
 // Throws DeviceFailure for more textures than shaders can bind. The light probe and both arrays of the backend `compute` count as
-// images, too, and every other binding takes a slot.
-void require_visible(const Device& device, size_t texture_count) {
+// images, too. Every buffer of the scene takes a slot, and so do eleven other bindings: the parameters, film, counters and the
+// two outputs of chapters, the samples, the light probe, and what the backends trace rays in.
+void require_visible(const Device& device, size_t texture_count, size_t buffer_count) {
     const auto& limits = device.limits();
-    const size_t most = std::min(std::max(limits.maxPerStageDescriptorSampledImages, 3u) - 3,
-                                 std::max(limits.maxPerStageResources, BINDING_COUNT) - BINDING_COUNT);
+    const size_t others = 11 + buffer_count;
+    const size_t most = std::min<size_t>(std::max(limits.maxPerStageDescriptorSampledImages, 3u) - 3,
+                                         std::max<size_t>(limits.maxPerStageResources, others) - others);
     if (texture_count > most)
         throw DeviceFailure("the scene has " + std::to_string(texture_count) + " textures, and shaders of the device see " +
                             std::to_string(most) + " at most: join some of them");
@@ -38,7 +40,7 @@ GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, 
     for (const SceneArray& image : arrays.images())
         memory_needs_.push_back({.what = image.name, .bytes = image.data.size(), .image_size = {image.width, image.height}});
     require_memory(device, memory_needs_);
-    require_visible(device, scene.textures.size());
+    require_visible(device, scene.textures.size(), arrays.buffers().size());
     for (const SceneArray& array : arrays.buffers()) {
         buffers_.emplace_back(device, array.data, memory_needs_[buffers_.size()].usage);
         bindings_.push_back(storage_binding(array.binding, buffers_.back()));
