@@ -105,6 +105,9 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
         load([&] { scene.light_probe = read_radiance(description.light_probe, scene.warnings); });
         sources.read(description.light_probe, max_image_file_bytes);  // for the hash
     }
+    if (description.fog && description.fog->extinction > 0 && (scene.background != vec3(0) || !description.light_probe.empty()))
+        scene.warnings.push_back(name +
+                                 ": its \"fog\" has no end and hides the sky: to see it, fill a mesh with an open boundary");
     if (is_bare_mesh && !features_of(scene).area_lights) {
         scene.background = vec3(1);
         scene.warnings.push_back(name + ": nothing in it emits light: the sky is white, of radiance 1");

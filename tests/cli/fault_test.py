@@ -148,7 +148,7 @@ class SmallDevice(RenderTest):
         self.assert_same_picture({"FAULT_maxTexelBufferElements": "65536"}, "--samples=1", scene="sunny", size=(48, 40))
 
     def test_more_textures_than_a_shader_may_see(self):
-        for limit in ({"FAULT_maxPerStageDescriptorSampledImages": "5"}, {"FAULT_maxPerStageResources": "26"}):
+        for limit in ({"FAULT_maxPerStageDescriptorSampledImages": "5"}, {"FAULT_maxPerStageResources": "21"}):
             self.refuse(limit, "3 textures", "2 at most")
 
     def test_more_allocations_than_the_device_has(self):

@@ -52,6 +52,15 @@ TEST_F(MediaFile, StateTheFog) {
     EXPECT_TRUE(features_of(scene).media);
 }
 
+TEST_F(MediaFile, FogWithoutEndHidesTheSky) {
+    const std::string fog = R"(, "fog": {"extinction": 0.5, "albedo": 1})", sky = R"(, "background": {"radiance": 1})";
+    EXPECT_TRUE(load(plain, fog).warnings.empty());
+    EXPECT_TRUE(load(plain, sky).warnings.empty());
+    const auto warnings = load(plain, fog + sky).warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_PRED_FORMAT2(IsSubstring, "hides the sky", warnings[0]);
+}
+
 // Nested in any order, by any number of meshes, and past one that is not around them.
 TEST_F(MediaFile, KnowWhatLiesAroundThem) {
     const Scene scene =

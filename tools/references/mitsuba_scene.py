@@ -149,9 +149,10 @@ def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False,
         content["sensor"]["medium"] = make_medium(scene.fog, unit)
     for i, surface in enumerate(scene.surfaces):
         content[f"surface_{i}"] = make_mesh(surface, unit, own_normals)
-    if scene.light_probe:
+    # Fog without end hides what is infinitely far away. Mitsuba would show it at the distance of a sphere around the scene.
+    if scene.light_probe and not scene.fog:
         content["background"] = make_light_probe(scene)
-    elif scene.background.any():
+    elif scene.background.any() and not scene.fog:
         content["background"] = {"type": "constant", "radiance": colour(scene.background)}
     return mi.load_dict(content), integrator
 
