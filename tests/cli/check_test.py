@@ -61,7 +61,7 @@ class Checking:
         return result | {"file": project.printable(file)}, pictures
 
     def diagnose_once(self, chapter, file, settings, is_correct):
-        key = (file.read_bytes(), is_correct)
+        key = (file.read_bytes(), is_correct, settings["first_seed"])
         if key not in self.judged:
             self.judged[key] = diagnosis.diagnose(chapter, file, settings, is_correct=is_correct)
         return deepcopy(self.judged[key])
@@ -230,18 +230,20 @@ class CheckTest(Checking, ProgramTest):
         self.assertRegex(err, r"\A(\d+ %, [^\n]*\n)*error: [^\n]{12,}\n\Z")
 
     def test_checks_with_other_seeds_share_no_render(self):
-        """Also with more runs: otherwise a false alarm would recur with another --seed."""
+        """Also with more runs, and in experiments: otherwise a false alarm would recur with another --seed."""
         program = self.write(f"binaries/{SHADER.parent.name}", NOTING.format(
             notes=self.folder / "notes", program=BINARIES / SHADER.parent.name))
         program.chmod(0o755)
         seeds = []
         for seed in (0, 1):
-            with mock.patch.object(project, "BINARIES", program.parent), self.in_one_scene():
+            with mock.patch.object(project, "BINARIES", program.parent), mock.patch.object(Checking, "judged", {}), self.in_one_scene():
                 self.check(3, "--runs", 2 + seed, "--samples", 1, "--seed", seed, "--time-limit", 100)
             notes = (self.folder / "notes").read_text()
             (self.folder / "notes").unlink()
-            seeds.append(set(re.findall(r'check_room.*"--seed" "(\d+)"', notes)))
-            self.assertEqual(len(seeds[-1]), 2 + seed)
+            rendered = re.findall(r'/(check_room|point)\w*\.json".*"--seed" "(\d+)"', notes)
+            self.assertEqual(sum(what == "check_room" for what, _ in rendered), 2 + seed)
+            self.assertIn("point", dict(rendered), "experiments that decide")
+            seeds.append({number for _, number in rendered})
         self.assertFalse(seeds[0] & seeds[1], seeds)
 
     def test_samples_that_depend_on_each_other_have_the_number_of_their_level(self):
