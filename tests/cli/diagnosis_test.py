@@ -17,8 +17,11 @@ from check.facts import DARK, fact
 from check.findings import LONGEST, findings
 from check.grading import RUNS, expected_file, first_seed
 from check.names import names_of, similar_to
-from check.words import MOST_FACTS, headline, hint_lines, laid_out
+from check.words import MARGIN, MOST_FACTS, headline, hint_lines, laid_out
+from course.mistakes import catalogue
 from project import chapter_named, course, read_json
+
+LINE = 100  # characters
 
 
 def sight(mean, error=0.001):
@@ -146,6 +149,11 @@ class FindingsTest(unittest.TestCase):
                     for told in self.told(fact(one, shown, [sight(1.0)] * len(those))):
                         self.assertLessEqual(len(told["text"]), LONGEST)
                         self.assertEqual(told["text"].count("\n"), 0)
+
+    def test_what_a_student_reads_fits_into_a_line(self):
+        self.assertLessEqual(MARGIN + LONGEST, LINE, "facts")
+        for bug in catalogue():
+            self.assertLessEqual(MARGIN + len(bug.mistake["hint"]), LINE, bug.mistake["name"])
 
 
 class SecondLookTest(unittest.TestCase):
