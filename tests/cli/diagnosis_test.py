@@ -202,7 +202,7 @@ class NamesTest(unittest.TestCase):
 
 
 class SimilarNamesTest(unittest.TestCase):
-    """If no name fits, one or two may: those whose mistakes are wrong at most of the same points in the same direction."""
+    """If no name fits, one may: that of the mistake that is wrong at most of the same points in the same direction."""
     KNOWN = {"brighter": {"shows": {"angle": "1 2 4 8", "size": "2 2 2"}}, "darker": {"shows": {"angle": "1 0.5 0.3 0.1"}},
              "elsewhere": {"shows": {"distance": "3 3 3"}}, "other-scene": {"shows": {"angle": "0 0 0 0", "size": "3 3 3"}}}
 
@@ -213,6 +213,10 @@ class SimilarNamesTest(unittest.TestCase):
         self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 8.0], size=[2.0, 2.0, 2.0]), ["brighter"])
         self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 0.1], size=[1.0] * 3), [], "half of the numbers differ")
         self.assertEqual(self.names(angle=[1.0, 0.8, 0.3, 0.1], size=[1.0] * 3), ["darker"])
+
+    def test_the_nearest_of_several(self):
+        facts = {"angle": seen([1.0, 1.5, 2.5, 8.0]), "size": seen([2.0] * 3, name="size")}
+        self.assertEqual(similar_to(facts, {"farther": {"shows": {"angle": "1 3 3 8", "size": "2 2 3"}}} | self.KNOWN), ["brighter"])
 
     def test_none_if_the_nearest_explains_too_little(self):
         self.assertEqual(self.names(angle=[0.6, 0.5, 2.0, 1.0], size=[1.0] * 3), [], "one point of four")
