@@ -49,7 +49,7 @@ class Checking:
             patch.start()
             self.addCleanup(patch.stop)
 
-    def judge_once(self, chapter, file, settings, watch):
+    def judge_once(self, chapter, file, settings, watch, ends_early):  # noqa: ARG002 (the next format may need all runs)
         """judge(), but renders a shader only once for all formats in which the command reports the same verdict."""
         key = (file.read_bytes(), *grading.SCENES[chapter][1], *(settings[name] for name in ("runs", "samples", "first_seed")))
         if key not in self.judged:
@@ -131,6 +131,17 @@ class CheckTest(Checking, ProgramTest):
     def test_tells_early_what_is_sure(self):
         """For a shader with a mistake, it tells it where a teacher gets the mistake's name."""
         self.assertRegex(self.check(*FEW)[2], r"(?m)^so far +[^\n]*no picture is wrong by")
+
+    def test_a_bias_that_experiments_confirm_takes_no_more_renders(self):
+        found = {"facts": [], "mistakes": [], "fits": False, "next": None, "right": [], "is_noisy": False}
+        for is_confirmed, form, runs in ((True, "--json", grading.EARLY_RUNS), (False, "--json", 6), (True, "--gradescope", 6)):
+            results = []
+            with (mock.patch.object(command, "judge", lambda *a, **b: results.append(grading.judge(*a, **b)) or results[-1]),
+                  mock.patch.object(command, "diagnose", return_value=found | {"is_beyond_doubt": is_confirmed}), self.in_one_scene()):
+                self.check(3, "--runs", 6, "--samples", 4, form, self.wrong())
+            (result, (picture,)), first = results[-1], results[0][1][0]
+            self.assertEqual((result["verdict"], result["runs"], len(results)), ("biased", runs, 1 if is_confirmed else 2))
+            self.assertAlmostEqual(first.mean() / picture.mean(), 1, delta=0.05)
 
     def test_the_answer_is_short_and_has_details_on_demand(self):
         (_, short, _), (_, long, _) = self.check(*FEW, self.wrong()), self.check(*FEW, "--details", self.wrong())
