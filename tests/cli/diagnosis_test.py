@@ -164,7 +164,7 @@ class SecondLookTest(unittest.TestCase):
         """Verdict and number of looks, if these are what grade() says one after the other: verdict, and whether the picture is off."""
         results = [{"verdict": verdict, "invalid_samples": 0, "image": [{"is_biased": is_off}]} for verdict, is_off in looks]
         plan = {"first_seed": 1, "runs": RUNS, "samples": None}
-        with mock.patch.object(grading, "render", return_value=[{"scene": "check_room_2", "picture": None}]) as render, \
+        with mock.patch.object(grading, "render", return_value=[{"scene": "check_room_2", "picture": None, "runs": [{}] * RUNS}]) as render, \
                 mock.patch.object(grading, "grade", side_effect=results):
             result = grading.judge(3, Path("mine.glsl"), plan, self.LEVEL)[0]
         self.assertEqual([call.args[2]["first_seed"] for call in render.mock_calls], [1, 1 + RUNS][:render.call_count])
