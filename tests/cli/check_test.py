@@ -49,7 +49,7 @@ class Checking:
             patch.start()
             self.addCleanup(patch.stop)
 
-    def judge_once(self, chapter, file, settings, watch):
+    def judge_once(self, chapter, file, settings, watch, ends_early):  # noqa: ARG002 (the next format may need all runs)
         """judge(), but renders a shader only once for all formats in which the command reports the same verdict."""
         key = (file.read_bytes(), *grading.SCENES[chapter][1], *(settings[name] for name in ("runs", "samples", "first_seed")))
         if key not in self.judged:
@@ -61,7 +61,7 @@ class Checking:
         return result | {"file": project.printable(file)}, pictures
 
     def diagnose_once(self, chapter, file, settings, is_correct):
-        key = (file.read_bytes(), is_correct)
+        key = (file.read_bytes(), is_correct, settings["first_seed"])
         if key not in self.judged:
             self.judged[key] = diagnosis.diagnose(chapter, file, settings, is_correct=is_correct)
         return deepcopy(self.judged[key])
@@ -131,6 +131,17 @@ class CheckTest(Checking, ProgramTest):
     def test_tells_early_what_is_sure(self):
         """For a shader with a mistake, it tells it where a teacher gets the mistake's name."""
         self.assertRegex(self.check(*FEW)[2], r"(?m)^so far +[^\n]*no picture is wrong by")
+
+    def test_a_bias_that_experiments_confirm_takes_no_more_renders(self):
+        found = {"facts": [], "mistakes": [], "fits": False, "next": None, "right": [], "is_noisy": False}
+        for is_confirmed, form, runs in ((True, "--json", grading.EARLY_RUNS), (False, "--json", 6), (True, "--gradescope", 6)):
+            results = []
+            with (mock.patch.object(command, "judge", lambda *a, **b: results.append(grading.judge(*a, **b)) or results[-1]),
+                  mock.patch.object(command, "diagnose", return_value=found | {"is_beyond_doubt": is_confirmed}), self.in_one_scene()):
+                self.check(3, "--runs", 6, "--samples", 4, form, self.wrong())
+            (result, (picture,)), first = results[-1], results[0][1][0]
+            self.assertEqual((result["verdict"], result["runs"], len(results)), ("biased", runs, 1 if is_confirmed else 2))
+            self.assertAlmostEqual(first.mean() / picture.mean(), 1, delta=0.05)
 
     def test_the_answer_is_short_and_has_details_on_demand(self):
         (_, short, _), (_, long, _) = self.check(*FEW, self.wrong()), self.check(*FEW, "--details", self.wrong())
@@ -230,18 +241,20 @@ class CheckTest(Checking, ProgramTest):
         self.assertRegex(err, r"\A(\d+ %, [^\n]*\n)*error: [^\n]{12,}\n\Z")
 
     def test_checks_with_other_seeds_share_no_render(self):
-        """Also with more runs: otherwise a false alarm would recur with another --seed."""
+        """Also with more runs, and in experiments: otherwise a false alarm would recur with another --seed."""
         program = self.write(f"binaries/{SHADER.parent.name}", NOTING.format(
             notes=self.folder / "notes", program=BINARIES / SHADER.parent.name))
         program.chmod(0o755)
         seeds = []
         for seed in (0, 1):
-            with mock.patch.object(project, "BINARIES", program.parent), self.in_one_scene():
+            with mock.patch.object(project, "BINARIES", program.parent), mock.patch.object(Checking, "judged", {}), self.in_one_scene():
                 self.check(3, "--runs", 2 + seed, "--samples", 1, "--seed", seed, "--time-limit", 100)
             notes = (self.folder / "notes").read_text()
             (self.folder / "notes").unlink()
-            seeds.append(set(re.findall(r'check_room.*"--seed" "(\d+)"', notes)))
-            self.assertEqual(len(seeds[-1]), 2 + seed)
+            rendered = re.findall(r'/(check_room|point)\w*\.json".*"--seed" "(\d+)"', notes)
+            self.assertEqual(sum(what == "check_room" for what, _ in rendered), 2 + seed)
+            self.assertIn("point", dict(rendered), "experiments that decide")
+            seeds.append({number for _, number in rendered})
         self.assertFalse(seeds[0] & seeds[1], seeds)
 
     def test_samples_that_depend_on_each_other_have_the_number_of_their_level(self):

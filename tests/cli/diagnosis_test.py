@@ -17,8 +17,11 @@ from check.facts import DARK, fact
 from check.findings import LONGEST, findings
 from check.grading import RUNS, expected_file, first_seed
 from check.names import names_of, similar_to
-from check.words import MOST_FACTS, headline, hint_lines, laid_out
+from check.words import MARGIN, MOST_FACTS, headline, hint_lines, laid_out
+from course.mistakes import catalogue
 from project import chapter_named, course, read_json
+
+LINE = 100  # characters
 
 
 def sight(mean, error=0.001):
@@ -147,6 +150,11 @@ class FindingsTest(unittest.TestCase):
                         self.assertLessEqual(len(told["text"]), LONGEST)
                         self.assertEqual(told["text"].count("\n"), 0)
 
+    def test_what_a_student_reads_fits_into_a_line(self):
+        self.assertLessEqual(MARGIN + LONGEST, LINE, "facts")
+        for bug in catalogue():
+            self.assertLessEqual(MARGIN + len(bug.mistake["hint"]), LINE, bug.mistake["name"])
+
 
 class SecondLookTest(unittest.TestCase):
     """One bright path in a few runs, or its absence, is no mistake; whatever is off as a whole is one at once."""
@@ -156,7 +164,7 @@ class SecondLookTest(unittest.TestCase):
         """Verdict and number of looks, if these are what grade() says one after the other: verdict, and whether the picture is off."""
         results = [{"verdict": verdict, "invalid_samples": 0, "image": [{"is_biased": is_off}]} for verdict, is_off in looks]
         plan = {"first_seed": 1, "runs": RUNS, "samples": None}
-        with mock.patch.object(grading, "render", return_value=[{"scene": "check_room_2", "picture": None}]) as render, \
+        with mock.patch.object(grading, "render", return_value=[{"scene": "check_room_2", "picture": None, "runs": [{}] * RUNS}]) as render, \
                 mock.patch.object(grading, "grade", side_effect=results):
             result = grading.judge(3, Path("mine.glsl"), plan, self.LEVEL)[0]
         self.assertEqual([call.args[2]["first_seed"] for call in render.mock_calls], [1, 1 + RUNS][:render.call_count])
@@ -194,7 +202,7 @@ class NamesTest(unittest.TestCase):
 
 
 class SimilarNamesTest(unittest.TestCase):
-    """If no name fits, one or two may: those whose mistakes are wrong at most of the same points in the same direction."""
+    """If no name fits, one may: that of the mistake that is wrong at most of the same points in the same direction."""
     KNOWN = {"brighter": {"shows": {"angle": "1 2 4 8", "size": "2 2 2"}}, "darker": {"shows": {"angle": "1 0.5 0.3 0.1"}},
              "elsewhere": {"shows": {"distance": "3 3 3"}}, "other-scene": {"shows": {"angle": "0 0 0 0", "size": "3 3 3"}}}
 
@@ -205,6 +213,10 @@ class SimilarNamesTest(unittest.TestCase):
         self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 8.0], size=[2.0, 2.0, 2.0]), ["brighter"])
         self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 0.1], size=[1.0] * 3), [], "half of the numbers differ")
         self.assertEqual(self.names(angle=[1.0, 0.8, 0.3, 0.1], size=[1.0] * 3), ["darker"])
+
+    def test_the_nearest_of_several(self):
+        facts = {"angle": seen([1.0, 1.5, 2.5, 8.0]), "size": seen([2.0] * 3, name="size")}
+        self.assertEqual(similar_to(facts, {"farther": {"shows": {"angle": "1 3 3 8", "size": "2 2 3"}}} | self.KNOWN), ["brighter"])
 
     def test_none_if_the_nearest_explains_too_little(self):
         self.assertEqual(self.names(angle=[0.6, 0.5, 2.0, 1.0], size=[1.0] * 3), [], "one point of four")

@@ -3,9 +3,10 @@
 Renders scenes that have a reference image, each several times. Tests the means of the whole image and of its tiles
 against the reference: a correct shader is called biased in about one of 1000 checks. Compares error and rays with those of
 the chapter's own shader: the limit is 1.5 times, unless one pays for the other, and lower if less noise is the lesson.
-After a third of the renders a first verdict says what is certain by then. If a shader is not correct, small experiments
-find out what is wrong and what is right: each varies a single thing, such as an angle, a distance or the albedo. If only one common
-mistake fits all of their results, the check asks a question and names the slide to read again; --teacher names the mistake.
+After a third of the renders a first verdict says what is certain by then. The others are left out if a bias is certain and
+experiments confirm it. If a shader is not correct, small experiments find out what is wrong and what is right: each varies a single
+thing, such as an angle, a distance or the albedo. If only one common mistake fits all of their results, the check asks a question and
+names the slide to read again; --teacher names the mistake.
 
 --all grades each shader in a folder: files NAME.glsl, and shaders in separate folders. It writes results.csv
 and a page with pictures, and continues after an interruption. For autograders see docs/grading.
@@ -74,12 +75,17 @@ def check(options, file, picture=None):
         raise UserError(f"{printable(file)}: no such file")
     watch = (lambda cases: None) if options.is_quiet or options.folder else tell_early
     settings = vars(options) | {"first_seed": first_seed(options.seed)}
-    result, pictures = judge(options.chapter, file, settings, watch=watch)
+    # Points are given for each scene, so each takes all runs.
+    result, pictures = judge(options.chapter, file, settings, watch=watch, ends_early=options.form != "gradescope")
     is_correct = result["verdict"] == "correct"
     unfinished = None if is_correct else find_todo(graded_together(CHAPTERS[options.chapter], file))
     result |= {"unfinished_file": unfinished and printable(relative(unfinished[0])), "unfinished_line": unfinished and unfinished[1]}
     if not result["unfinished_line"]:
-        result["diagnosis"] = diagnose(options.chapter, file, settings, is_correct=is_correct)
+        found = diagnose(options.chapter, file, settings, is_correct=is_correct)
+        if result["runs"] < options.runs and not found["is_beyond_doubt"]:
+            judged, pictures = judge(options.chapter, file, settings)
+            result |= judged
+        result["diagnosis"] = found
         result["verdict"] = verdict_with(result["verdict"], result["diagnosis"])
         if not options.teacher:
             for mistake in result["diagnosis"]["mistakes"]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from check.facts import TOLERANCE, common_value, constant, number, power_law
 
-LONGEST = 100  # characters of a finding's text
+LONGEST = 85  # characters of a finding's text: with its head, a line of 100
 SHARE = 0.5  # of what is wrong: a factor that fewer experiments have in common is a coincidence
 INVALID = "infinite or not a number"
 BOUNCES = 4  # at most, of an experiment

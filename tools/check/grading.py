@@ -141,7 +141,7 @@ def reference_regions(file):
 def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shader=None):
     """Cases with their runs, each a row with the means of the regions. `settings`: backend, device, time_limit, memory_limit,
     runs, samples, first_seed, is_quiet, and what the progress begins with; `scenes` are names of references; `watch` is called after the
-    first EARLY_RUNS."""
+    first EARLY_RUNS and returns whether they are enough."""
     samples, own_scenes = SCENES[chapter]
     samples, started = settings["samples"] or samples, time.monotonic()
     with tempfile.TemporaryDirectory() as folder, Batch() as batch:
@@ -175,13 +175,15 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
                 row["mean"] = regions(image)
                 case["runs"].append({"seed": settings["first_seed"] + run, "rows": [row]})
                 case["invalid_samples"] += report["invalid_samples"]
-                case["picture"] = case["picture"] + image / settings["runs"]
+                case["picture"] = case["picture"] + image
                 if not settings["is_quiet"]:
                     show_progress(settings["what"] + case["scene"], done, len(work), started)
-                if done == EARLY_RUNS * len(cases) < len(work):
-                    watch(cases)
+                if done == EARLY_RUNS * len(cases) < len(work) and watch(cases):
+                    break
         except UserError as error:
             raise UserError(with_names_of(file, str(error))) from None
+    for case in cases:
+        case["picture"] = case["picture"] / len(case["runs"])
     return cases
 
 
@@ -242,22 +244,35 @@ def early_bias(cases):
     return None, max(test["detectable"] for test, _ in tests)
 
 
+def is_sure(results):
+    """Whether a picture is off as a whole."""
+    return any(result["invalid_samples"] or any(test["is_biased"] for test in result["image"]) for result in results)
+
+
 def is_doubtful(results):
     """Whether one bright path, or its absence, may have decided: no picture is off as a whole, but tiles are, or there is noise."""
-    is_sure = any(result["invalid_samples"] or any(test["is_biased"] for test in result["image"]) for result in results)
-    return not is_sure and any(result["verdict"] in ("biased", "noisy") for result in results)
+    return not is_sure(results) and any(result["verdict"] in ("biased", "noisy") for result in results)
 
 
-def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None):
+def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None, ends_early=False):
     """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. If it is
-    in doubt, other seeds decide: few correct shaders fail twice, and a mistake remains."""
+    in doubt, other seeds decide: few correct shaders fail twice, and a mistake remains. With `ends_early` it takes EARLY_RUNS alone if
+    a picture is off as a whole in them: experiments should confirm that, for all of so few runs may lack the same bright paths."""
     levels = levels or read_levels(chapter)
+
+    def graded(cases):
+        return [grade(case, levels[case["scene"]], len(cases)) for case in cases]
+
+    def is_enough(cases):
+        watch(cases)
+        return ends_early and is_sure(graded(cases))
+
     for first_seed in (settings["first_seed"], settings["first_seed"] + settings["runs"]):
-        cases = render(chapter, file, settings | {"first_seed": first_seed}, scenes, watch, shader)
-        results = [grade(case, levels[case["scene"]], len(cases)) for case in cases]
+        cases = render(chapter, file, settings | {"first_seed": first_seed}, scenes, is_enough, shader)
+        results = graded(cases)
         if not is_doubtful(results):
             break
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
-    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": settings["runs"],
+    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": len(cases[0]["runs"]),
             "samples": settings["samples"] or SCENES[chapter][0], "first_seed": first_seed, "false_alarms": FALSE_ALARMS,
             "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": results}, [case["picture"] for case in cases]

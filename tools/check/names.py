@@ -9,8 +9,8 @@ from check.experiments import known_sights
 LOOSENESS, LEAST = 0.03, 0.01
 FITS, EXCLUDED = 3.5, 5.0  # standard errors: within the first it fits, beyond the second it is a different mistake
 NOISE_LOOSENESS, RAYS_LOOSENESS = 0.25, 0.08  # of their logarithms
-# Of those that only may fit: how many are told, how much of what is wrong each must explain, and how many points may contradict it.
-MOST_NAMES, LEAST_LIKENESS, MOST_CONTRADICTIONS = 2, 0.75, 3
+# One that only may fit: how much of what is wrong it must explain, and how many points may contradict it.
+LEAST_LIKENESS, MOST_CONTRADICTIONS = 0.75, 3
 
 
 def numbers(text):
@@ -82,8 +82,9 @@ def likeness(shown, facts):
 
 
 def similar_to(facts, known):
-    """The names that may fit if none does, nearest first: a shader written in another way shows a mistake at the same points, but
-    not always with the same numbers. None unless it explains most of what is wrong and few points contradict it."""
+    """The name that may fit if none does, in a list: a shader written in another way shows a mistake at the same points, but not always
+    with the same numbers. None unless it explains most of what is wrong and few points contradict it. Not the second one as well: of
+    twenty in the notebook's record, two were right."""
     alike = {name: likeness(entry["shows"], facts) for name, entry in known.items() if "unseen" not in entry}
     near = [name for name, (value, contradictions) in alike.items() if value >= LEAST_LIKENESS and contradictions <= MOST_CONTRADICTIONS]
-    return sorted(near, key=alike.get, reverse=True)[:MOST_NAMES]
+    return [max(near, key=alike.get)] if near else []
