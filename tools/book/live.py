@@ -61,10 +61,11 @@ def with_frames(text, path):
 
 
 def shaders():
-    """The texts of all shaders that a browser may include: of the engine, the world and the chapters. The inspector is the window's alone."""
+    """The texts of all shaders that a browser may include: of the engine, the world and the chapters. Of those that observe
+    paths, pages have the view of surfaces."""
     files = [file for room in ("shaders", "chapters") for file in sorted((ROOT / room).rglob("*")) if file.suffix in SHADERS]
     return {file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8") for file in files
-            if not {"solutions", "variants", "observation"} & set(file.parts)}
+            if file.name == "view.glsl" or not {"solutions", "variants", "observation"} & set(file.parts)}
 
 
 def pictures_of(chapter, scene):
