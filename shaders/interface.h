@@ -45,12 +45,14 @@ SHARED_CONSTANT BINDING_OTHER_SIDES = 20u;
 SHARED_CONSTANT BINDING_PROBE_CELLS = 21u;
 SHARED_CONSTANT BINDING_TEXTURE_SIZES = 22u;
 SHARED_CONSTANT BINDING_MICROFACETS = 23u;
+SHARED_CONSTANT BINDING_MEDIA = 24u;
+SHARED_CONSTANT BINDING_BOUNDARIES = 25u;
 #ifdef __cplusplus
-SHARED_CONSTANT BINDING_COUNT = 24u;
+SHARED_CONSTANT BINDING_COUNT = 26u;
 #endif
 // Of the backend `native` alone. Macros leave the shaders of the others as they are.
-#define BINDING_WORLD_TRIANGLES 24u
-#define BINDING_FIRST_WORLD_TRIANGLES 25u
+#define BINDING_WORLD_TRIANGLES 26u
+#define BINDING_FIRST_WORLD_TRIANGLES 27u
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -92,6 +94,28 @@ struct Microfacets {
     vec2 albedo[MICROFACET_ALBEDO_COUNT];  // reflectance of a single bounce: of the coat, and with F = 1
     vec2 mean_albedo;                      // the same under uniform light from all directions
 };
+
+// What fills a volume and scatters light: fog, milk, smoke. The same everywhere in it.
+struct Medium {
+    float extinction;  // collisions per unit of world length; 0 is vacuum
+    vec3 albedo;       // fraction of the light that a collision scatters, in [0,1]; the rest is absorbed
+    float anisotropy;  // mean cosine of the angle by which it changes its direction, in (-1,1)
+};
+
+// What becomes of the medium that a path is in where it meets an instance.
+SHARED_CONSTANT BOUNDARY_NONE = 0u;   // a surface
+SHARED_CONSTANT BOUNDARY_GLASS = 1u;  // what its glass refracts gets to its other side
+SHARED_CONSTANT BOUNDARY_OPEN = 2u;   // no surface at all: everything goes on
+
+// What an instance does with the medium that a path is in, as constants above, and the media on its two sides.
+struct Boundary {
+    uint kind;     // one of the constants above
+    uint inside;   // index into the media, behind its front
+    uint outside;  // the same before it
+};
+
+// Open boundaries that a shadow ray may cross; behind more of them there is no light.
+SHARED_CONSTANT MAX_CROSSED_BOUNDARIES = 64u;
 
 // One placement of a mesh in the world.
 struct Instance {

@@ -46,6 +46,7 @@ vec3 refract_at_facet(ShadingData s, vec3 m) {
     return normalize(-contrast / (cos_m + eta_cos_m_t) * m - s.out_direction);
 }
 
+// Samples ω_i by a normal of the facets, or by the light below the coat.
 BsdfSample sample_microfacets(ShadingData s, inout uvec2 seed) {
     mat3 space = get_shading_space(s.normal);
     bool is_refracted = false;
@@ -67,6 +68,7 @@ BsdfSample sample_microfacets(ShadingData s, inout uvec2 seed) {
 }
 #endif
 
+// The density with which sample_bsdf() takes a direction, with respect to solid angle.
 float get_bsdf_density(ShadingData s, vec3 in_direction) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return get_microfacet_density(s, in_direction);
@@ -74,6 +76,7 @@ float get_bsdf_density(ShadingData s, vec3 in_direction) {
     return get_smooth_density(s, in_direction);
 }
 
+// Samples the next direction as the material scatters light, whatever it is.
 BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return sample_microfacets(s, seed);

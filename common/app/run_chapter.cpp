@@ -164,7 +164,8 @@ void print_warnings(const Chapter& chapter, const RenderJob& job) {
     const SceneFeatures features = features_of(*job.scene);
     const std::pair<bool, const char*> left_out[] = {
         {features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
-        {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"}};
+        {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"},
+        {features.media && !chapter.media, "media (fog, medium)"}};
     for (const auto& [is_left_out, what] : left_out) {
         if (!is_left_out) continue;
         const std::string scene = job.scene->file.string(), use = ": use a chapter that can render it, see ./lab run";

@@ -22,6 +22,7 @@ SceneFeatures features_of(const Scene& scene) {
     features.double_sided = !scene.double_sided.empty();
     features.transforms = std::any_of(scene.instances.begin(), scene.instances.end(), is_moved);
     features.microfacets = !scene.microfacets.empty();
+    features.media = !scene.media.empty();
     features.lens = scene.camera.aperture_diameter > 0;
     return features;
 }

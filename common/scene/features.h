@@ -20,6 +20,7 @@ struct SceneFeatures {
     bool transforms = false;    // some instance is moved, turned or scaled
     bool microfacets = false;   // the defines depend on the estimator, see GpuScene
     bool lens = false;          // the camera has an aperture
+    bool media = false;         // something scatters light between surfaces; the defines depend on the estimator, see GpuScene
 
     // FEATURE_VERTEX_NORMALS and so on, for the features present.
     std::vector<std::string> defines() const;

@@ -7,6 +7,7 @@
 #include "image/image_checks.h"
 #include "scene/coincident_lights.h"
 #include "scene/features.h"
+#include "scene/media.h"
 #include "scene/obj_file.h"
 #include "scene/scene_file.h"
 #include "scene/warnings.h"
@@ -97,6 +98,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
         }
     };
     load([&] { load_meshes(description, specular || description.specular, sources, scene); });
+    load([&] { add_media(description, scene); });
     scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
 
     if (!description.light_probe.empty()) {

@@ -18,11 +18,34 @@ glm::dmat4 read_rotation(const JsonObject& rotation) {
     return glm::rotate(glm::dmat4(1), glm::radians(degrees), axis);
 }
 
+Medium read_medium(const JsonObject& entry) {
+    Medium medium{};
+    const double extinction = entry.required("extinction", entry.number("extinction"));
+    if (!(extinction >= 0 && extinction <= 1e9)) entry.fail("extinction", "must be from 0 to 1e9 per unit of length");
+    medium.extinction = static_cast<float>(extinction);
+    medium.albedo = entry.required("albedo", entry.number_or_vector("albedo"));
+    if (glm::any(glm::lessThan(medium.albedo, vec3(0))) || glm::any(glm::greaterThan(medium.albedo, vec3(1))))
+        entry.fail("albedo", "must be from 0 to 1");
+    const double anisotropy = entry.number("anisotropy").value_or(0);
+    // Closer to 1, 32-bit numbers do not resolve the lobe.
+    if (!(std::abs(anisotropy) <= 0.999)) entry.fail("anisotropy", "must be from -0.999 to 0.999");
+    medium.anisotropy = static_cast<float>(anisotropy);
+    return medium;
+}
+
 // Scale acts on points first, so it is the last factor.
 MeshPlacement read_placement(const JsonObject& entry, const std::filesystem::path& folder) {
     MeshPlacement placement;
     placement.file = folder / entry.required("file", entry.text("file"));
     if (const auto materials = entry.text("materials")) placement.materials = folder / *materials;
+    if (entry.has("medium")) {
+        const JsonObject medium = entry.object("medium", {"extinction", "albedo", "anisotropy", "boundary"});
+        placement.medium = read_medium(medium);
+        if (const auto boundary = medium.text("boundary")) {
+            if (*boundary != "open") medium.fail("boundary", "can only be \"open\": leave it out where there is a surface");
+            placement.is_open = true;
+        }
+    }
     glm::dmat4 matrix(1);
     if (const auto translation = entry.vector("translation")) matrix = glm::translate(matrix, glm::dvec3(*translation));
     if (entry.has("rotation")) matrix = matrix * read_rotation(entry.object("rotation", {"axis", "degrees"}));
@@ -80,19 +103,21 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     const std::filesystem::path folder = file.parent_path();
     const nlohmann::json content = parse_json(name, files.read(file, max_json_bytes));
     const JsonObject root(content, name, "the scene",
-                          {"description", "meshes", "camera", "background", "specular", "multiple_scattering", "width", "height",
-                           "samples", "max_path_length"});
+                          {"description", "meshes", "camera", "background", "fog", "specular", "multiple_scattering", "width",
+                           "height", "samples", "max_path_length"});
     SceneDescription result;
     result.scene.description = root.text("description").value_or("");
     for (const nlohmann::json& entry : root.array("meshes"))
         result.meshes.push_back(read_placement(
-            {entry, name, "an entry of \"meshes\"", {"file", "materials", "scale", "rotation", "translation"}}, folder));
+            {entry, name, "an entry of \"meshes\"", {"file", "materials", "medium", "scale", "rotation", "translation"}},
+            folder));
     result.has_camera = root.has("camera");
     if (result.has_camera)
         result.scene.camera = read_camera(
             root.object("camera", {"position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance"}));
     if (root.has("background"))
         read_background(root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder, result);
+    if (root.has("fog")) result.fog = read_medium(root.object("fog", {"extinction", "albedo", "anisotropy"}));
     result.scene.multiple_scattering = root.boolean("multiple_scattering").value_or(false);
     result.specular = root.boolean("specular").value_or(false);
 

@@ -9,6 +9,8 @@ namespace lab {
 struct MeshPlacement {
     std::filesystem::path file;
     std::filesystem::path materials;  // instead of those that the mesh names; empty: those
+    std::optional<Medium> medium;     // inside
+    bool is_open = false;             // its surface is none, and only the medium ends there
     glm::dmat4x3 object_to_world{1};  // translation * rotation * scale
 };
 
@@ -16,6 +18,7 @@ struct MeshPlacement {
 struct SceneDescription {
     Scene scene;  // without the contents of those files
     std::vector<MeshPlacement> meshes;
+    std::optional<Medium> fog;
     std::filesystem::path light_probe;  // empty for a constant background
     bool has_camera = false;
     bool specular = false;

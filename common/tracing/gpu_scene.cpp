@@ -21,9 +21,10 @@ void require_visible(const Device& device, size_t texture_count) {
 
 }  // namespace
 
-GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets)
+GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets,
+                   bool handles_media)
     : scene_(&scene) {
-    const SceneArrays arrays(scene, strategy, samples_probe, handles_microfacets);
+    const SceneArrays arrays(scene, strategy, samples_probe, handles_microfacets, handles_media);
     defines_ = arrays.defines();
     // The driver builds its acceleration structure from the first two.
     vk::BufferUsageFlags build_input;

@@ -1,5 +1,6 @@
 #include "tracing/scene_arrays.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace lab {
@@ -8,7 +9,8 @@ std::string to_string(Strategy strategy) {
     return strategy == Strategy::both ? "both" : strategy == Strategy::light ? "light" : "bounces";
 }
 
-SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets) {
+SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets,
+                         bool handles_media) {
     const SceneFeatures features = features_of(scene);
     defines_ = features.defines();
     const auto add = [&](const char* name, uint32_t binding, const auto& data) {
@@ -23,6 +25,16 @@ SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_pro
         add("microfacets", BINDING_MICROFACETS, scene.microfacets);
         defines_.emplace_back("FEATURE_MICROFACETS");
         if (scene.multiple_scattering) defines_.emplace_back("FEATURE_MULTIPLE_SCATTERING");
+    }
+    if (features.media && handles_media) {
+        add("media", BINDING_MEDIA, scene.media);
+        defines_.emplace_back("FEATURE_MEDIA");
+        if (!scene.boundaries.empty()) {
+            add("boundaries of media", BINDING_BOUNDARIES, scene.boundaries);
+            defines_.emplace_back("FEATURE_BOUNDARIES");
+        }
+        if (std::ranges::any_of(scene.boundaries, [](const Boundary& boundary) { return boundary.kind == BOUNDARY_OPEN; }))
+            defines_.emplace_back("FEATURE_OPEN_BOUNDARIES");
     }
     if (features.vertex_normals) add("vertex normals", BINDING_NORMALS, scene.normals);
     if (features.textures) {

@@ -27,8 +27,8 @@ struct SceneArray {
 class SceneArrays {
   public:
     // Builds tables to sample lights from, unless only bounces find them; a light probe gets one if the estimator samples it.
-    // Materials have microfacets if the estimator handles them. The scene must outlive the result.
-    SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets);
+    // Materials have microfacets, and volumes media, if the estimator handles them. The scene must outlive the result.
+    SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets, bool handles_media);
     SceneArrays(const SceneArrays&) = delete;
     SceneArrays& operator=(const SceneArrays&) = delete;
 

@@ -16,6 +16,14 @@ layout(scalar, set = 0, binding = BINDING_MATERIALS) readonly buffer Materials {
 #ifdef FEATURE_MICROFACETS
 layout(scalar, set = 0, binding = BINDING_MICROFACETS) readonly buffer MicrofacetsOfMaterials { Microfacets microfacets[]; };
 #endif
+// Media, the first of which lies outside of all boundaries.
+#ifdef FEATURE_MEDIA
+layout(scalar, set = 0, binding = BINDING_MEDIA) readonly buffer Media { Medium media[]; };
+#endif
+// What lies on the two sides of each instance.
+#ifdef FEATURE_BOUNDARIES
+layout(scalar, set = 0, binding = BINDING_BOUNDARIES) readonly buffer Boundaries { Boundary boundaries[]; };
+#endif
 #ifdef FEATURE_VERTEX_NORMALS
 layout(scalar, set = 0, binding = BINDING_NORMALS) readonly buffer Normals { vec3 normals[]; };
 #endif

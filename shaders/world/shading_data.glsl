@@ -60,7 +60,7 @@ float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
 }
 
 #ifdef WORLD_TRIANGLES
-// The same as below, from a table that world_triangles.comp has filled.
+// Interpolates the vertices of the hit triangle, which world_triangles.comp has put into a table. The normal points to the front.
 SurfacePoint get_surface_point(Hit hit) {
     WorldTriangle triangle = world_triangles[first_world_triangles[hit.instance] + hit.triangle];
     vec3 w = get_vertex_weights(hit);

@@ -37,7 +37,7 @@ class SceneFiles(ProgramTest):
         self.refuse("", "scene")
 
     def test_a_misspelt_scene_lists_all(self):
-        self.refuse("cornel_box", "cornel_box: there is no such scene", "cornell_box, focus, furnace, glass,", "torus")
+        self.refuse("cornel_box", "cornel_box: there is no such scene", "cornell_box, focus, fog, furnace, glass,", "torus")
 
     def test_neither_scene_nor_mesh(self):
         self.write("picture.png", b"\x89PNG")
@@ -102,6 +102,8 @@ class SceneFiles(ProgramTest):
             "camera.vertical_fov": (0, 180, -30, "wide", 1e300),
             "camera.aperture_diameter": (-0.1, "wide", 1e300, None, [0.1]),
             "camera.focus_distance": (0, -1, "far", 1e300, 1e-60),
+            "fog": (1, {}, {"extinction": -1, "albedo": 1}, {"extinction": 1, "albedo": 2}, {"extinction": "1", "albedo": 1}),
+            "meshes.0.medium": (1, {}, {"extinction": 1, "albedo": 1, "boundary": "closed"}),
             "background": (1, [1, 1, 1], {}, {"radiance": [1, 1, -1]}, {"light_probe": "nowhere.hdr"}),
             "width": (0, -1, 1.5, "big", 1e9, 100000000000000),
             "samples": (0, -1, 1.5, "many"),

@@ -159,6 +159,12 @@ class Views(RenderTest):
                                size=(16, 16), program=BINARIES / "12_lens")
         self.assertAlmostEqual(picture.channels["R"][8 * 16 + 8], 0.5 * (3 - 2) / 3 / (4 * math.tan(math.radians(20)) / 16), delta=0.01)
 
+    def test_chapters_without_media_say_so(self):
+        _, _, err = self.run_program("fog", "--samples=1", "--width=8", "--height=8", "--headless", "--output=a.exr",
+                                     program=BINARIES / "12_lens")
+        self.assertIn("leaves out its media", err)
+        self.assert_refused(["fog", "--report=r.json", "--headless"], "cannot render the media", program=BINARIES / "12_lens")
+
     def test_chapters_without_a_lens_say_so(self):
         code, _, err = self.run_program("quad.json", "--aperture-diameter=0.1", "--samples=1", "--headless", "--output=a.exr")
         self.assertEqual(code, 0)

@@ -73,6 +73,7 @@ SCENE = {
     "description": "one", "meshes": [{"file": "quad.obj", "rotation": {"axis": [0, 1, 0], "degrees": 30}}],
     "camera": {"position": [0, 0, 3], "target": [0, 0, 0]}, "background": {"radiance": [1, 1, 1]},
 }
+FOG = {"extinction": 1, "albedo": 1}
 PROBE = {"light_probe": "quad.obj", "intensity": 2}  # of which only the name and the bytes are read
 KEYS = {
     "description": ("description", "two"), "meshes": ("meshes", 2 * SCENE["meshes"]), "camera": ("camera", None),
@@ -84,6 +85,9 @@ KEYS = {
     "translation": ("meshes/0/translation", [1, 0, 0]), "axis": ("meshes/0/rotation/axis", [1, 0, 0]),
     "degrees": ("meshes/0/rotation/degrees", 40), "position": ("camera/position", [0, 1, 3]),
     "target": ("camera/target", [0, 1, 0]), "up": ("camera/up", [1, 0, 0]), "vertical_fov": ("camera/vertical_fov", 50),
+    "fog": ("fog", FOG), "extinction": ("fog", {**FOG, "extinction": 2}), "albedo": ("fog", {**FOG, "albedo": 0.5}),
+    "anisotropy": ("fog", {**FOG, "anisotropy": 0.5}), "medium": ("meshes/0/medium", FOG),
+    "boundary": ("meshes/0/medium", {**FOG, "boundary": "open"}),
     "aperture_diameter": ("camera/aperture_diameter", 0.1), "focus_distance": ("camera/focus_distance", 2),
     "radiance": ("background/radiance", 0.5), "light_probe": ("background", PROBE),
     "intensity": ("background", {**PROBE, "intensity": 3}), "rotation_degrees": ("background", {**PROBE, "rotation_degrees": 90}),
@@ -161,8 +165,8 @@ class WhatChaptersReadTest(ProgramTest):
                 entry = scene
                 for part in filter(None, place.split("/")):
                     entry = entry[int(part) if part.isdigit() else part]
-                entry["fog"] = 1
-                with self.assertRaisesRegex(UserError, r'scene.json: .*"fog"'):
+                entry["mist"] = 1
+                with self.assertRaisesRegex(UserError, r'scene.json: .*"mist"'):
                     self.read(scene)
 
     def test_several_scatterings_of_smooth_surfaces_are_none(self):

@@ -46,7 +46,8 @@ const std::map<std::string, Needs>& needs_of_features() {
         {"absorption", {.functions = dielectric.functions, .material_members = {"refractive_index", "absorption"}}},
         {"transforms", {.bindings = {BINDING_INSTANCES}}},
         {"microfacets", {.bindings = {BINDING_MICROFACETS}, .functions = {"get_facet_distribution", "get_fresnel_reflectance"}}},
-        {"lens", {.functions = {"sample_disc"}}}};
+        {"lens", {.functions = {"sample_disc"}}},
+        {"media", {.bindings = {BINDING_MEDIA}, .functions = {"sample_phase"}}}};
     return needs;
 }
 
@@ -111,7 +112,8 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
             needs.functions.erase("choose_probe_cell");
         }
         const bool has_no_use = (feature.name == "microfacets" && !handles_microfacets(GetParam())) ||
-                                (feature.name == "lens" && !load_chapter(GetParam()).lens);
+                                (feature.name == "lens" && !load_chapter(GetParam()).lens) ||
+                                (feature.name == "media" && !load_chapter(GetParam()).media);
         if (has_no_use) needs = {};
         Scene scene = bare_scene();
         feature.add(scene);

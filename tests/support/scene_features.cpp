@@ -62,6 +62,8 @@ void add_microfacets(Scene& scene) {
 
 void add_lens(Scene& scene) { scene.camera.aperture_diameter = 0.1f; }
 
+void add_medium(Scene& scene) { scene.media = {{0.1f, vec3(0.5f), 0}}; }
+
 void add_transform(Scene& scene) { scene.instances.front().object_to_world[3] += vec3(0, 1e-3f, 0); }
 
 }  // namespace
@@ -77,7 +79,8 @@ const std::vector<SceneFeature>& all_scene_features() {
                                                     {"absorption", add_absorption},
                                                     {"transforms", add_transform},
                                                     {"microfacets", add_microfacets},
-                                                    {"lens", add_lens}};
+                                                    {"lens", add_lens},
+                                                    {"media", add_medium}};
     return features;
 }
 

@@ -163,7 +163,8 @@ TEST_F(SceneFile, MaterialsMayReplaceThoseOfAMesh) {
 TEST_F(SceneFile, UnknownKeysAreNamedWithTheKnownOnes) {
     const std::pair<const char*, const char*> cases[] = {
         {R"({"meshes": [], "sample": 4})", "known keys are description, meshes, camera"},
-        {R"({"meshes": [{"file": "a.obj", "scaling": 1}]})", "known keys are file, materials, scale, rotation, translation"},
+        {R"({"meshes": [{"file": "a.obj", "scaling": 1}]})",
+         "known keys are file, materials, medium, scale, rotation, translation"},
         {R"({"meshes": [{"file": "a.obj", "rotation": {"angle": 1}}]})", "known keys are axis, degrees"},
         {R"({"meshes": [], "camera": {"fov": 1}})", "known keys are position, target, up, vertical_fov"},
         {R"({"meshes": [], "background": {"color": 1}})", "known keys are radiance, light_probe, intensity"},

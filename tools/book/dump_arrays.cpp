@@ -65,7 +65,8 @@ RenderParameters picture(const Chapter& chapter, const Scene& scene, Options opt
 void dump(const std::string& file, const Chapter& chapter, const Options& options) {
     const Scene scene = load_scene(options.scene.file, options.scene.specular);
     const RenderParameters parameters = picture(chapter, scene, options);
-    const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets);
+    const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets,
+                             chapter.media);
     const Bvh bvh = build_bvh(world_triangles(scene));
 
     Dump dump(file);

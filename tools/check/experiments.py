@@ -16,7 +16,7 @@ from references.images import read_rgb
 from report.measurement import new_case, run_case
 
 EXPERIMENTS = "experiments.json"  # in the chapters' folders
-OF_THE_SCENE = ("specular", "multiple_scattering")  # keys of a scene file that an experiment may also have
+OF_THE_SCENE = ("specular", "multiple_scattering", "fog")  # keys of a scene file that an experiment may also have
 SIZE = 32  # pixels per row and per column
 CAMERA = {"from": [0.0, 1.2, 1.2], "to": [0.0, 0.0, 0.0], "fov": 3.0}
 BLOCKS = 16  # of pixels: their spread gives the error of a variance

@@ -113,6 +113,11 @@ def make_light_probe(scene):
     return {"type": "envmap", "bitmap": mi.Bitmap(np.ascontiguousarray(fine)), "to_world": turn}
 
 
+def make_medium(medium, unit):
+    return {"type": "homogeneous", "albedo": colour(np.broadcast_to(medium["albedo"], 3)), "sigma_t": medium["extinction"] / unit,
+            "phase": {"type": "hg", "g": medium["anisotropy"]}}
+
+
 def make_camera(scene, width, height, unit, sampler):
     position, target, up = unit * scene.camera["position"], unit * scene.camera["target"], scene.camera["up"]
     forward = (target - position) / np.linalg.norm(target - position)
@@ -136,10 +141,12 @@ def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False,
     """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself where
     nothing emits, and not at all on lights: nearly the same picture, without Python during the render."""
     absorbs = any(surface.material.absorption.any() for surface in scene.surfaces)
-    integrator = "volpath" if absorbs else "path"
+    integrator = "volpath" if absorbs or scene.fog else "path"
     unit = unit_length(scene)
     content = {"type": "scene", "sensor": make_camera(scene, width, height, unit, sampler),
                "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30}}
+    if scene.fog:  # a ray that starts in a medium stays there until it crosses a boundary
+        content["sensor"]["medium"] = make_medium(scene.fog, unit)
     for i, surface in enumerate(scene.surfaces):
         content[f"surface_{i}"] = make_mesh(surface, unit, own_normals)
     if scene.light_probe:

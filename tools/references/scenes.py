@@ -49,6 +49,7 @@ class Surface:
 class Scene:
     surfaces: list
     camera: dict  # position, target, up, vertical_fov in degrees, aperture_diameter, focus_distance (0: that of the target)
+    fog: dict | None  # extinction, albedo, anisotropy
     background: np.ndarray  # radiance, or factor of the light probe
     light_probe: Path | None
     probe_rotation: float  # degrees
@@ -111,6 +112,8 @@ def triple(value):
 
 def placement_matrix(path, entry):
     """Scale, then rotation, then translation."""
+    if "medium" in entry:
+        raise UserError(f'{path}: references do not know the "medium" of a mesh, nor its "boundary": leave it out')
     only(path, entry, "file", "materials", "scale", "rotation", "translation")
     matrix = np.eye(4)
     matrix[:3, :3] = np.diag(triple(entry.get("scale", 1)))
@@ -150,7 +153,7 @@ def read_scene(path):
     path = Path(path)
     files = SourceFiles()
     try:
-        root = only(path, read_description(path, files), "description", "meshes", "camera", "background", "specular",
+        root = only(path, read_description(path, files), "description", "meshes", "camera", "background", "fog", "specular",
                     "multiple_scattering", "width", "height", "samples", "max_path_length")
         meshes, indices, placements = [], {}, []
         for entry in root["meshes"]:
@@ -183,7 +186,8 @@ def read_scene(path):
                   **(root.get("camera") or framing_camera(meshes, placements))}
         camera = {key: np.asarray(value, float) for key, value in
                   only(path, camera, "position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance").items()}
-        return Scene(surfaces, camera,
+        fog = root.get("fog") and only(path, root["fog"], "extinction", "albedo", "anisotropy")
+        return Scene(surfaces, camera, fog and {"anisotropy": 0, **fog},
                      triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
                      root.get("width", 512), root.get("height", 512), root.get("max_path_length", 8),
                      f"{files.hash:x}")

@@ -1,0 +1,109 @@
+// What light meets in a medium: free flights, the phase function, and which medium is where.
+
+// A free flight, with the density σ_t exp(-σ_t t) with respect to length. A vacuum has no end.
+float sample_flight(Medium medium, inout uvec2 seed) {
+    float u = get_random_numbers(seed).x;
+    return medium.extinction > 0.0 ? min(-log(1.0 - u) / medium.extinction, NO_LIMIT) : NO_LIMIT;
+}
+
+// The phase function of Henyey and Greenstein ("Diffuse radiation in the Galaxy", 1941), for light that travels along one unit
+// direction and then along the other: (1 - g²) / (4π (1 + g² - 2 g cos θ)^(3/2)). It integrates to 1 over all directions. The
+// squared difference of the directions is 2 - 2 cos θ, and exact where θ is small.
+float get_phase(Medium medium, vec3 before, vec3 after) {
+    float g = abs(medium.anisotropy);
+    vec3 difference = (medium.anisotropy < 0.0 ? -before : before) - after;
+    float square = (1.0 - g) * (1.0 - g) + g * dot(difference, difference);
+    return (1.0 - g) * (1.0 + g) / (4.0 * PI * square * sqrt(square));
+}
+
+// A unit direction with the density get_phase() with respect to solid angle. The inverse of its distribution function, solved for
+// 1 - cos θ, holds at g = 0, too.
+vec3 sample_phase(Medium medium, vec3 before, vec2 u) {
+    float g = abs(medium.anisotropy);
+    float d = 1.0 - g + 2.0 * g * (1.0 - u.x);
+    float one_minus_cos = (1.0 - g) * (1.0 - g) * u.x * (1.0 + g + d) / (d * d);
+    float sin_theta = sqrt(max(one_minus_cos * (2.0 - one_minus_cos), 0.0));
+    float phi = 2.0 * PI * u.y;
+    vec3 forward = medium.anisotropy < 0.0 ? -before : before;
+    return get_shading_space(forward) * vec3(cos(phi) * sin_theta, sin(phi) * sin_theta, 1.0 - one_minus_cos);
+}
+
+// A point of a medium as shading data: it has no normal, and a ray can start exactly there.
+ShadingData get_medium_point(vec3 position, vec3 ray_direction) {
+    ShadingData s;
+    s.position = position;
+    s.out_direction = -ray_direction;
+    s.normal = vec3(0.0);
+    s.geometric_normal = vec3(0.0);
+    s.offset = 0.0;
+    s.is_dielectric = false;
+    return s;
+}
+bool is_in_medium(ShadingData s) { return s.normal == vec3(0.0); }
+
+// The media on the two sides of what a path meets, as indices: on the ray's side and beyond. They differ at boundaries only.
+struct Sides {
+    uint here;
+    uint beyond;
+};
+
+// A ray knows its medium only from its path, or from the next boundary, as here. An opaque surface has the same on both sides.
+Sides get_sides(Hit hit, vec3 ray_direction, uint medium) {
+    Sides sides = Sides(medium, medium);
+#ifdef FEATURE_BOUNDARIES
+    Boundary boundary = boundaries[hit.instance];
+    bool is_front = dot(get_surface_point(hit).geometric_normal, ray_direction) < 0.0;
+    if (boundary.kind != BOUNDARY_NONE)
+        sides = is_front ? Sides(boundary.outside, boundary.inside) : Sides(boundary.inside, boundary.outside);
+#endif
+    return sides;
+}
+
+// The medium at a direction's origin on a surface or in a medium.
+uint get_side(Sides sides, ShadingData s, vec3 direction) {
+    return dot(s.geometric_normal, direction) < 0.0 ? sides.beyond : sides.here;
+}
+
+bool is_open_boundary(Hit hit) {
+#ifdef FEATURE_OPEN_BOUNDARIES
+    return boundaries[hit.instance].kind == BOUNDARY_OPEN;
+#else
+    return false;
+#endif
+}
+
+// The medium where a camera ray starts: the one on this side of the next boundary, behind all that stands in front of it.
+uint find_medium(Ray ray) {
+#ifdef FEATURE_BOUNDARIES
+    Hit hit;
+    for (uint i = 0u; i < MAX_CROSSED_BOUNDARIES && trace_ray(ray, NO_LIMIT, hit); ++i) {
+        if (boundaries[hit.instance].kind != BOUNDARY_NONE) return get_sides(hit, ray.direction, 0u).here;
+        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+    }
+#endif
+    return 0u;
+}
+
+// The fraction of light that gets through, from the ray's origin to t_max, by Beer's law: 0 behind a surface. It goes on through
+// open boundaries.
+float get_transmittance(Ray ray, float t_max, uint medium) {
+    float size = length(ray.direction);
+#ifdef FEATURE_OPEN_BOUNDARIES
+    float depth = 0.0;  // ∫ σ_t dt so far
+    vec3 end = ray.origin + ray.direction;
+    for (uint i = 0u; i < MAX_CROSSED_BOUNDARIES; ++i) {
+        Hit hit;
+        if (!trace_ray(ray, t_max, hit)) return exp(-(depth + media[medium].extinction * t_max * size));
+        if (!is_open_boundary(hit)) return 0.0;
+        depth += media[medium].extinction * hit.distance * size;
+        medium = get_sides(hit, ray.direction, medium).beyond;
+        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+        // A ray that ends at a point still ends there.
+        if (t_max < NO_LIMIT) ray.direction = end - ray.origin;
+        size = length(ray.direction);
+    }
+    return 0.0;
+#else
+    return is_occluded(ray, t_max) ? 0.0 : exp(-media[medium].extinction * t_max * size);
+#endif
+}

@@ -1,0 +1,78 @@
+#include "scene/media.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+
+dvec3 world_corner(const Scene& scene, uint32_t instance, uint32_t triangle, int corner) {
+    return glm::dmat4x3(scene.instances[instance].object_to_world) * glm::dvec4(scene.corner(triangle, corner), 1);
+}
+
+// The solid angle of a triangle seen from the origin, with a sign (van Oosterom and Strackee 1983).
+double solid_angle(const dvec3& a, const dvec3& b, const dvec3& c) {
+    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+    return 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                          la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+}
+
+// Whether a closed instance is wound around a point. Mirrored instances are wound the other way.
+bool encloses(const Scene& scene, uint32_t instance, const dvec3& point) {
+    double sum = 0;
+    for (const uint32_t triangle : scene.mesh_of(instance).triangles()) {
+        const auto corner = [&](int i) { return world_corner(scene, instance, triangle, i) - point; };
+        sum += solid_angle(corner(0), corner(1), corner(2));
+    }
+    return std::abs(sum) > 2 * 3.14159265358979;
+}
+
+// Throws UserError if light cannot get into a medium, or would be dimmed there in two ways.
+void check_surface(const MeshPlacement& placement, const Scene& scene, const Mesh& mesh) {
+    const auto refuse = [&](const char* why) { throw UserError(placement.file.string() + ": its medium " + why); };
+    if (!placement.is_open && mesh.dielectric_count == 0)
+        refuse("lies behind an opaque surface: make it glass (d 0), or its \"boundary\" \"open\"");
+    for (const uint32_t triangle : mesh.triangles()) {
+        const Material& material = scene.material_of(triangle);
+        if (placement.is_open && material.emission != vec3(0)) refuse("has an open boundary, which cannot emit: remove Ke");
+        if (!placement.is_open && material.absorption != vec3(0)) refuse("lies in absorbing glass: remove Tf, or the medium");
+    }
+}
+
+}  // namespace
+
+void add_media(const SceneDescription& description, Scene& scene) {
+    const auto& placements = description.meshes;
+    if (!description.fog && std::ranges::none_of(placements, [](const auto& placement) { return placement.medium.has_value(); }))
+        return;
+    scene.media.push_back(description.fog.value_or(Medium{}));
+    const auto count = static_cast<uint32_t>(placements.size());
+    scene.boundaries.assign(count, {BOUNDARY_NONE, 0, 0});
+    for (uint32_t i = 0; i < count; ++i) {
+        const Mesh& mesh = scene.mesh_of(i);
+        if (placements[i].medium) check_surface(placements[i], scene, mesh);
+        if (!placements[i].medium && mesh.dielectric_count == 0) continue;
+        scene.boundaries[i] = {placements[i].is_open ? BOUNDARY_OPEN : BOUNDARY_GLASS, static_cast<uint32_t>(scene.media.size()),
+                               0};
+        scene.media.push_back(placements[i].medium.value_or(Medium{}));
+    }
+    // Outside of a boundary is the innermost of those that enclose it: the one that most others enclose.
+    std::vector<std::vector<uint32_t>> around(count);
+    for (uint32_t i = 0; i < count; ++i)
+        for (uint32_t j = 0; j < count && scene.boundaries[i].kind != BOUNDARY_NONE; ++j)
+            if (i != j && scene.boundaries[j].kind != BOUNDARY_NONE &&
+                encloses(scene, j, world_corner(scene, i, scene.mesh_of(i).first_triangle, 0)))
+                around[i].push_back(j);
+    for (uint32_t i = 0; i < count; ++i)
+        if (!around[i].empty())
+            scene.boundaries[i].outside =
+                scene.boundaries[std::ranges::max(around[i], {}, [&](uint32_t j) { return around[j].size(); })].inside;
+    if (std::ranges::all_of(scene.boundaries, [](const Boundary& boundary) { return boundary.kind == BOUNDARY_NONE; }))
+        scene.boundaries.clear();
+}
+
+}  // namespace lab

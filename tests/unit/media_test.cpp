@@ -1,0 +1,96 @@
+// Media in scene files: their keys, and which medium is on which side of a mesh.
+#include "scene/features.h"
+#include "scene/scene.h"
+#include "test_files.h"
+
+namespace lab {
+namespace {
+
+using testing::IsSubstring;
+
+const std::string glass = "newmtl m\nd 0\nNi 1.5\n", opaque = "newmtl m\nKd 1 1 1\n";
+
+// A tetrahedron around the origin with an inscribed sphere of radius 1/√3.
+const std::string tetrahedron =
+    "mtllib m.mtl\nv 1 1 1\nv 1 -1 -1\nv -1 1 -1\nv -1 -1 1\nusemtl m\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+
+class MediaFile : public testing::Test {
+  protected:
+    Scene load(const std::string& meshes, const std::string& keys = "", const std::string& material = opaque) const {
+        folder.write("m.mtl", material);
+        folder.write("a.obj", tetrahedron);
+        return load_scene(folder.write("scene.json", "{\"meshes\": [" + meshes + "]" + keys + "}"));
+    }
+    void expect_refused(const std::string& meshes, const std::string& keys, const std::string& reason,
+                        const std::string& material = opaque) const {
+        EXPECT_USER_ERROR(load(meshes, keys, material), reason);
+    }
+
+    TestFolder folder;
+};
+
+const std::string plain = R"({"file": "a.obj"})";
+std::string placed(const std::string& keys) { return R"({"file": "a.obj", )" + keys + "}"; }
+std::string open(const std::string& extinction, const std::string& keys = "") {
+    return placed(R"("medium": {"extinction": )" + extinction + R"(, "albedo": 0.5, "boundary": "open"})" + keys);
+}
+
+TEST_F(MediaFile, AreAbsentUnlessAsked) {
+    const Scene scene = load(plain);
+    EXPECT_TRUE(scene.media.empty());
+    EXPECT_TRUE(scene.boundaries.empty());
+    EXPECT_FALSE(features_of(scene).media);
+}
+
+TEST_F(MediaFile, StateTheFog) {
+    const Scene scene = load(plain, R"(, "fog": {"extinction": 0.5, "albedo": [0.1, 0.2, 0.3], "anisotropy": -0.4})");
+    ASSERT_EQ(scene.media.size(), 1u);
+    EXPECT_EQ(scene.media[0].extinction, 0.5f);
+    EXPECT_EQ(scene.media[0].albedo, vec3(0.1f, 0.2f, 0.3f));
+    EXPECT_EQ(scene.media[0].anisotropy, -0.4f);
+    EXPECT_TRUE(scene.boundaries.empty()) << "it ends nowhere";
+    EXPECT_TRUE(features_of(scene).media);
+}
+
+// Nested in any order, by any number of meshes, and past one that is not around them.
+TEST_F(MediaFile, KnowWhatLiesAroundThem) {
+    const Scene scene =
+        load(open("3", R"(, "scale": 0.05)") + ", " + open("1") + ", " + open("4", R"(, "translation": [9, 0, 0])") + ", " +
+                 open("2", R"(, "scale": [-0.3, 0.3, 0.3])") + ", " + plain,
+             R"(, "fog": {"extinction": 7, "albedo": 1})");
+    const auto extinctions = [&](uint32_t instance) {
+        const Boundary& boundary = scene.boundaries.at(instance);
+        return std::pair(scene.media.at(boundary.inside).extinction, scene.media.at(boundary.outside).extinction);
+    };
+    EXPECT_EQ(extinctions(0), std::pair(3.0f, 2.0f));
+    EXPECT_EQ(extinctions(1), std::pair(1.0f, 7.0f));
+    EXPECT_EQ(extinctions(2), std::pair(4.0f, 7.0f));
+    EXPECT_EQ(extinctions(3), std::pair(2.0f, 1.0f));
+    EXPECT_EQ(scene.boundaries[4].kind, BOUNDARY_NONE);
+}
+
+TEST_F(MediaFile, FillGlass) {
+    const Scene scene = load(plain, R"(, "fog": {"extinction": 7, "albedo": 1})", glass);
+    EXPECT_EQ(scene.boundaries.at(0).kind, BOUNDARY_GLASS);
+    EXPECT_EQ(scene.media.at(scene.boundaries[0].inside).extinction, 0) << "clear glass displaces the fog";
+}
+
+TEST_F(MediaFile, ThatCannotBeAreRefused) {
+    const auto fog = [](const std::string& keys) { return R"(, "fog": {)" + keys + "}"; };
+    expect_refused(plain, fog(R"("albedo": 1)"), "\"extinction\" in \"fog\" is missing");
+    expect_refused(plain, fog(R"("extinction": 1)"), "\"albedo\" in \"fog\" is missing");
+    expect_refused(plain, fog(R"("extinction": -1, "albedo": 1)"), "from 0 to 1e9");
+    expect_refused(plain, fog(R"("extinction": 1e10, "albedo": 1)"), "from 0 to 1e9");
+    expect_refused(plain, fog(R"("extinction": 1, "albedo": 1.1)"), "\"albedo\" in \"fog\" must be from 0 to 1");
+    expect_refused(plain, fog(R"("extinction": 1, "albedo": [0, -0.1, 0])"), "from 0 to 1");
+    expect_refused(plain, fog(R"("extinction": 1, "albedo": 1, "anisotropy": 1)"), "from -0.999 to 0.999");
+    expect_refused(plain, fog(R"("extinction": 1, "albedo": 1, "boundary": "open")"), "unknown key");
+    expect_refused(placed(R"("medium": {"extinction": 1, "albedo": 1, "boundary": "closed"})"), "", "can only be \"open\"");
+    const std::string filled = placed(R"("medium": {"extinction": 1, "albedo": 1})");
+    expect_refused(filled, "", "behind an opaque surface");
+    expect_refused(filled, "", "absorbing glass", glass + "Tf 0.5 1 1\n");
+    expect_refused(open("1"), "", "cannot emit", "newmtl m\nKe 1 1 1\n");
+}
+
+}  // namespace
+}  // namespace lab
