@@ -147,8 +147,8 @@ struct LightTriangle {
 struct LightNode {
     vec3 centre;       // of a sphere around its triangles, in world space
     float radius;      // of the sphere, in scene units
-    vec3 axis;         // of a cone around its triangles' normals, unit length
-    float cos_spread;  // cosine of the largest angle between the axis and a normal
+    vec3 mean_normal;  // of its triangles, weighted by power: shorter than 1 where they disagree
+    float spread;      // the largest distance between it and the unit normal of a triangle
     float power;  // area times luminance, as a share of the scene's; times the root's radius², so that no quotient leaves the
                   // range of float
     uint child;   // index of its first child, which the second follows; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle

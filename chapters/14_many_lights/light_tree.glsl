@@ -24,41 +24,34 @@ void set_receiver(ShadingData s) {
 
 #ifdef FEATURE_LIGHT_TREE
 
-// The cosine of max(0, a - b), where b is an angle of at most π/2 whose sine is known, too. Of 0 up to the angle b, every
-// direction could be meant, so the cosine is 1 there.
-float get_cos_beyond(float cos_a, float cos_b, float sin_b) {
-    if (cos_a >= cos_b) return 1.0;
-    return cos_a * cos_b + sqrt(max(1.0 - cos_a * cos_a, 0.0)) * sin_b;
+// The least squared distance that counts, as a multiple of a node's squared radius. Measured: smaller ones make clusters around a
+// point too likely, larger ones those on their other side too unlikely.
+const float LEAST_SQUARE = 0.15;
+
+// The mean of max(h, 0) over heights h that lie evenly between middle - width and middle + width.
+float get_mean_height(float middle, float width) {
+    float above = max(middle + width, 0.0);
+    return middle >= width ? middle : above * above / (4.0 * width);
 }
 
-// An estimate of the light that a point gets from the node's triangles, if nothing is in between. 0 only where none can arrive.
+// An estimate of the light that a point gets from the node's triangles, if nothing is in between: power · cos θ' · cos θ / r².
+// Every cosine is a height over a plane, divided by the distance: the point's height over the triangles' planes, and theirs over
+// the point's. Where these differ we take a mean, so it is 0 only where no light can arrive.
 float get_importance(LightNode node, Receiver x) {
     vec3 to_node = node.centre - x.position;
-    float distance = length(to_node);
-    // Within the sphere, light may come from anywhere.
-    if (distance <= node.radius) return node.power / (node.radius * node.radius);
-
-    // From x_k the sphere fills a cone about ω with this half angle, or a little less than we say because of rounding errors.
-    vec3 omega = to_node / distance;
-    float sin_size = min(node.radius / distance + 8.0 * ROUNDING, 1.0), cos_size = sqrt(1.0 - sin_size * sin_size);
-
-    // The smallest angle θ' that a triangle's normal may have to the direction from it to x_k. The angle to the axis comes
-    // first, then the cone of normals takes some of it, and the size of the sphere takes more.
-    float sin_spread = sqrt(max(1.0 - node.cos_spread * node.cos_spread, 0.0));
-    float cos_light = get_cos_beyond(-dot(node.axis, omega), node.cos_spread, sin_spread);
-    cos_light = get_cos_beyond(cos_light, cos_size, sin_size);
-    if (cos_light <= 0.0) return 0.0;
-
-    // The smallest angle θ at x_k.
-    float cos_surface = x.normal == vec3(0.0) ? 1.0 : get_cos_beyond(dot(x.normal, omega), cos_size, sin_size);
-    return node.power * cos_light * max(cos_surface, 0.0) / (distance * distance);
+    float square = dot(to_node, to_node), distance = sqrt(square);
+    float rounding = 8.0 * ROUNDING * distance;
+    float light_height = get_mean_height(-dot(node.mean_normal, to_node), node.radius + node.spread * distance + rounding);
+    float height = x.normal == vec3(0.0) ? distance : get_mean_height(dot(x.normal, to_node), node.radius + rounding);
+    // Within the sphere the distance to its centre says little.
+    square = max(square, LEAST_SQUARE * node.radius * node.radius);
+    return node.power * (light_height / square) * (height / square);
 }
 
-// The probability of the first of two children, given that one is chosen. `is_dead_end` says that neither can be.
-float get_first_probability(uint child, Receiver x, out bool is_dead_end) {
-    float first = get_importance(light_nodes[child], x), second = get_importance(light_nodes[child + 1u], x);
-    is_dead_end = first + second == 0.0;
-    return first / (first + second);
+// The probability of the first of two children, given that one is chosen. Where no light arrives from either, any will do.
+float get_first_probability(uint child, Receiver x) {
+    float first = get_importance(light_nodes[child], x), sum = first + get_importance(light_nodes[child + 1u], x);
+    return sum > 0.0 ? first / sum : 0.5;
 }
 
 // Decides with the given probability by a number in [0,1) of 64 binary digits, and turns its position within the part that was
@@ -91,9 +84,7 @@ LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
     float probability = 1.0;
     uint child = light_nodes[0].child;
     while (child < IS_LIGHT_LEAF) {
-        bool is_dead_end;
-        float first_probability = get_first_probability(child, receiver, is_dead_end);
-        if (is_dead_end) return LightTriangle(0u, 0u, 0u, 0u, 0.0);
+        float first_probability = get_first_probability(child, receiver);
         bool is_first = decide(first_probability, digits);
         probability *= is_first ? first_probability : 1.0 - first_probability;
         child = light_nodes[is_first ? child : child + 1u].child;
@@ -108,10 +99,8 @@ LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
 float get_tree_probability(uint trail) {
     float probability = 1.0;
     uint child = light_nodes[0].child;
-    for (; child < IS_LIGHT_LEAF && probability > 0.0; trail >>= 1u) {
-        bool is_dead_end;
-        float first_probability = get_first_probability(child, receiver, is_dead_end);
-        if (is_dead_end) return 0.0;
+    for (; child < IS_LIGHT_LEAF; trail >>= 1u) {
+        float first_probability = get_first_probability(child, receiver);
         bool is_first = (trail & 1u) == 0u;
         probability *= is_first ? first_probability : 1.0 - first_probability;
         child = light_nodes[is_first ? child : child + 1u].child;

@@ -134,15 +134,18 @@ class Builder {
 
     LightNode get_node(const Cluster& cluster, std::span<const Light> lights) const {
         const vec3 centre(0.5 * (cluster.low + cluster.high));
-        const double length = glm::length(cluster.normal_sum);
-        const vec3 axis(length > 0 ? cluster.normal_sum / length : lights[0].normal);
-        double cosine = 1;
-        for (const Light& light : lights) cosine = std::min(cosine, glm::dot(dvec3(axis), light.normal));
-        const double radius = glm::length(cluster.high - dvec3(centre));
+        const vec3 mean_normal(cluster.power > 0 ? cluster.normal_sum / cluster.power : lights[0].normal);
+        double radius = 0, spread = 0;
+        for (const Light& light : lights) {
+            const dvec3 corner = glm::max(glm::abs(light.low - dvec3(centre)), glm::abs(light.high - dvec3(centre)));
+            radius = std::max(radius, glm::dot(corner, corner));
+            const dvec3 difference = light.normal - dvec3(mean_normal);
+            spread = std::max(spread, glm::dot(difference, difference));
+        }
         return {.centre = centre,
-                .radius = static_cast<float>((1 + shader_rounding) * radius),
-                .axis = axis,
-                .cos_spread = static_cast<float>(std::max(cosine - shader_rounding, -1.0)),
+                .radius = static_cast<float>((1 + shader_rounding) * std::sqrt(radius)),
+                .mean_normal = mean_normal,
+                .spread = static_cast<float>(std::sqrt(spread) + shader_rounding),
                 .power = static_cast<float>(unit_ * cluster.power),
                 .child = 0};
     }

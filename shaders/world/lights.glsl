@@ -49,9 +49,7 @@ LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
     Material material = materials[triangle_materials[light.triangle]];
     float light_density = material.light_density;
 #ifdef FEATURE_LIGHT_TREE
-    // It depends on where the light arrives. A light that emits nothing stands for none.
-    light_density = 1.0 / light.inverse_density;
-    if (light.inverse_density == 0.0) point.geometric_normal = vec3(0.0);
+    light_density = 1.0 / light.inverse_density;  // it depends on where the light arrives
 #endif
     return LightPoint(point.position, point.position + point.offset * point.geometric_normal, point.geometric_normal,
                       material.emission, light_density);
