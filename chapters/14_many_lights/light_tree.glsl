@@ -48,19 +48,21 @@ float get_importance(LightNode node, Receiver x) {
     return node.power * (light_height / square) * (height / square);
 }
 
-// The probability of the first of two children, given that one is chosen. Where no light arrives from either, any will do.
-float get_first_probability(uint child, Receiver x) {
-    float first = get_importance(light_nodes[child], x), sum = first + get_importance(light_nodes[child + 1u], x);
-    return sum > 0.0 ? first / sum : 0.5;
+// The probabilities of two children, given that one is chosen. Where no light arrives from either, any will do. One less the first
+// would be 0 for a second child that is dim.
+vec2 get_child_probabilities(uint child, Receiver x) {
+    vec2 importance = vec2(get_importance(light_nodes[child], x), get_importance(light_nodes[child + 1u], x));
+    float sum = importance.x + importance.y;
+    return sum > 0.0 ? importance / sum : vec2(0.5);
 }
 
-// Decides with the given probability by a number in [0,1) of 64 binary digits, and turns its position within the part that was
-// decided for into a new number. If numbers are stratified, so are the new ones, except for their last digits: a hash provides
+// Chooses the first of two with the given probabilities by a number in [0,1) of 64 binary digits, and turns its position within the
+// part that was chosen into a new number. If numbers are stratified, so are the new ones, except for their last digits: a hash provides
 // those.
-bool decide(float probability, inout uvec2 digits) {
+bool is_first_chosen(vec2 probabilities, inout uvec2 digits) {
     // The less likely part comes first, since numbers close to 0 have the most digits.
-    bool is_turned = probability > 0.5;
-    float width = 4294967296.0 * (is_turned ? 1.0 - probability : probability);
+    bool is_turned = probabilities.x > probabilities.y;
+    float width = 4294967296.0 * min(probabilities.x, probabilities.y);
     uvec2 end = uvec2(uint(width), uint(4294967296.0 * fract(width)));
     bool is_below = digits.x < end.x || (digits.x == end.x && digits.y < end.y);
     uvec2 fresh = digits;
@@ -84,9 +86,9 @@ LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
     float probability = 1.0;
     uint child = light_nodes[0].child;
     while (child < IS_LIGHT_LEAF) {
-        float first_probability = get_first_probability(child, receiver);
-        bool is_first = decide(first_probability, digits);
-        probability *= is_first ? first_probability : 1.0 - first_probability;
+        vec2 probabilities = get_child_probabilities(child, receiver);
+        bool is_first = is_first_chosen(probabilities, digits);
+        probability *= is_first ? probabilities.x : probabilities.y;
         child = light_nodes[is_first ? child : child + 1u].child;
     }
     u.x = to_numbers(digits).x;
@@ -100,9 +102,9 @@ float get_tree_probability(uint trail) {
     float probability = 1.0;
     uint child = light_nodes[0].child;
     for (; child < IS_LIGHT_LEAF; trail >>= 1u) {
-        float first_probability = get_first_probability(child, receiver);
+        vec2 probabilities = get_child_probabilities(child, receiver);
         bool is_first = (trail & 1u) == 0u;
-        probability *= is_first ? first_probability : 1.0 - first_probability;
+        probability *= is_first ? probabilities.x : probabilities.y;
         child = light_nodes[is_first ? child : child + 1u].child;
     }
     return probability;
