@@ -56,9 +56,9 @@ vec2 get_child_probabilities(uint child, Receiver x) {
     return sum > 0.0 ? importance / sum : vec2(0.5);
 }
 
-// Chooses the first of two with the given probabilities by a number in [0,1) of 64 binary digits, and turns its position within the
-// part that was chosen into a new number. If numbers are stratified, so are the new ones, except for their last digits: a hash provides
-// those.
+// Chooses the first of two with the given probabilities by a number in [0,1) of 64 binary digits, and turns its position within
+// the part that was chosen into a new number. If numbers are stratified, so are the new ones, except for their last digits: a
+// hash provides those.
 bool is_first_chosen(vec2 probabilities, inout uvec2 digits) {
     // The less likely part comes first, since numbers close to 0 have the most digits.
     bool is_turned = probabilities.x > probabilities.y;

@@ -1,10 +1,10 @@
 // Chapter 14, many lights: light samples go to the lights that matter at x_k.
 //
 // Until now a light sample chose a triangle by its power alone, wherever x_k is. With thousands of lamps most of these are far
-// away or turned away. Here the triangles are the leaves of a tree. Each node knows a sphere around its triangles, the mean of their
-// normals and how far these differ from it, and their power. From these and x_k follows its importance, an estimate of
-// power · cos θ' · cos θ / r². A light sample descends from the root, and each time chooses one of two children with probabilities
-// proportional to their importance.
+// away or turned away. Here the triangles are the leaves of a tree. Each node knows a sphere around its triangles, the mean of
+// their normals and how far these differ from it, and their power. From these and x_k follows its importance, an estimate of
+// power · cos θ' · cos θ / r². A light sample descends from the root, and each time chooses one of two children with
+// probabilities proportional to their importance.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "11_microfacets/sample_bsdf.glsl"
