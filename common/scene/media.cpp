@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "error.h"
 
@@ -28,7 +29,7 @@ bool encloses(const Scene& scene, uint32_t instance, const dvec3& point) {
         const auto corner = [&](int i) { return world_corner(scene, instance, triangle, i) - point; };
         sum += solid_angle(corner(0), corner(1), corner(2));
     }
-    return std::abs(sum) > 2 * 3.14159265358979;
+    return std::abs(sum) > 2 * std::numbers::pi;
 }
 
 // Throws UserError if light cannot get into a medium, or would be dimmed there in two ways.
