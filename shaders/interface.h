@@ -47,9 +47,12 @@ SHARED_CONSTANT BINDING_TEXTURE_SIZES = 22u;
 SHARED_CONSTANT BINDING_MICROFACETS = 23u;
 SHARED_CONSTANT BINDING_MEDIA = 24u;
 SHARED_CONSTANT BINDING_BOUNDARIES = 25u;
-// Of the backend `native` alone. Macros leave the shaders of the others as they are.
-#define BINDING_WORLD_TRIANGLES 26u
-#define BINDING_FIRST_WORLD_TRIANGLES 27u
+// Of chapters with a light tree, and of the backend `native`. Macros leave the shaders of the others as they are.
+#define BINDING_LIGHT_NODES 26u
+#define BINDING_LIGHT_LEAVES 27u
+#define BINDING_LIGHT_PLACES 28u
+#define BINDING_WORLD_TRIANGLES 29u
+#define BINDING_FIRST_WORLD_TRIANGLES 30u
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -135,6 +138,24 @@ struct LightTriangle {
     uint threshold;         // this entry stands for itself if a random 32-bit word is below, else its `alias` does
     uint alias;             // index into the table
     float inverse_density;  // A/P: area in square scene units over the probability of being chosen
+};
+
+// A node of the tree over emissive triangles, see common/scene/light_tree.h.
+struct LightNode {
+    vec3 centre;       // of a sphere around its triangles, in world space
+    float radius;      // of the sphere, in scene units
+    vec3 mean_normal;  // of its triangles, weighted by power: shorter than 1 where they disagree
+    float spread;      // the largest distance between it and the unit normal of a triangle
+    float power;  // area times luminance, as a share of the scene's; times the root's radius², so that no quotient leaves the
+                  // range of float
+    uint child;   // index of its first child, which the second follows; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
+};
+#define IS_LIGHT_LEAF 0x80000000u
+
+// What a ray that hits an emissive triangle needs to know of its leaf.
+struct LightLeaf {
+    uint trail;  // from the root downwards, beginning at the lowest bit: 1 where the path takes the second child
+    float area;  // of the triangle, in square scene units
 };
 
 // A cell of the light probe in the alias table of all of them, see common/scene/light_table.h.

@@ -43,8 +43,9 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     // Fail before loading the scene takes time and memory.
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
-        build.gpu_scene = std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options),
-                                                     chapter.light_probe_sampling, chapter.microfacets, chapter.media);
+        build.gpu_scene =
+            std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options), chapter.light_probe_sampling,
+                                       chapter.microfacets, chapter.media, chapter.light_tree);
         build.backend = choose_backend(wanted, device, *build.gpu_scene);
         build.scene_backend = build_scene_backend(build.backend, device, *build.gpu_scene);
     } else {

@@ -43,6 +43,7 @@ struct Chapter {
     bool microfacets = false;                   // likewise for rough metal, plastic and glass (Pr)
     bool lens = false;                          // has a camera with an aperture
     bool media = false;                         // light scatters between surfaces, too
+    bool light_tree = false;                    // light samples choose a triangle by a tree over all of them
     bool low_discrepancy = false;               // brings its own points, random_words.glsl, which are not independent
     std::vector<ChapterOption> options = {};
     std::vector<ChapterChoice> choices = {};

@@ -13,7 +13,7 @@ class GpuScene {
     // The arguments are those of SceneArrays. If the device cannot hold the scene, throws DeviceFailure before allocating
     // anything.
     GpuScene(const Device& device, const Scene& scene, Strategy strategy = Strategy::both, bool samples_probe = false,
-             bool handles_microfacets = false, bool handles_media = false);
+             bool handles_microfacets = false, bool handles_media = false, bool uses_light_tree = false);
 
     const Scene& scene() const { return *scene_; }
     const Buffer& positions() const { return buffers_[0]; }

@@ -9,17 +9,14 @@ std::string to_string(Strategy strategy) {
     return strategy == Strategy::both ? "both" : strategy == Strategy::light ? "light" : "bounces";
 }
 
-SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets,
-                         bool handles_media) {
+SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets, bool handles_media,
+                         bool uses_light_tree) {
     const SceneFeatures features = features_of(scene);
     defines_ = features.defines();
-    const auto add = [&](const char* name, uint32_t binding, const auto& data) {
-        buffers_.push_back({name, binding, std::as_bytes(std::span(data))});
-    };
     add("positions", BINDING_POSITIONS, scene.positions);
     add("triangles", BINDING_TRIANGLES, scene.triangles);
     add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
-    add_lights(scene, features, strategy, samples_probe);
+    add_lights(scene, features, strategy, samples_probe, uses_light_tree);
     add("materials", BINDING_MATERIALS, lights_.materials);
     if (features.microfacets && handles_microfacets) {
         add("microfacets", BINDING_MICROFACETS, scene.microfacets);
@@ -56,19 +53,27 @@ SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_pro
     add_images(scene, features);
 }
 
-void SceneArrays::add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe) {
+void SceneArrays::add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe,
+                             bool uses_light_tree) {
     samples_probe = samples_probe && features.light_probe && strategy != Strategy::bounces;
     const bool samples_triangles = features.area_lights && strategy != Strategy::bounces;
     const float probe_probability = !samples_probe ? 0 : !samples_triangles ? 1 : LIGHT_PROBE_PROBABILITY;
     lights_.materials = scene.materials;
     if (samples_triangles) {
         lights_ = build_light_table(scene, 1 - probe_probability);
-        buffers_.push_back({"light triangles", BINDING_LIGHT_TRIANGLES, std::as_bytes(std::span(lights_.triangles))});
+        add("light triangles", BINDING_LIGHT_TRIANGLES, lights_.triangles);
         defines_.emplace_back("FEATURE_LIGHT_TRIANGLES");
+    }
+    if (samples_triangles && uses_light_tree) {
+        light_tree_ = build_light_tree(scene, lights_);
+        add("nodes of the light tree", BINDING_LIGHT_NODES, light_tree_.nodes);
+        add("leaves of the light tree", BINDING_LIGHT_LEAVES, light_tree_.leaves);
+        add("places of these leaves", BINDING_LIGHT_PLACES, light_tree_.places);
+        defines_.emplace_back("FEATURE_LIGHT_TREE");
     }
     if (samples_probe) {
         probe_cells_ = build_probe_table(*scene.light_probe, probe_probability);
-        buffers_.push_back({"cells of the light probe", BINDING_PROBE_CELLS, std::as_bytes(std::span(probe_cells_))});
+        add("cells of the light probe", BINDING_PROBE_CELLS, probe_cells_);
         defines_.emplace_back("FEATURE_LIGHT_PROBE_CELLS");
     }
 }

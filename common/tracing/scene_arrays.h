@@ -8,6 +8,7 @@
 
 #include "scene/features.h"
 #include "scene/light_table.h"
+#include "scene/light_tree.h"
 #include "scene/scene.h"
 
 namespace lab {
@@ -27,8 +28,10 @@ struct SceneArray {
 class SceneArrays {
   public:
     // Builds tables to sample lights from, unless only bounces find them; a light probe gets one if the estimator samples it.
-    // Materials have microfacets, and volumes media, if the estimator handles them. The scene must outlive the result.
-    SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets, bool handles_media);
+    // Materials have microfacets, and volumes media, if the estimator handles them, and emissive triangles a tree if it uses one.
+    // The scene must outlive the result.
+    SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets, bool handles_media,
+                bool uses_light_tree);
     SceneArrays(const SceneArrays&) = delete;
     SceneArrays& operator=(const SceneArrays&) = delete;
 
@@ -40,13 +43,19 @@ class SceneArrays {
     const std::vector<std::string>& defines() const { return defines_; }
 
   private:
-    void add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe);
+    template <typename T>
+    void add(const char* name, uint32_t binding, const std::vector<T>& data) {
+        buffers_.push_back({name, binding, std::as_bytes(std::span(data))});
+    }
+    void add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe,
+                    bool uses_light_tree);
     void add_images(const Scene& scene, const SceneFeatures& features);
 
     std::vector<SceneArray> buffers_, images_;
     std::vector<std::string> defines_;
     // What the scene itself does not hold.
     LightTable lights_;
+    LightTree light_tree_;
     std::vector<ProbeCell> probe_cells_;
     std::vector<uvec2> texture_sizes_;
     std::vector<uint32_t> other_sides_;

@@ -1,5 +1,6 @@
-"""Computes the files in assets/ that follow from formulas: smooth meshes, textures and light probes. Scenes, materials and meshes of
-a few triangles are edited by hand.
+"""Computes the files in assets/ that follow from formulas: meshes, textures, light probes, and scenes with many
+lamps. Other scenes, materials and
+meshes of a few triangles are edited by hand.
 
 The same meshes come out on every machine: numbers are rounded to few decimals.
 """
@@ -8,7 +9,7 @@ import math
 import struct
 
 import numpy as np
-from makers import images
+from makers import images, lamps
 from makers.shapes import direction, heart, pumpkin, row_of_balls, sphere, torus
 from PIL import Image
 from project import ROOT, Parser, UserError, write_bytes
@@ -18,8 +19,11 @@ MESHES = {  # name -> parts
     "numbered_ball": lambda: [sphere("numbered_squares", times_around=2)],
     "rough_balls": lambda: (row_of_balls([f"metal_{i}" for i in range(5)], 0.3, 0.66, -0.35)
                             + row_of_balls([f"plastic_{i}" for i in range(5)], 0.22, 0.56, 0.45)),
+    "hall": lamps.hall, "lamp_cluster": lamps.lamp_cluster, "tower": lambda: lamps.building(30, 7), "house": lambda: lamps.building(16, 6),
+    "street_lamp": lamps.street_lamp, "ground": lamps.ground,
     "heart": heart, "orange_pumpkin": lambda: pumpkin(10, 0.74), "green_pumpkin": lambda: pumpkin(14, 0.6),
 }
+SCENES = {"lamps": lamps.lamps_scene, "city": lamps.city_scene}
 TEXTURES = {"numbered_squares": (256, 256), "planks": (300, 200), "panes": (96, 160)}  # width and height
 LIGHT_PROBES = {"sky": (256, 128), "clear_sky": (512, 256), "softboxes": (256, 128)}
 
@@ -84,6 +88,7 @@ def encode_hdr(width, height, radiance):
 def make_files():
     """Path below assets/ -> bytes."""
     return ({f"meshes/{name}.obj": encode_obj(name, parts()) for name, parts in MESHES.items()}
+            | {f"scenes/{name}.json": scene() for name, scene in SCENES.items()}
             | {f"textures/{name}.png": encode_png(*size, getattr(images, name)) for name, size in TEXTURES.items()}
             | {f"light_probes/{name}.hdr": encode_hdr(*size, getattr(images, name)) for name, size in LIGHT_PROBES.items()})
 

@@ -47,8 +47,12 @@ LightPoint get_light_point(LightTriangle light, vec2 barycentrics) {
     hit.barycentrics = barycentrics;
     SurfacePoint point = get_surface_point(hit);
     Material material = materials[triangle_materials[light.triangle]];
+    float light_density = material.light_density;
+#ifdef FEATURE_LIGHT_TREE
+    light_density = 1.0 / light.inverse_density;  // it depends on where the light arrives
+#endif
     return LightPoint(point.position, point.position + point.offset * point.geometric_normal, point.geometric_normal,
-                      material.emission, material.light_density);
+                      material.emission, light_density);
 }
 #else
 // If nothing emits, or with --strategy bounces, estimators still compile but never call these.

@@ -47,6 +47,13 @@ layout(scalar, set = 0, binding = BINDING_LIGHT_TRIANGLES) readonly buffer Light
     LightTriangle light_triangles[];
 };
 #endif
+#ifdef FEATURE_LIGHT_TREE
+layout(scalar, set = 0, binding = BINDING_LIGHT_NODES) readonly buffer LightNodes { LightNode light_nodes[]; };
+layout(scalar, set = 0, binding = BINDING_LIGHT_LEAVES) readonly buffer LightLeaves { LightLeaf light_leaves[]; };
+layout(scalar, set = 0, binding = BINDING_LIGHT_PLACES) readonly buffer LightPlaces {
+    uint light_places[];  // an emissive triangle's place in light_leaves: the sum of one entry per triangle and one per instance
+};
+#endif
 #ifdef FEATURE_LIGHT_PROBE_CELLS
 layout(scalar, set = 0, binding = BINDING_PROBE_CELLS) readonly buffer ProbeCells { ProbeCell probe_cells[]; };
 #endif

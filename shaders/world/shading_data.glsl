@@ -7,6 +7,9 @@ struct ShadingData {
     float offset;           // distance off the surface at which rays must start to miss it, in scene units
     vec3 emission;          // L_e(x_k, ω_o), the emitted radiance
     float light_density;    // p_A, the density of light samples at x_k with respect to area; 0 where it does not emit
+#ifdef FEATURE_LIGHT_TREE
+    uint light;  // place of the triangle in light_leaves, if it emits
+#endif
     vec3 diffuse_albedo;    // in [0,1]: the fraction of light that is reflected diffusely, per colour channel
 #ifdef FEATURE_SPECULAR
     vec3 specular_albedo;     // fraction of light that the Phong lobe reflects, per colour channel, in [0,1]
@@ -100,6 +103,13 @@ SurfacePoint get_surface_point(Hit hit) {
 }
 #endif
 
+#ifdef FEATURE_LIGHT_TREE
+// The place of an emissive triangle in light_leaves.
+uint get_light_place(uint instance, uint triangle) {
+    return light_places[triangle] + light_places[uint(triangles.length()) + instance];
+}
+#endif
+
 // Computes the shading data where a ray with this unit direction hits.
 ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     SurfacePoint point = get_surface_point(hit);
@@ -152,6 +162,9 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     s.light_density = 0.0;
 #ifdef FEATURE_LIGHT_TRIANGLES
     if (is_front) s.light_density = material.light_density;
+#endif
+#ifdef FEATURE_LIGHT_TREE
+    s.light = get_light_place(hit.instance, hit.triangle);
 #endif
     if (!is_front) {
         s.geometric_normal = -s.geometric_normal;

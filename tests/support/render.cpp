@@ -58,7 +58,8 @@ bool samples_probe(const Estimator& estimator) { return chapter_of(estimator).li
 
 GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings) {
     const Chapter chapter = chapter_of(settings.estimator);
-    return {test_device(), scene, settings.strategy, chapter.light_probe_sampling, chapter.microfacets, chapter.media};
+    return {test_device(),       scene,         settings.strategy, chapter.light_probe_sampling,
+            chapter.microfacets, chapter.media, chapter.light_tree};
 }
 
 SceneRenderer::SceneRenderer(const Scene& scene, const RenderSettings& settings)

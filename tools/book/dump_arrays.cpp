@@ -66,7 +66,7 @@ void dump(const std::string& file, const Chapter& chapter, const Options& option
     const Scene scene = load_scene(options.scene.file, options.scene.specular);
     const RenderParameters parameters = picture(chapter, scene, options);
     const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets,
-                             chapter.media);
+                             chapter.media, chapter.light_tree);
     const Bvh bvh = build_bvh(world_triangles(scene));
 
     Dump dump(file);

@@ -1,0 +1,1 @@
+#include "11_microfacets/brdf.glsl"

@@ -1,0 +1,1 @@
+#include "12_lens/camera.glsl"

@@ -1,0 +1,1 @@
+#include "10_path_regeneration/sample_loop.glsl"
