@@ -10,8 +10,10 @@ using glm::mat3;
 using glm::mat4x3;
 using glm::uvec2;
 using glm::uvec3;
+using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
+using glm::vec4;
 using uint = glm::uint;
 #define SHARED_CONSTANT inline constexpr uint
 #define SHARED_NUMBER inline constexpr float
@@ -140,21 +142,26 @@ struct LightTriangle {
     float inverse_density;  // A/P: area in square scene units over the probability of being chosen
 };
 
-// A node of the tree over emissive triangles, see common/scene/light_tree.h.
+// A node of the tree over emissive triangles, see common/scene/light_tree.h: what it knows of each of its four children. A place
+// without a child has no power.
 struct LightNode {
-    vec3 centre;       // of a sphere around its triangles, in world space
-    float radius;      // of the sphere, in scene units
-    vec3 mean_normal;  // of its triangles, weighted by power: shorter than 1 where they disagree
-    float spread;      // the largest distance between it and the unit normal of a triangle
-    float power;  // area times luminance, as a share of the scene's; times the root's radius², so that no quotient leaves the
-                  // range of float
-    uint child;   // index of its first child, which the second follows; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
+    vec4 centre_x;  // of a sphere around the child's triangles, in world space
+    vec4 centre_y;
+    vec4 centre_z;
+    vec4 radius;         // of the sphere, in scene units
+    vec4 mean_normal_x;  // of the triangles, weighted by power: shorter than 1 where they disagree
+    vec4 mean_normal_y;
+    vec4 mean_normal_z;
+    vec4 spread;  // the largest distance between it and the unit normal of a triangle
+    vec4 power;   // area times luminance, as a share of the scene's; times the squared radius of all triangles, so that no
+                  // quotient leaves the range of float
+    uvec4 child;  // the child's index; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
 };
 #define IS_LIGHT_LEAF 0x80000000u
 
 // What a ray that hits an emissive triangle needs to know of its leaf.
 struct LightLeaf {
-    uint trail;  // from the root downwards, beginning at the lowest bit: 1 where the path takes the second child
+    uint trail;  // from the root downwards, beginning at the lowest bits: two for each node, which of its children is next
     float area;  // of the triangle, in square scene units
 };
 

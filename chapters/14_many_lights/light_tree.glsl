@@ -29,31 +29,27 @@ void set_receiver(ShadingData s) {
 const float LEAST_SQUARE = 0.15;
 
 // The mean of max(h, 0) over heights h that lie evenly between middle - width and middle + width.
-float get_mean_height(float middle, float width) {
-    float above = max(middle + width, 0.0);
-    return middle >= width ? middle : above * above / (4.0 * width);
+vec4 get_mean_height(vec4 middle, vec4 width) {
+    vec4 above = clamp(middle, -width, width) + width;
+    return above * above / (4.0 * width) + max(middle - width, 0.0);
 }
 
-// An estimate of the light that a point gets from the node's triangles, if nothing is in between: power · cos θ' · cos θ / r².
+// An estimate of the light that a point gets from each child's triangles, if nothing is in between: power · cos θ' · cos θ / r².
 // Every cosine is a height over a plane, divided by the distance: the point's height over the triangles' planes, and theirs over
 // the point's. Where these differ we take a mean, so it is 0 only where no light can arrive.
-float get_importance(LightNode node, Receiver x) {
-    vec3 to_node = node.centre - x.position;
-    float square = dot(to_node, to_node), distance = sqrt(square);
-    float rounding = 8.0 * ROUNDING * distance;
-    float light_height = get_mean_height(-dot(node.mean_normal, to_node), node.radius + node.spread * distance + rounding);
-    float height = x.normal == vec3(0.0) ? distance : get_mean_height(dot(x.normal, to_node), node.radius + rounding);
+vec4 get_importance(LightNode node, Receiver receiver) {
+    vec3 x = receiver.position, n = receiver.normal;
+    vec4 to_x = node.centre_x - x.x, to_y = node.centre_y - x.y, to_z = node.centre_z - x.z;
+    vec4 square = to_x * to_x + to_y * to_y + to_z * to_z, distance = sqrt(square);
+    vec4 size = node.radius + 8.0 * ROUNDING * distance;
+    vec4 light_height = get_mean_height(-(node.mean_normal_x * to_x + node.mean_normal_y * to_y + node.mean_normal_z * to_z),
+                                        size + node.spread * distance);
+    vec4 height = n == vec3(0.0) ? distance : get_mean_height(n.x * to_x + n.y * to_y + n.z * to_z, size);
     // Within the sphere the distance to its centre says little.
     square = max(square, LEAST_SQUARE * node.radius * node.radius);
-    return node.power * (light_height / square) * (height / square);
-}
-
-// The probabilities of two children, given that one is chosen. Where no light arrives from either, any will do. One less the first
-// would be 0 for a second child that is dim.
-vec2 get_child_probabilities(uint child, Receiver x) {
-    vec2 importance = vec2(get_importance(light_nodes[child], x), get_importance(light_nodes[child + 1u], x));
-    float sum = importance.x + importance.y;
-    return sum > 0.0 ? importance / sum : vec2(0.5);
+    vec4 importance = node.power * (light_height / square) * (height / square);
+    // Where no light arrives from any child, any will do.
+    return importance == vec4(0.0) ? vec4(1.0, 0.0, 0.0, 0.0) : importance;
 }
 
 // Chooses the first of two with the given probabilities by a number in [0,1) of 64 binary digits, and turns its position within
@@ -77,19 +73,27 @@ bool is_first_chosen(vec2 probabilities, inout uvec2 digits) {
     return is_below != is_turned;
 }
 
-// Descends the tree: one number decides at all nodes, and what is left of it is the first of the two numbers for a point.
+// Descends the tree: one number decides at all nodes, and what is left of it is the first of the two numbers for a point. At each
+// node it chooses one half of the children, and then one of these two. One less the probability of the first would be 0 for a
+// second that is dim.
 LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
     uvec2 words = get_random_words(seed), digits = words;
     u = to_numbers(words);
     advance_random_state(digits);
     digits = uvec2(words.x, digits.x);
     float probability = 1.0;
-    uint child = light_nodes[0].child;
+    uint child = 0u;
     while (child < IS_LIGHT_LEAF) {
-        vec2 probabilities = get_child_probabilities(child, receiver);
-        bool is_first = is_first_chosen(probabilities, digits);
-        probability *= is_first ? probabilities.x : probabilities.y;
-        child = light_nodes[is_first ? child : child + 1u].child;
+        LightNode node = light_nodes[child];
+        vec4 importance = get_importance(node, receiver);
+        vec2 halves = vec2(importance.x + importance.y, importance.z + importance.w);
+        float sum = halves.x + halves.y;
+        bool is_first_half = is_first_chosen(halves / sum, digits);
+        vec2 pair = is_first_half ? importance.xy : importance.zw;
+        uvec2 children = is_first_half ? node.child.xy : node.child.zw;
+        bool is_first = is_first_chosen(pair / (pair.x + pair.y), digits);
+        probability *= (is_first ? pair.x : pair.y) / sum;
+        child = is_first ? children.x : children.y;
     }
     u.x = to_numbers(digits).x;
     LightTriangle light = light_triangles[child - IS_LIGHT_LEAF];
@@ -100,12 +104,12 @@ LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
 // The probability of a leaf: its trail says which children lead there.
 float get_tree_probability(uint trail) {
     float probability = 1.0;
-    uint child = light_nodes[0].child;
-    for (; child < IS_LIGHT_LEAF; trail >>= 1u) {
-        vec2 probabilities = get_child_probabilities(child, receiver);
-        bool is_first = (trail & 1u) == 0u;
-        probability *= is_first ? probabilities.x : probabilities.y;
-        child = light_nodes[is_first ? child : child + 1u].child;
+    for (uint child = 0u; child < IS_LIGHT_LEAF; trail >>= 2u) {
+        LightNode node = light_nodes[child];
+        vec4 importance = get_importance(node, receiver);
+        float sum = (importance.x + importance.y) + (importance.z + importance.w);
+        probability *= importance[trail & 3u] / sum;
+        child = node.child[trail & 3u];
     }
     return probability;
 }

@@ -81,21 +81,14 @@ Light get_light(const Scene& scene, const LightTriangle& triangle, uint32_t inde
 
 class Builder {
   public:
-    explicit Builder(std::vector<Light> lights)
-        : lights_(std::move(lights)), nodes_(2 * lights_.size() - 1), trails_(lights_.size()) {
+    // Level by level, each in parallel.
+    explicit Builder(std::vector<Light> lights) : lights_(std::move(lights)), trails_(lights_.size()) {
         Cluster all;
         for (const Light& light : lights_) all.add(light);
         const double diameter = glm::length(all.high - all.low);
         if (all.power > 0) unit_ = 0.25 * diameter * diameter / all.power;
-        // The first levels one after the other, then their subtrees in parallel.
-        std::vector<Part> parts{{0, 1, 0, lights_.size(), 0, 0}};
-        while (!parts.empty() && parts.size() < 64) {
-            std::vector<Part> next;
-            for (const Part& part : parts)
-                if (const auto halves = build_node(part)) next.insert(next.end(), halves->begin(), halves->end());
-            parts = std::move(next);
-        }
-        in_parallel(parts.size(), 1, [&](size_t begin, size_t) { build(parts[begin]); });
+        std::vector<Part> parts{{.lights = lights_}};
+        for (uint32_t depth = 0; !parts.empty(); depth += 2) parts = build_level(parts, depth);
     }
 
     std::vector<LightNode> take_nodes() { return std::move(nodes_); }
@@ -103,36 +96,50 @@ class Builder {
     const std::vector<uint32_t>& trails() const { return trails_; }
 
   private:
-    // A subtree to be built: its root, where its further nodes go, and its lights.
+    // Lights for which a node is to be built, and which child of its parent it will be.
     struct Part {
-        size_t node, children, begin, end;
-        uint32_t trail, depth;
+        std::span<Light> lights;
+        uint32_t trail = 0;
+        size_t parent = 0;
+        uint32_t place = 0;
     };
 
-    void build(const Part& part) {
-        if (const auto halves = build_node(part))
-            for (const Part& half : *halves) build(half);
+    std::vector<Part> build_level(const std::vector<Part>& parts, uint32_t depth) {
+        const size_t first = nodes_.size();
+        nodes_.resize(first + parts.size());
+        std::vector<std::array<Part, 4>> children(parts.size());
+        in_parallel(parts.size(), std::max<size_t>(parts.size() / 256, 1), [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) children[i] = build_node(parts[i], depth, first + i);
+        });
+        std::vector<Part> next;
+        for (size_t i = 0; i < parts.size(); ++i) {
+            if (depth > 0) nodes_[parts[i].parent].child[parts[i].place] = static_cast<uint32_t>(first + i);
+            for (const Part& child : children[i])
+                if (child.lights.size() > 1) next.push_back(child);
+        }
+        return next;
     }
 
-    std::optional<std::array<Part, 2>> build_node(const Part& part) {
-        const std::span<Light> lights(lights_.data() + part.begin, part.end - part.begin);
+    std::array<Part, 4> build_node(const Part& part, uint32_t depth, size_t index) {
+        std::array<Part, 4> children;
+        const auto halves = split(part.lights, depth);
+        const auto first = split(halves[0], depth + 1), second = split(halves[1], depth + 1);
+        const std::array quarters{first[0], first[1], second[0], second[1]};
+        LightNode& node = nodes_[index] = {};
+        node.radius = vec4(1), node.child = uvec4(IS_LIGHT_LEAF);
+        for (uint32_t i = 0; i < 4; ++i) {
+            children[i] = {quarters[i], part.trail | i << depth, index, i};
+            if (!quarters[i].empty()) set_child(node, i, quarters[i]);
+            if (quarters[i].size() != 1) continue;
+            node.child[i] += quarters[i][0].index;
+            trails_[quarters[i][0].index] = children[i].trail;
+        }
+        return children;
+    }
+
+    void set_child(LightNode& node, uint32_t i, std::span<const Light> lights) const {
         Cluster cluster;
         for (const Light& light : lights) cluster.add(light);
-        LightNode& node = nodes_[part.node] = get_node(cluster, lights);
-        if (lights.size() == 1) {
-            node.child = IS_LIGHT_LEAF + lights[0].index;
-            trails_[lights[0].index] = part.trail;
-            return std::nullopt;
-        }
-        node.child = static_cast<uint32_t>(part.children);
-        const size_t count = split(lights, part.depth), after = part.children + 2;
-        const uint32_t depth = part.depth + 1;
-        return {
-            {{{part.children, after, part.begin, part.begin + count, part.trail, depth},
-              {part.children + 1, after + 2 * (count - 1), part.begin + count, part.end, part.trail | 1u << part.depth, depth}}}};
-    }
-
-    LightNode get_node(const Cluster& cluster, std::span<const Light> lights) const {
         const vec3 centre(0.5 * (cluster.low + cluster.high));
         const vec3 mean_normal(cluster.power > 0 ? cluster.normal_sum / cluster.power : lights[0].normal);
         double radius = 0, spread = 0;
@@ -142,53 +149,63 @@ class Builder {
             const dvec3 difference = light.normal - dvec3(mean_normal);
             spread = std::max(spread, glm::dot(difference, difference));
         }
-        return {.centre = centre,
-                .radius = static_cast<float>((1 + shader_rounding) * std::sqrt(radius)),
-                .mean_normal = mean_normal,
-                .spread = static_cast<float>(std::sqrt(spread) + shader_rounding),
-                .power = static_cast<float>(unit_ * cluster.power),
-                .child = 0};
+        node.centre_x[i] = centre.x, node.centre_y[i] = centre.y, node.centre_z[i] = centre.z;
+        node.mean_normal_x[i] = mean_normal.x, node.mean_normal_y[i] = mean_normal.y, node.mean_normal_z[i] = mean_normal.z;
+        node.radius[i] = static_cast<float>((1 + shader_rounding) * std::sqrt(radius));
+        node.spread[i] = static_cast<float>(std::sqrt(spread) + shader_rounding);
+        node.power[i] = static_cast<float>(unit_ * cluster.power);
     }
 
-    // Reorders the lights and returns how many go to the first child: of all cuts between bins along the axes, takes the one
-    // of least cost, unless the tree would become too deep.
-    size_t split(std::span<Light> lights, uint32_t depth) const {
-        const size_t half = lights.size() / 2;
-        dvec3 low{std::numeric_limits<double>::infinity()}, high = -low;
-        for (const Light& light : lights) low = glm::min(low, light.centre()), high = glm::max(high, light.centre());
-        const dvec3 size = high - low;
-        const bool must_halve = std::bit_width(lights.size() - 1) + depth >= max_light_tree_depth - 1;
-        const size_t bin_count = std::min<size_t>(lights.size(), most_bins);
-        double least = std::numeric_limits<double>::infinity();
-        int best_axis = 0;
-        size_t best_cut = 0;
-        const auto bin_of = [&](const Light& light, int axis) {
-            const double position = (light.centre()[axis] - low[axis]) / size[axis];
-            return std::min(static_cast<size_t>(position * static_cast<double>(bin_count)), bin_count - 1);
+    // Reorders the lights into two parts: of all cuts between bins along the axes, takes the one of least cost, unless the tree
+    // would become too deep. Only the second part may be empty, and only that of a single light.
+    static std::array<std::span<Light>, 2> split(std::span<Light> lights, uint32_t depth) {
+        size_t count = (lights.size() + 1) / 2;
+        if (lights.size() > 2) {
+            dvec3 low{std::numeric_limits<double>::infinity()}, high = -low;
+            for (const Light& light : lights) low = glm::min(low, light.centre()), high = glm::max(high, light.centre());
+            const dvec3 size = high - low;
+            const bool must_halve = std::bit_width(lights.size() - 1) + depth >= max_light_tree_depth - 1;
+            if (const size_t cut = must_halve ? 0 : partition(lights, low, size)) {
+                count = cut;
+            } else {
+                const int longest = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+                std::nth_element(lights.begin(), lights.begin() + static_cast<std::ptrdiff_t>(count), lights.end(),
+                                 [&](const Light& a, const Light& b) { return a.centre()[longest] < b.centre()[longest]; });
+            }
+        }
+        return {lights.first(count), lights.subspan(count)};
+    }
+
+    // Returns how many lights are in the first part, or 0 if no cut divides them.
+    static size_t partition(std::span<Light> lights, const dvec3& low, const dvec3& size) {
+        const auto bin_count = static_cast<int>(std::min<size_t>(lights.size(), most_bins));
+        const dvec3 divisor(size.x > 0 ? size.x : 1, size.y > 0 ? size.y : 1, size.z > 0 ? size.z : 1);
+        const auto bins_of = [&](const Light& light) {
+            const dvec3 position = (light.centre() - low) / divisor;
+            return glm::min(glm::ivec3(position * static_cast<double>(bin_count)), bin_count - 1);
         };
-        for (int axis = 0; axis < 3 && !must_halve; ++axis) {
-            if (!(size[axis] > 0)) continue;
-            std::array<Cluster, most_bins> bins, below;
-            for (const Light& light : lights) bins[bin_of(light, axis)].add(light);
+        std::array<std::array<Cluster, most_bins>, 3> bins;
+        for (const Light& light : lights) {
+            const glm::ivec3 bin = bins_of(light);
+            for (int axis = 0; axis < 3; ++axis) bins[axis][bin[axis]].add(light);
+        }
+        double least = std::numeric_limits<double>::infinity();
+        int best_axis = 0, best_cut = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::array<Cluster, most_bins> below;
             Cluster sum;
-            for (size_t i = 0; i < bin_count; ++i) below[i] = (sum.add(bins[i]), sum);
+            for (int i = 0; i < bin_count; ++i) below[i] = (sum.add(bins[axis][i]), sum);
             sum = {};
-            for (size_t i = bin_count - 1; i > 0; --i) {
-                sum.add(bins[i]);
+            for (int i = bin_count - 1; i > 0 && size[axis] > 0; --i) {
+                sum.add(bins[axis][i]);
                 const double cost = sum.cost() + below[i - 1].cost();
                 if (cost < least) least = cost, best_axis = axis, best_cut = i;
             }
         }
-        if (best_cut > 0) {
-            const auto second =
-                std::partition(lights.begin(), lights.end(), [&](const Light& l) { return bin_of(l, best_axis) < best_cut; });
-            const auto count = static_cast<size_t>(second - lights.begin());
-            if (count > 0 && count < lights.size()) return count;
-        }
-        const int longest = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-        std::nth_element(lights.begin(), lights.begin() + static_cast<std::ptrdiff_t>(half), lights.end(),
-                         [&](const Light& a, const Light& b) { return a.centre()[longest] < b.centre()[longest]; });
-        return half;
+        const auto second = std::partition(lights.begin(), lights.end(),
+                                           [&](const Light& light) { return bins_of(light)[best_axis] < best_cut; });
+        const auto count = static_cast<size_t>(second - lights.begin());
+        return count < lights.size() ? count : 0;
     }
 
     static constexpr size_t most_bins = 12;

@@ -8,8 +8,8 @@
 namespace lab {
 
 struct LightTree {
-    // The root comes first; each leaf is one triangle of the table. Bounds are a little larger than necessary, so that the
-    // rounding errors of shaders cannot hide a light.
+    // The root comes first; each leaf is one triangle of the table. A node has four children, two levels of a binary tree. Bounds
+    // are a little larger than necessary, so that the rounding errors of shaders cannot hide a light.
     std::vector<LightNode> nodes;
     // One for each emissive triangle of each instance, also of those that the table leaves out since others are in their place.
     std::vector<LightLeaf> leaves;
@@ -17,8 +17,8 @@ struct LightTree {
     std::vector<uint32_t> places;
 };
 
-// Deepest leaf, so that 32 bits hold the way from the root. Trees of up to 2^24 triangles are balanced where they would exceed
-// it.
+// Deepest leaf of the binary tree, so that 32 bits hold the way from the root. Trees of up to 2^24 triangles are balanced where
+// they would exceed it.
 inline constexpr uint32_t max_light_tree_depth = 32;
 
 // Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, without the splitting.

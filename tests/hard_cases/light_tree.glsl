@@ -10,11 +10,19 @@ const uint DRAWS = 64u;
 uint get_trail(LightTriangle light) { return light_leaves[get_light_place(light.instance, light.triangle)].trail; }
 bool is_on_the_left(LightTriangle light, Receiver x) { return get_light_point(light, vec2(1.0 / 3.0)).position.x < x.position.x; }
 
-// In the sphere's bounding cube, or close to a lamp. One in four has no normal.
+// In the box around the spheres of the root's children, or close to a lamp. One in four has no normal.
 Receiver get_random_receiver(inout uvec2 seed) {
     vec2 u = get_random_numbers(seed), v = get_random_numbers(seed), w = get_random_numbers(seed);
-    Receiver x = Receiver(light_nodes[0].centre, vec3(0.0));
-    vec3 offset = light_nodes[0].radius * (2.0 * vec3(u, v.x) - 1.0);
+    LightNode root = light_nodes[0];
+    vec3 low = vec3(NO_LIMIT), high = vec3(-NO_LIMIT);
+    for (int i = 0; i < 4; ++i) {
+        if (!(root.power[i] > 0.0)) continue;
+        vec3 centre = vec3(root.centre_x[i], root.centre_y[i], root.centre_z[i]);
+        low = min(low, centre - root.radius[i]);
+        high = max(high, centre + root.radius[i]);
+    }
+    Receiver x = Receiver(0.5 * (low + high), vec3(0.0));
+    vec3 offset = 0.5 * (high - low) * (2.0 * vec3(u, v.x) - 1.0);
     if (v.y < 0.25) {
         LightTriangle light = light_triangles[uint(w.x * float(light_triangles.length()))];
         x.position = get_light_point(light, u).position;

@@ -1,6 +1,8 @@
 // The light tree: its probabilities, the lamps that it finds, and what it builds for hard scenes.
 #include "scene/light_tree.h"
 
+#include <chrono>
+#include <cstdio>
 #include <random>
 
 #include "files/project_folder.h"
@@ -63,22 +65,36 @@ TEST(LightTree, ProbabilitiesOfAMirroredAndStretchedInstance) {
     expect_right_probabilities(scene, 64, 0.002);
 }
 
-// Every trail leads to its leaf, and every node's power is that of its children.
-TEST(LightTree, TrailsLeadToLeaves) {
-    const Scene scene = load_shipped_scene("lamps.json");
-    const LightTable table = build_light_table(scene);
-    const LightTree tree = build_light_tree(scene, table);
-    ASSERT_EQ(tree.nodes.size(), 2 * table.triangles.size() - 1);
+// Every trail leads to its leaf, and every child's power is that of its own children.
+void expect_right_tree(const Scene& scene, const LightTable& table, const LightTree& tree) {
     for (uint32_t i = 0; i < table.triangles.size(); ++i) {
         const LightTriangle& light = table.triangles[i];
         const uint32_t place = tree.places[light.triangle] + tree.places[scene.triangles.size() + light.instance];
-        uint32_t child = tree.nodes[0].child, trail = tree.leaves[place].trail;
-        for (; child < IS_LIGHT_LEAF; trail >>= 1) child = tree.nodes[child + (trail & 1)].child;
+        uint32_t child = 0, trail = tree.leaves[place].trail;
+        for (; child < IS_LIGHT_LEAF; trail >>= 2) child = tree.nodes[child].child[trail & 3];
         ASSERT_EQ(child, IS_LIGHT_LEAF + i);
     }
     for (const LightNode& node : tree.nodes)
-        if (node.child < IS_LIGHT_LEAF)
-            ASSERT_NEAR(node.power, tree.nodes[node.child].power + tree.nodes[node.child + 1].power, 1e-6 * node.power);
+        for (int i = 0; i < 4; ++i) {
+            if (node.child[i] >= IS_LIGHT_LEAF) continue;
+            const vec4 powers = tree.nodes[node.child[i]].power;
+            ASSERT_NEAR(node.power[i], powers.x + powers.y + powers.z + powers.w, 1e-6 * node.power[i]);
+        }
+}
+
+TEST(LightTree, TrailsLeadToLeaves) {
+    const Scene scene = load_shipped_scene("lamps.json");
+    const LightTable table = build_light_table(scene);
+    expect_right_tree(scene, table, build_light_tree(scene, table));
+}
+
+TEST(LightTree, AMillionLampsOfTwelveDecades) {
+    const Scene scene = random_lamps(500'000, 12);
+    const LightTable table = build_light_table(scene);
+    const auto start = std::chrono::steady_clock::now();
+    const LightTree tree = build_light_tree(scene, table);
+    std::printf("  built in %.2f s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    expect_right_tree(scene, table, tree);
 }
 
 }  // namespace
