@@ -49,10 +49,10 @@ SHARED_CONSTANT BINDING_TEXTURE_SIZES = 22u;
 SHARED_CONSTANT BINDING_MICROFACETS = 23u;
 SHARED_CONSTANT BINDING_MEDIA = 24u;
 SHARED_CONSTANT BINDING_BOUNDARIES = 25u;
-// Of chapters with a light tree, and of the backend `native`. Macros leave the shaders of the others as they are.
-#define BINDING_LIGHT_NODES 26u
-#define BINDING_LIGHT_LEAVES 27u
-#define BINDING_LIGHT_PLACES 28u
+SHARED_CONSTANT BINDING_LIGHT_NODES = 26u;
+SHARED_CONSTANT BINDING_LIGHT_LEAVES = 27u;
+SHARED_CONSTANT BINDING_LIGHT_PLACES = 28u;
+// Of the backend `native` alone. Macros leave the shaders of the others as they are.
 #define BINDING_WORLD_TRIANGLES 29u
 #define BINDING_FIRST_WORLD_TRIANGLES 30u
 
@@ -157,7 +157,7 @@ struct LightNode {
                   // quotient leaves the range of float
     uvec4 child;  // the child's index; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
 };
-#define IS_LIGHT_LEAF 0x80000000u
+SHARED_CONSTANT IS_LIGHT_LEAF = 0x80000000u;
 
 // What a ray that hits an emissive triangle needs to know of its leaf.
 struct LightLeaf {

@@ -15,6 +15,7 @@ from tables.cost_tables import feature_table, growth_tables
 from tables.cpu_table import cpu_table
 from tables.facet_tables import furnace_table, sampling_table
 from tables.lens_table import lens_table
+from tables.light_table import light_table
 from tables.media_table import media_table
 from tables.numerics import case_table, device_tables
 from tables.peer_table import peer_table
@@ -35,7 +36,7 @@ NO_RAY_TRACING_CORES = """
 OWN_TABLES = {
     "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
     "best chapters": best_table, "submissions": submission_table, "facet sampling": sampling_table, "furnace": furnace_table,
-    "lens points": lens_table, "media strategies": media_table,
+    "lens points": lens_table, "light choices": light_table, "media strategies": media_table,
     "check": lambda: confusion_table(read_json(RECORDS / "check/confusion.json")), "no ray tracing cores": lambda: NO_RAY_TRACING_CORES,
 }
 

@@ -108,6 +108,8 @@ class ChapterOptions(ProgramTest):
         for value in ("none", "", "SAMPLES_COSINES"):
             self.refuse(11, f"--facet-sampling={value}")
         self.refuse(10, "--facet-sampling=cosine")
+        self.refuse(14, "--light-choice=area")
+        self.refuse(13, "--light-choice=tree")
 
     def test_largest_settings_end(self):
         program = BINARIES / CHAPTERS[3]

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <random>
 
 #include "files/project_folder.h"
 #include "support/expect_statistics.h"
@@ -32,20 +31,6 @@ void expect_right_probabilities(const Scene& scene, uint32_t size, double larges
     EXPECT_EQ(count(0), 0) << "points whose probabilities do not add up to 1 within 1e-6, of " << batch_count * size * size;
     EXPECT_EQ(count(1), 0) << "lamps that are lost, or draws whose density is not that of their trail";
     expect_mean("1 + frequency - probability", estimate_mean(batches.means(2)), 1, largest_bias, 3);
-}
-
-// Quads everywhere, turned all ways, whose radiance spans many decades.
-Scene random_lamps(int count, double decades) {
-    std::mt19937 numbers(14);
-    std::uniform_real_distribution<float> uniform(-1, 1);
-    std::vector<Material> materials;
-    for (int i = 0; i < 13; ++i)
-        materials.push_back(diffuse_material(vec3(0.5f), vec3(static_cast<float>(std::pow(10, -decades * i / 12)))));
-    const auto random = [&] { return vec3(uniform(numbers), uniform(numbers), uniform(numbers)); };
-    std::vector<Quad> quads;
-    for (int i = 0; i < count; ++i)
-        quads.push_back({random(), 0.05f * random(), 0.05f * random(), static_cast<uint32_t>(i % 13)});
-    return make_scene(materials, quads);
 }
 
 TEST(LightTree, ProbabilitiesOfLampsInAHall) { expect_right_probabilities(load_shipped_scene("lamps.json"), 25, 0.005); }

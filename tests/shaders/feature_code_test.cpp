@@ -63,6 +63,7 @@ class FeatureCode : public testing::TestWithParam<std::string> {
         const auto scene_backend = build_scene_backend(backend, test_device(), gpu_scene);
         std::set<std::string> functions;
         for (const auto& [name, needs] : needs_of_features()) functions.insert(needs.functions.begin(), needs.functions.end());
+        functions.insert("choose_light_by_tree");
         Footprint result;
         for (const auto& binding : gpu_scene.bindings()) result.bindings.insert(binding.index);
         for (const auto& shader : scene_backend->shaders(chapter_estimator(GetParam())))
@@ -107,6 +108,10 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
             continue;
         if (feature.name == "area lights" && !samples_lights(GetParam())) needs = {};
         if (feature.name == "area lights" && !weights_lights(GetParam())) needs.material_members = {};
+        if (feature.name == "area lights" && load_chapter(GetParam()).light_tree) {
+            needs.bindings.insert({BINDING_LIGHT_NODES, BINDING_LIGHT_LEAVES, BINDING_LIGHT_PLACES});
+            needs.functions = {"choose_light_by_tree"};
+        }
         if (feature.name == "light probe" && !load_chapter(GetParam()).light_probe_sampling) {
             needs.bindings.erase(BINDING_PROBE_CELLS);
             needs.functions.erase("choose_probe_cell");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "scene/microfacets.h"
 
@@ -64,6 +65,19 @@ Scene closed_box(const Material& material) {
     Scene scene = make_scene({material}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
     scene.camera = {.position = {0.3f, -0.2f, 0.5f}, .target = {-0.4f, 0.1f, -1}, .up = {0, 1, 0}, .vertical_fov = 70};
     return scene;
+}
+
+Scene random_lamps(int count, double decades, float size, const std::vector<Quad>& others) {
+    std::mt19937 numbers(14);
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    std::vector<Material> materials{diffuse_material(vec3(0.5f))};
+    for (int i = 0; i < 13; ++i)
+        materials.push_back(diffuse_material(vec3(0.5f), vec3(static_cast<float>(std::pow(10, -decades * i / 12)))));
+    const auto random = [&] { return vec3(uniform(numbers), uniform(numbers), uniform(numbers)); };
+    std::vector<Quad> quads = others;
+    for (int i = 0; i < count; ++i)
+        quads.push_back({random(), size * random(), size * random(), static_cast<uint32_t>(1 + i % 13)});
+    return make_scene(materials, quads);
 }
 
 void make_metal(Scene& scene, float roughness) {

@@ -32,6 +32,10 @@ Scene closed_box(const Material& material);
 // encloses the camera, outwards it fills the camera's view.
 Scene make_sphere(const Material& material, Facing facing);
 
+// Lamps in the box [-1,1]³ with edges of up to `size`, turned all ways, whose radiance spans so many decades. The others are
+// grey.
+Scene random_lamps(int count, double decades, float size = 0.05f, const std::vector<Quad>& others = {});
+
 // Turns all materials into rough metal of the same colours with this Pr.
 void make_metal(Scene& scene, float roughness);
 

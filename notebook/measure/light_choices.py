@@ -1,0 +1,39 @@
+"""What the tree over emissive triangles gains: errors and seconds of chapter 14 with each way to choose a lamp.
+
+    ./lab notebook light_choices [--runs 6] [--output FILE.json]
+
+All take turns, with another seed in each run. The errors are those that the halves of the samples tell, and the seconds those of all
+processors together.
+"""
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
+from tables.ages import stamped
+
+CHAPTER, CHOICES = "14_many_lights", ("tree", "power", "uniform")
+SCENES, SIZE, SAMPLES = ("lamps", "city", "heart_light", "cornell_box"), 128, 64
+
+
+def main():
+    parser = Parser("./lab notebook light_choices", __doc__)
+    parser.add_argument("--runs", type=number(int, 2), default=6, help="default: 6")
+    parser.add_argument("--output", type=Path, default=ROOT / "notebook/records/lights/native.json", metavar="FILE.json")
+    options, rows, started = parser.parse_args(), [], time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / "report.json"
+        for scene in SCENES:
+            found = {choice: {"rel_mse": [], "cpu_seconds": []} for choice in CHOICES}
+            for run in range(options.runs):
+                for choice, numbers in found.items():
+                    subprocess.run([program_file(CHAPTER), scene, "--headless", "--quiet", "--backend=native", f"--width={SIZE}",
+                                    f"--height={SIZE}", f"--samples={SAMPLES}", f"--seed={1 + run}", f"--light-choice={choice}",
+                                    f"--output={folder}/picture.exr", f"--report={report}"], check=True)
+                    content = read_json(report)
+                    for key, values in numbers.items():
+                        values.append(content["rows"][-1][key])
+                show_progress("light_choices", len(rows) * options.runs + run + 1, len(SCENES) * options.runs, started)
+            rows.append({"scene": scene, **found})
+    write_json(options.output, stamped({"device": content["device"], "size": SIZE, "samples": SAMPLES, "rows": rows}), 5)
