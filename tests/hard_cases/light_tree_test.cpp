@@ -2,6 +2,7 @@
 #include "scene/light_tree.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include "files/project_folder.h"
@@ -34,6 +35,8 @@ void expect_right_probabilities(const Scene& scene, uint32_t size, double larges
 }
 
 TEST(LightTree, ProbabilitiesOfLampsInAHall) { expect_right_probabilities(load_shipped_scene("lamps.json"), 25, 0.005); }
+// 10⁸ times a lamp is looked for at a point.
+TEST(LightTree, ProbabilitiesOfLampsInAHall_all) { expect_right_probabilities(load_shipped_scene("lamps.json"), 40, 0.003); }
 TEST(LightTree, ProbabilitiesOfLampsOfTwelveDecades) { expect_right_probabilities(random_lamps(100, 12), 64, 0.002); }
 TEST(LightTree, ProbabilitiesOfOneLamp) { expect_right_probabilities(load_shipped_scene("cornell_box.json"), 64, 0.002); }
 // Points are within all nodes.
@@ -41,16 +44,28 @@ TEST(LightTree, ProbabilitiesOfALampAroundThem) {
     expect_right_probabilities(make_sphere(diffuse_material(vec3(0), vec3(1)), Facing::inwards), 64, 0.002);
 }
 
-// Mirrored and stretched, as an instance: normals and areas change.
-TEST(LightTree, ProbabilitiesOfAMirroredAndStretchedInstance) {
+// Lamps with the same centre, and some that are much smaller than all others.
+TEST(LightTree, ProbabilitiesOfLampsInOnePlace) {
+    std::vector<Quad> tiny;
+    for (int i = 0; i < 20; ++i) {
+        const vec3 u(std::cos(static_cast<float>(i)), std::sin(static_cast<float>(i)), 0.3f), v(0.2f, 0.1f, 1);
+        const float size = i % 2 == 0 ? 0.1f : 1e-6f;
+        tiny.push_back({-0.5f * size * (u + v), size * u, size * v, 1});
+    }
+    expect_right_probabilities(random_lamps(20, 3, 0.05f, tiny), 64, 0.002);
+}
+
+// Mirrored and stretched: normals and areas change.
+Scene stretched_lamps() {
     Scene scene = random_lamps(40, 3);
     const glm::mat3 linear(-3, 0.5, 0, 0, 1, 0, 0, 0, 0.2);
     scene.instances[0].object_to_world = glm::mat4x3(linear[0], linear[1], linear[2], vec3(7, 0, 0));
     scene.instances[0].normal_to_world = glm::transpose(glm::inverse(linear));
-    expect_right_probabilities(scene, 64, 0.002);
+    return scene;
 }
+TEST(LightTree, ProbabilitiesOfAMirroredAndStretchedInstance) { expect_right_probabilities(stretched_lamps(), 64, 0.002); }
 
-// Every trail leads to its leaf, and every child's power is that of its own children.
+// Every trail leads to its leaf, which knows the triangle's area, and every child's power is that of its own children.
 void expect_right_tree(const Scene& scene, const LightTable& table, const LightTree& tree) {
     for (uint32_t i = 0; i < table.triangles.size(); ++i) {
         const LightTriangle& light = table.triangles[i];
@@ -58,6 +73,11 @@ void expect_right_tree(const Scene& scene, const LightTable& table, const LightT
         uint32_t child = 0, trail = tree.leaves[place].trail;
         for (; child < IS_LIGHT_LEAF; trail >>= 2) child = tree.nodes[child].child[trail & 3];
         ASSERT_EQ(child, IS_LIGHT_LEAF + i);
+        const auto corner = [&](int k) {
+            return glm::dmat4x3(scene.instances[light.instance].object_to_world) * glm::dvec4(scene.corner(light.triangle, k), 1);
+        };
+        const double area = 0.5 * glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
+        ASSERT_NEAR(tree.leaves[place].area, area, 1e-6 * area);
     }
     for (const LightNode& node : tree.nodes)
         for (int i = 0; i < 4; ++i) {
@@ -68,9 +88,10 @@ void expect_right_tree(const Scene& scene, const LightTable& table, const LightT
 }
 
 TEST(LightTree, TrailsLeadToLeaves) {
-    const Scene scene = load_shipped_scene("lamps.json");
-    const LightTable table = build_light_table(scene);
-    expect_right_tree(scene, table, build_light_tree(scene, table));
+    for (const Scene& scene : {load_shipped_scene("lamps.json"), stretched_lamps()}) {
+        const LightTable table = build_light_table(scene);
+        expect_right_tree(scene, table, build_light_tree(scene, table));
+    }
 }
 
 TEST(LightTree, AMillionLampsOfTwelveDecades) {
