@@ -160,7 +160,8 @@ class Builder {
     // would become too deep. Only the second part may be empty, and only that of a single light.
     static std::array<std::span<Light>, 2> split(std::span<Light> lights, uint32_t depth) {
         size_t count = (lights.size() + 1) / 2;
-        if (lights.size() > 2) {
+        const size_t places = depth % 2 == 0 ? 4 : 2;  // of the node, for these lights: as many of them are leaves, however split
+        if (lights.size() > places) {
             dvec3 low{std::numeric_limits<double>::infinity()}, high = -low;
             for (const Light& light : lights) low = glm::min(low, light.centre()), high = glm::max(high, light.centre());
             const dvec3 size = high - low;

@@ -1,6 +1,6 @@
 """What the tree over emissive triangles gains: errors and seconds of chapter 14 with each way to choose a lamp.
 
-    ./lab notebook light_choices [--runs 6] [--output FILE.json]
+    ./lab notebook light_choices [--runs 4] [--output FILE.json]
 
 All take turns, with another seed in each run. The errors are those that the halves of the samples tell, and the seconds those of all
 processors together.
@@ -14,12 +14,12 @@ from project import ROOT, Parser, number, program_file, read_json, show_progress
 from tables.ages import stamped
 
 CHAPTER, CHOICES = "14_many_lights", ("tree", "power", "uniform")
-SCENES, SIZE, SAMPLES = ("lamps", "city", "heart_light", "cornell_box"), 128, 64
+SCENES, SIZE, SAMPLES = ("lamps", "city", "heart_light", "cornell_box"), 256, 32
 
 
 def main():
     parser = Parser("./lab notebook light_choices", __doc__)
-    parser.add_argument("--runs", type=number(int, 2), default=6, help="default: 6")
+    parser.add_argument("--runs", type=number(int, 2), default=4, help="default: 4")
     parser.add_argument("--output", type=Path, default=ROOT / "notebook/records/lights/native.json", metavar="FILE.json")
     options, rows, started = parser.parse_args(), [], time.monotonic()
     with tempfile.TemporaryDirectory() as folder:

@@ -138,5 +138,19 @@ TEST(Efficiency, VisibleNormalsPay_all) {
     expect_gain("visible normals against the cosine", measure(scene, settings), visible);
 }
 
+// Lamps of 1:1000 in 16 rooms. The camera looks at the floor of one: lamps that it sees would add the same noise to both.
+TEST(Efficiency, TheLightTreePays) {
+    Scene scene = load_shipped_scene("lamps.json");
+    scene.camera.target = {6, 0, 10.6f};
+    scene.camera.vertical_fov = 40;
+    RenderSettings settings{.width = 48, .height = 48, .samples = 16, .max_path_length = 2, .seed = 14000};
+    settings.estimator = chapter_estimator(chapter_named("many_lights"));
+    settings.backend = fastest_backend();
+    const Cost tree = measure(scene, settings);
+    settings.estimator.defines = {"LIGHT_CHOICE CHOOSES_BY_POWER"};
+    settings.seed += 100;
+    expect_gain("the light tree against the power of lamps", measure(scene, settings), tree);
+}
+
 }  // namespace
 }  // namespace lab
