@@ -145,18 +145,19 @@ struct LightTriangle {
 // A node of the tree over emissive triangles, see common/scene/light_tree.h: what it knows of each of its four children. A place
 // without a child has no power.
 struct LightNode {
-    vec4 centre_x;  // of a sphere around the child's triangles, in world space
-    vec4 centre_y;
-    vec4 centre_z;
+    vec4 centre_x;       // x of the centre of a sphere around the child's triangles, in world space
+    vec4 centre_y;       // its y
+    vec4 centre_z;       // its z
     vec4 radius;         // of the sphere, in scene units
-    vec4 mean_normal_x;  // of the triangles, weighted by power: shorter than 1 where they disagree
-    vec4 mean_normal_y;
-    vec4 mean_normal_z;
-    vec4 spread;  // the largest distance between it and the unit normal of a triangle
-    vec4 power;   // area times luminance, as a share of the scene's; times the squared radius of all triangles, so that no
-                  // quotient leaves the range of float
-    uvec4 child;  // the child's index; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
+    vec4 mean_normal_x;  // x of the mean normal of the triangles, weighted by power: shorter than 1 where they disagree
+    vec4 mean_normal_y;  // its y
+    vec4 mean_normal_z;  // its z
+    vec4 spread;         // the largest distance between it and the unit normal of a triangle
+    vec4 power;          // area times luminance, as a share of the scene's; times the squared radius of all triangles, so that no
+                         // quotient leaves the range of float
+    uvec4 child;         // the child's index; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
 };
+// From this number on a child of a LightNode is a leaf.
 SHARED_CONSTANT IS_LIGHT_LEAF = 0x80000000u;
 
 // What a ray that hits an emissive triangle needs to know of its leaf.

@@ -48,8 +48,12 @@ layout(scalar, set = 0, binding = BINDING_LIGHT_TRIANGLES) readonly buffer Light
 };
 #endif
 #ifdef FEATURE_LIGHT_TREE
-layout(scalar, set = 0, binding = BINDING_LIGHT_NODES) readonly buffer LightNodes { LightNode light_nodes[]; };
-layout(scalar, set = 0, binding = BINDING_LIGHT_LEAVES) readonly buffer LightLeaves { LightLeaf light_leaves[]; };
+layout(scalar, set = 0, binding = BINDING_LIGHT_NODES) readonly buffer LightNodes {
+    LightNode light_nodes[];  // of the tree over emissive triangles; its root comes first
+};
+layout(scalar, set = 0, binding = BINDING_LIGHT_LEAVES) readonly buffer LightLeaves {
+    LightLeaf light_leaves[];  // what a ray that hits an emissive triangle needs to know; see ShadingData.light
+};
 layout(scalar, set = 0, binding = BINDING_LIGHT_PLACES) readonly buffer LightPlaces {
     uint light_places[];  // an emissive triangle's place in light_leaves: the sum of one entry per triangle and one per instance
 };
