@@ -119,7 +119,7 @@ TEST_P(Determinism, ThreadsThatShareAPixelGiveTheSameImage) {
 TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
     // With a film that shaders see in parts: the checkpoint contains the samples of all parts.
     const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
-    const GpuScene gpu_scene(test_device(), scene);
+    const GpuScene gpu_scene = make_gpu_scene(scene, settings());
     const auto scene_backend = build_scene_backend(compute_backend, test_device(), gpu_scene);
     const auto make_renderer = [&] {
         return Renderer(test_device(), *scene_backend, settings().estimator, make_parameters(scene, settings()), {},
