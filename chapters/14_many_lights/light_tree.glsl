@@ -132,8 +132,11 @@ const float TRIANGLE_PROBABILITY = HAS_LIGHT_PROBE_CELLS ? 1.0 - LIGHT_PROBE_PRO
 // Chooses a triangle, and two numbers in [0,1) for a point on it.
 LightTriangle choose_light(inout uvec2 seed, out vec2 u) {
     if (LIGHT_CHOICE == CHOOSES_BY_POWER) return choose_light_triangle(seed, u);
-    bool is_uniform = LIGHT_CHOICE == CHOOSES_UNIFORMLY;
-    LightTriangle light = is_uniform ? choose_light_uniformly(seed, u) : choose_light_by_tree(seed, u);
+    LightTriangle light;
+    if (LIGHT_CHOICE == CHOOSES_UNIFORMLY)
+        light = choose_light_uniformly(seed, u);
+    else
+        light = choose_light_by_tree(seed, u);
     light.inverse_density /= TRIANGLE_PROBABILITY;
     return light;
 }
