@@ -13,6 +13,7 @@
 #include "07_multiple_importance_sampling/extend_path.glsl"
 #else
 #include "medium.glsl"
+#include "equiangular.glsl"
 #include "scatter.glsl"
 
 // What a path carries from bounce to bounce: as in chapter 7, and the medium that it is in.
@@ -26,9 +27,14 @@ struct Path {
     float bounce_density;
     uint medium;     // index of the one around the ray's origin
     float distance;  // from x_{k-1} to the ray's origin, through open boundaries
+    Segment segment;   // where x_{k-1} is a collision, or without an end
+    float flight;      // its t there
 };
 
-Path start_path(Ray ray) { return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0, find_medium(ray), 0.0); }
+Path start_path(Ray ray) {
+    return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0, find_medium(ray), 0.0,
+                Segment(ray, 0.0, 0u), 0.0);
+}
 
 bool extend_path(inout Path path, inout uvec2 seed) {
     // A free flight along x_{k-1}, ω_{k-1} ends in the medium or at the next surface. One that ends within rounding errors of a
@@ -38,6 +44,10 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     bool is_hit = trace_ray(path.ray, NO_LIMIT, hit);
     bool is_collision = flight < (is_hit ? (1.0 - 64.0 * ROUNDING) * hit.distance : NO_LIMIT);
     if (!is_hit && path.medium != 0u) return false;  // its mesh is not closed
+    Segment segment = Segment(path.ray, is_hit ? hit.distance : FARTHEST, path.medium);
+    if (DISTANCE_SAMPLING == SAMPLES_ANGLES && STRATEGY != STRATEGY_BOUNCES && path.path_length < parameters.max_path_length &&
+        is_counted(path.path_length + 1u))
+        path.radiance += path.radiance_scale * path.throughput * sample_segment(segment, seed);
 
     if (!is_hit && !is_collision) {
         float light_density = path.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
@@ -63,6 +73,8 @@ bool extend_path(inout Path path, inout uvec2 seed) {
         }
         float cos_light = dot(s.geometric_normal, s.out_direction);
         float light_density = path.is_light_sampled ? to_solid_angle(s.light_density, path.distance, cos_light) : 0.0;
+        if (DISTANCE_SAMPLING == SAMPLES_ANGLES && path.segment.t_max > 0.0)
+            light_density *= get_distance_ratio(path.segment, s.position, path.flight);
         if (is_counted(path.path_length))
             path.radiance += path.radiance_scale * path.throughput * get_bounce_part(light_density, path.bounce_density) *
                              s.emission;
@@ -93,6 +105,8 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     path.ray = get_ray_from_surface(s, bounce.direction);
     path.medium = get_side(sides, s, bounce.direction);
     path.distance = 0.0;
+    path.segment = Segment(segment.ray, is_collision ? segment.t_max : 0.0, segment.medium);
+    path.flight = flight;
     ++path.path_length;
     return true;
 }

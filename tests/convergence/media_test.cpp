@@ -137,6 +137,38 @@ TEST(Media, ASlabScattersOnceAsItsPhaseFunctionSays) {
         }
 }
 
+// A lamp beside the ray in fog: light that has been scattered once, by quadrature over the ray and the lamp. All ways to sample
+// the distance find it, with light samples alone as well as together with bounces.
+TEST(Media, ALampInFogGlowsAsTheIntegralOverTheRaySays) {
+    constexpr double extinction = 0.5, albedo = 0.6, g = 0.4, side = 0.2, x = 0.3;
+    Scene scene = make_scene({diffuse_material(vec3(0), vec3(10))}, {{{0.3f, -0.1f, -0.1f}, {0, 0, 0.2f}, {0, 0.2f, 0}, 0}});
+    scene = in_fog(scene, {static_cast<float>(extinction), vec3(static_cast<float>(albedo)), static_cast<float>(g)});
+    double expected = 0;
+    constexpr int steps = 4000, n = 24;
+    constexpr double length = 20;
+    for (int k = 0; k < steps; ++k)
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const double t = (k + 0.5) / steps * length;
+                const dvec3 to_light(x, ((i + 0.5) / n - 0.5) * side, ((j + 0.5) / n - 0.5) * side - (2 - t));
+                const double r = glm::length(to_light), cos_theta = -to_light.z / r;
+                expected += length / steps * extinction * albedo * std::exp(-extinction * (t + r)) * 10 * phase(g, cos_theta) *
+                            x / r * side * side / n / n / (r * r);
+            }
+    const std::string light_alone = "STRATEGY STRATEGY_LIGHT";
+    for (const auto& [name, samples, defines] :
+         {std::tuple("flights", 256u, std::vector<std::string>{}),
+          {"flights, light samples alone", 256u, {light_alone}},
+          {"angles", 16u, {"DISTANCE_SAMPLING SAMPLES_ANGLES"}},
+          {"angles, light samples alone", 16u, {"DISTANCE_SAMPLING SAMPLES_ANGLES", light_alone}}}) {
+        RenderSettings settings = media_settings(samples);
+        settings.only_path_length = 1;
+        settings.max_path_length = 1;
+        settings.estimator.defines = defines;
+        expect_mean(name, mean_of(seen(scene, {0, 0, 2}, {0, 0, 0}), settings), expected, 0.01, 4);
+    }
+}
+
 // H(μ) = 1 / (√(1 - a) + a/2 ∫ μ' H(μ') / (μ + μ') dμ') by iteration (Chandrasekhar, "Radiative Transfer", 1950).
 double chandrasekhar_h(double albedo, double mu) {
     constexpr int n = 2000;
