@@ -47,9 +47,10 @@ SHARED_CONSTANT BINDING_TEXTURE_SIZES = 22u;
 SHARED_CONSTANT BINDING_MICROFACETS = 23u;
 SHARED_CONSTANT BINDING_MEDIA = 24u;
 SHARED_CONSTANT BINDING_BOUNDARIES = 25u;
+SHARED_CONSTANT BINDING_DENSITIES = 26u;
 // Of the backend `native` alone. Macros leave the shaders of the others as they are.
-#define BINDING_WORLD_TRIANGLES 26u
-#define BINDING_FIRST_WORLD_TRIANGLES 27u
+#define BINDING_WORLD_TRIANGLES 27u
+#define BINDING_FIRST_WORLD_TRIANGLES 28u
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -92,11 +93,17 @@ struct Microfacets {
     vec2 mean_albedo;                      // the same under uniform light from all directions
 };
 
-// What fills a volume and scatters light: fog, milk, smoke. The same everywhere in it.
+// What fills a volume and scatters light: fog, milk, smoke.
 struct Medium {
-    float extinction;  // collisions per unit of world length; 0 is vacuum
+    float extinction;  // collisions per unit of world length where the density is 1; 0 is vacuum
     vec3 albedo;       // fraction of the light that a collision scatters, in [0,1]; the rest is absorbed
     float anisotropy;  // mean cosine of the angle by which it changes its direction, in (-1,1)
+    // The density is 1, or it comes from a grid: known at the centres of cells, trilinear in between, 0 outside of its box.
+    uvec3 grid_size;  // cells along each axis; 0 without a grid
+    uint first_density;
+    float largest_density;
+    vec3 low;  // corners of the box in the world
+    vec3 high;
 };
 
 // What becomes of the medium that a path is in where it meets an instance.

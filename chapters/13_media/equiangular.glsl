@@ -5,6 +5,9 @@ const uint SAMPLES_ANGLES = 1u;
 #define DISTANCE_SAMPLING SAMPLES_FLIGHTS
 #endif
 
+// The formula needs a density of flights, which a grid does not have.
+bool samples_angles(Medium medium) { return DISTANCE_SAMPLING == SAMPLES_ANGLES && !has_grid(medium); }
+
 // A segment without an end has this length, and light from depths beyond the other is none: both keep products finite.
 const float FARTHEST = 1e18;
 const float FARTHEST_DEPTH = 80.0;

@@ -20,16 +20,18 @@ BsdfSample sample_scattering(ShadingData s, Medium medium, inout uvec2 seed) {
 
 // The light that arrives at x_k from one direction, dimmed by the media on its way and scattered along ω_o. A light sample found
 // it; it has the weight of chapter 7 against bounces, with their densities with respect to solid angle.
-vec3 scatter_light(ShadingData s, Sides sides, vec3 omega, vec3 radiance, float light_density, Ray shadow_ray, float t_max) {
+vec3 scatter_light(ShadingData s, Sides sides, vec3 omega, vec3 radiance, float light_density, Ray shadow_ray, float t_max,
+                   inout uvec2 seed) {
     Medium medium = media[sides.here];
     vec3 scattering = get_scattering(s, medium, omega);
     if (scattering == vec3(0.0)) return vec3(0.0);
     float bounce_density = STRATEGY == STRATEGY_LIGHT ? 0.0 : get_scattering_density(s, medium, omega);
-    return scattering * radiance * (get_transmittance(shadow_ray, t_max, get_side(sides, s, omega)) / (light_density + bounce_density));
+    float transmittance = get_transmittance(shadow_ray, t_max, get_side(sides, s, omega), seed);
+    return scattering * radiance * (transmittance / (light_density + bounce_density));
 }
 
 // The same from a point y of a lamp. `distance_ratio` is 1 where the path itself found x_k.
-vec3 scatter_lamp(ShadingData s, Sides sides, LightTriangle light, LightPoint y, float distance_ratio) {
+vec3 scatter_lamp(ShadingData s, Sides sides, LightTriangle light, LightPoint y, float distance_ratio, inout uvec2 seed) {
     vec3 to_light = y.position - s.position;
     float distance = length(to_light);
     vec3 omega = to_light / distance;
@@ -37,7 +39,7 @@ vec3 scatter_lamp(ShadingData s, Sides sides, LightTriangle light, LightPoint y,
     if (!(cos_light > 0.0)) return vec3(0.0);
     float light_density = distance_ratio * to_solid_angle(y.light_density, distance, cos_light);
     return scatter_light(s, sides, omega, y.emission * (light.inverse_density * y.light_density), light_density,
-                         get_ray_to_point(s, y.position_in_front), 1.0);
+                         get_ray_to_point(s, y.position_in_front), 1.0, seed);
 }
 
 // A point y on a lamp, and the emissive triangle that it lies on.
@@ -60,12 +62,12 @@ vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
         float light_density = get_background_density(omega);
         if (light_density == 0.0) return vec3(0.0);
         return scatter_light(s, sides, omega, get_background_radiance(omega) * (light_density / sampled_density), light_density,
-                             get_ray_from_surface(s, omega), NO_LIMIT);
+                             get_ray_from_surface(s, omega), NO_LIMIT, seed);
     }
-    if (DISTANCE_SAMPLING == SAMPLES_ANGLES && is_in_medium(s)) return vec3(0.0);
+    if (samples_angles(media[sides.here]) && is_in_medium(s)) return vec3(0.0);
     LightTriangle light;
     LightPoint y = sample_lamp(light, seed);
-    return scatter_lamp(s, sides, light, y, 1.0);
+    return scatter_lamp(s, sides, light, y, 1.0, seed);
 }
 
 // Estimates the light of lamps that is scattered once along a segment.
@@ -75,5 +77,5 @@ vec3 sample_segment(Segment segment, inout uvec2 seed) {
     LightPoint y = sample_lamp(light, seed);
     float t = sample_distance(segment, y.position, get_random_numbers(seed).x);
     ShadingData s = get_medium_point(segment.ray.origin + t * segment.ray.direction, segment.ray.direction);
-    return scatter_lamp(s, Sides(segment.medium, segment.medium), light, y, get_distance_ratio(segment, y.position, t));
+    return scatter_lamp(s, Sides(segment.medium, segment.medium), light, y, get_distance_ratio(segment, y.position, t), seed);
 }
