@@ -1,4 +1,4 @@
-"""Computes the files in assets/ that follow from formulas: smooth meshes, textures and light probes. Scenes, materials and meshes of
+"""Computes the files in assets/ that follow from formulas: smooth meshes, textures, volumes and light probes. Scenes, materials and meshes of
 a few triangles are edited by hand.
 
 The same meshes come out on every machine: numbers are rounded to few decimals.
@@ -8,8 +8,8 @@ import math
 import struct
 
 import numpy as np
-from makers import images
-from makers.shapes import direction, heart, pumpkin, row_of_balls, sphere, torus
+from makers import images, volumes
+from makers.shapes import direction, heart, pumpkin, rounded_cylinder, row_of_balls, sphere, torus
 from PIL import Image
 from project import ROOT, Parser, UserError, write_bytes
 
@@ -18,9 +18,11 @@ MESHES = {  # name -> parts
     "numbered_ball": lambda: [sphere("numbered_squares", times_around=2)],
     "rough_balls": lambda: (row_of_balls([f"metal_{i}" for i in range(5)], 0.3, 0.66, -0.35)
                             + row_of_balls([f"plastic_{i}" for i in range(5)], 0.22, 0.56, 0.45)),
-    "heart": heart, "orange_pumpkin": lambda: pumpkin(10, 0.74), "green_pumpkin": lambda: pumpkin(14, 0.6),
+    "rounded_cylinder": lambda: [rounded_cylinder("white")], "heart": heart,
+    "orange_pumpkin": lambda: pumpkin(10, 0.74), "green_pumpkin": lambda: pumpkin(14, 0.6),
 }
 TEXTURES = {"numbered_squares": (256, 256), "planks": (300, 200), "panes": (96, 160)}  # width and height
+VOLUMES = ("smoke",)
 LIGHT_PROBES = {"sky": (256, 128), "clear_sky": (512, 256), "softboxes": (256, 128)}
 
 
@@ -85,6 +87,7 @@ def make_files():
     """Path below assets/ -> bytes."""
     return ({f"meshes/{name}.obj": encode_obj(name, parts()) for name, parts in MESHES.items()}
             | {f"textures/{name}.png": encode_png(*size, getattr(images, name)) for name, size in TEXTURES.items()}
+            | {f"volumes/{name}.vol": volumes.encode_vol(getattr(volumes, name)()) for name in VOLUMES}
             | {f"light_probes/{name}.hdr": encode_hdr(*size, getattr(images, name)) for name, size in LIGHT_PROBES.items()})
 
 

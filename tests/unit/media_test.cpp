@@ -155,7 +155,7 @@ TEST_F(DensityFile, ThatCannotBeIsRefused) {
         EXPECT_USER_ERROR(load_grid(content, keys), reason);
     };
     const std::vector<float> fine{0, 1, 2, 3};
-    refuse("", "too short");
+    refuse("", "the file is empty");
     refuse(grid_file(fine).substr(0, 47), "too short");
     refuse(grid_file({1, 2, 3}), "ends early");
     refuse(grid_file({1, 2, 3, 4, 5}), "ends late");
