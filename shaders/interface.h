@@ -99,11 +99,11 @@ struct Medium {
     vec3 albedo;       // fraction of the light that a collision scatters, in [0,1]; the rest is absorbed
     float anisotropy;  // mean cosine of the angle by which it changes its direction, in (-1,1)
     // The density is 1, or it comes from a grid: known at the centres of cells, trilinear in between, 0 outside of its box.
-    uvec3 grid_size;  // cells along each axis; 0 without a grid
-    uint first_density;
-    float largest_density;
-    vec3 low;  // corners of the box in the world
-    vec3 high;
+    uvec3 grid_size;        // cells along each axis; 0 without a grid
+    uint first_density;     // index of its first cell
+    float largest_density;  // of all its cells
+    vec3 low;               // corner of the box in the world
+    vec3 high;              // the opposite corner
 };
 
 // What becomes of the medium that a path is in where it meets an instance.
