@@ -1,0 +1,86 @@
+"""Compares our best chapter with other renderers at equal error, on the CPU, for few and for many samples. Where the file has runs
+already, those that are missing are added.
+
+    for name in mitsuba cycles luxcore; do ./lab notebook install_peer $name; done
+    . output/peers/mitsuba/bin/activate
+    ./lab notebook renderers --record notebook/records/renderers/DEVICE.json
+"""
+import time
+from pathlib import Path
+
+from peers.renderers import python_of
+from project import Parser, UserError, chapter_named, number, processor, read_json, show_progress, write_json
+from references.images import find_references
+from report.measurement import Refused, digest_of_sources, new_case, run_case
+from tables.ages import stamped
+
+GOES_ON = True
+SCENES = ["cornell_box", "heart_light", "clear_glass"]
+COUNTS = [16, 64, 256, 1024]  # samples of a pixel
+OURS = "chapter {}, native"
+PEERS = {  # case: (--variant, --sampler)
+    "Mitsuba LLVM": ("llvm_ad_rgb", "independent"), "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
+    "Cycles, light tree": ("cycles", "light_tree"), "Cycles, no light tree": ("cycles", "no_light_tree"),
+    "LuxCore, Sobol": ("luxcore", "sobol"), "LuxCore, random": ("luxcore", "random"),
+}
+CHAPTERS = {"fog": "media", "microfacets": "microfacets"}  # scene: the first chapter that has what it needs
+PLAIN = "path_regeneration"
+
+
+def our_case(scene, reference):
+    folder = chapter_named(CHAPTERS.get(scene.stem, PLAIN))
+    return new_case(scene, reference, OURS.format(int(folder[:2])), folder) | {"backend": "native"}
+
+
+def peer_case(scene, reference, name):
+    variant, sampler = PEERS[name]
+    renderer = "mitsuba" if variant.startswith("llvm") else variant
+    return new_case(scene, reference, name, f"{python_of(renderer)} notebook peer --variant {variant}", ("--sampler", sampler), is_peer=True)
+
+
+def all_cases():
+    return [case for scene, reference in find_references(SCENES)
+            for case in (our_case(scene, reference), *(peer_case(scene, reference, name) for name in PEERS))]
+
+
+def render(case, seed):
+    """The run with this seed. A chapter's rows are those of one picture, whose first samples are those of a smaller one."""
+    settings = {"backend": case["backend"], "device": None}
+    counts = COUNTS if case["is_peer"] else COUNTS[-1:]
+    report = run_case(case, settings, ["--samples", *counts, "--seed", seed])
+    rows = report["rows"] if case["is_peer"] else [row for row in report["rows"] if row["samples"] in COUNTS]
+    return {"seed": seed, "rows": rows}, report["device"]
+
+
+def opened(file):
+    """The record in the file if it measured the same, or an empty one."""
+    cases = all_cases()
+    record = {"settings": {"sources": digest_of_sources(cases)}, "environment": {**dict(zip(("processor", "cores"), processor())), "renderers": {}}, "cases": cases}
+    previous = read_json(file) if file.exists() else {}
+    if previous.get("settings") != record["settings"]:
+        return record
+    runs = {(case["scene"], case["case"]): case for case in previous["cases"]}
+    return previous | {"cases": [runs.get((case["scene"], case["case"]), case) for case in cases]}
+
+
+def main():
+    parser = Parser("./lab notebook renderers", __doc__)
+    parser.add_argument("--record", type=Path, required=True, metavar="FILE.json")
+    parser.add_argument("--repetitions", type=number(int, 2, 100), default=4, help="runs with other random numbers; default: 4")
+    options = parser.parse_args()
+    record, started = opened(options.record), time.monotonic()
+    steps = [(seed, case) for seed in range(1, options.repetitions + 1) for case in record["cases"] if len(case["runs"]) < seed]
+    for done, (seed, case) in enumerate(steps, 1):
+        if not case["refused"]:
+            try:
+                run, device = render(case, seed)
+                case["runs"].append(run)
+                record["environment"]["renderers"][case["case"]] = device
+            except Refused as refusal:
+                if "is not compared" not in str(refusal):
+                    raise UserError(f"{case['scene']}, {case['case']}: {refusal}") from None
+                case["refused"] = str(refusal)
+            record = stamped(record)
+            write_json(options.record, record, 5)
+        show_progress(f"{case['scene']}, {case['case']}", done, len(steps), started)
+    print(f"{options.record}: complete; ./lab notebook export shows what is in notebook/records")
