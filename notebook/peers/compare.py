@@ -5,10 +5,11 @@ already, those that are missing are added.
     . output/peers/mitsuba/bin/activate
     ./lab notebook renderers --record notebook/records/renderers/DEVICE.json
 """
+import shutil
 import time
 from pathlib import Path
 
-from peers.renderers import python_of
+from peers.renderers import python_of, renderer_of
 from project import Parser, UserError, chapter_named, number, processor, read_json, show_progress, write_json
 from references.images import find_references
 from report.measurement import Refused, digest_of_sources, new_case, run_case
@@ -34,8 +35,7 @@ def our_case(scene, reference):
 
 def peer_case(scene, reference, name):
     variant, sampler = PEERS[name]
-    renderer = "mitsuba" if variant.startswith("llvm") else variant
-    return new_case(scene, reference, name, f"{python_of(renderer)} notebook peer --variant {variant}", ("--sampler", sampler), is_peer=True)
+    return new_case(scene, reference, name, f"{python_of(renderer_of(variant))} notebook peer --variant {variant}", ("--sampler", sampler), is_peer=True)
 
 
 def all_cases():
@@ -50,6 +50,12 @@ def render(case, seed):
     report = run_case(case, settings, ["--samples", *counts, "--seed", seed])
     rows = report["rows"] if case["is_peer"] else [row for row in report["rows"] if row["samples"] in COUNTS]
     return {"seed": seed, "rows": rows}, report["device"]
+
+
+def refuse_without_peers():
+    for renderer in dict.fromkeys(map(renderer_of, (variant for variant, _ in PEERS.values()))):
+        if not shutil.which(python_of(renderer)):
+            raise UserError(f"{renderer} is not installed: ./lab notebook install_peer {renderer}")
 
 
 def opened(file):
@@ -68,6 +74,7 @@ def main():
     parser.add_argument("--record", type=Path, required=True, metavar="FILE.json")
     parser.add_argument("--repetitions", type=number(int, 2, 100), default=4, help="runs with other random numbers; default: 4")
     options = parser.parse_args()
+    refuse_without_peers()
     record, started = opened(options.record), time.monotonic()
     steps = [(seed, case) for seed in range(1, options.repetitions + 1) for case in record["cases"] if len(case["runs"]) < seed]
     for done, (seed, case) in enumerate(steps, 1):

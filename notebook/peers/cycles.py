@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from peers.renderers import Frame, timed
-from peers.simple_scenes import refuse_what_peers_lack
+from peers.simple_scenes import camera_matrix, corners, refuse_what_peers_lack
 
 UNLIMITED = 1024  # bounces of a kind: only max_bounces counts
 
@@ -32,6 +32,13 @@ def front_emission(tree, radiance):
     return emission
 
 
+def added(tree, *shaders):
+    both = new_node(tree, "AddShader")
+    for place, shader in enumerate(shaders):
+        tree.links.new(both.inputs[place], shader.outputs[0])
+    return both
+
+
 def make_material(material):
     made = bpy.data.materials.new(material.name)
     made.use_nodes = True
@@ -42,10 +49,7 @@ def make_material(material):
     else:
         shader = new_node(tree, "BsdfDiffuse", Color=colour(material.diffuse), Roughness=0.0)
     if material.emission.any():
-        both = new_node(tree, "AddShader")
-        for place, part in enumerate((shader, front_emission(tree, material.emission))):
-            tree.links.new(both.inputs[place], part.outputs[0])
-        shader = both
+        shader = added(tree, shader, front_emission(tree, material.emission))
         made.cycles.emission_sampling = "FRONT"
     tree.links.new(new_node(tree, "OutputMaterial").inputs["Surface"], shader.outputs[0])
     return made
@@ -53,29 +57,19 @@ def make_material(material):
 
 def add_mesh(surface):
     """A mesh without shared vertices, in our coordinates."""
-    count = len(surface.positions)
+    positions, triangles, normals = corners(surface)
     mesh = bpy.data.meshes.new(surface.material.name)
-    mesh.from_pydata(surface.positions.reshape(-1, 3).tolist(), [], np.arange(3 * count).reshape(-1, 3).tolist())
+    mesh.from_pydata(positions, [], triangles)
     mesh.materials.append(make_material(surface.material))
-    mesh.shade_flat()
-    if surface.normals is not None:
+    if normals is None:
+        mesh.shade_flat()
+    else:
         mesh.shade_smooth()
-        lengths = np.linalg.norm(surface.normals, axis=2, keepdims=True)
-        mesh.normals_split_custom_set((surface.normals / lengths).reshape(-1, 3).tolist())
+        mesh.normals_split_custom_set(normals)
     placed = bpy.data.objects.new(surface.material.name, mesh)
+    # Cycles would move points and turn normals of smooth surfaces, which hides facets in the shadow and changes the mean.
     placed.shadow_terminator_normal_offset = placed.shadow_terminator_geometry_offset = placed.shadow_terminator_shading_offset = 0.0
     bpy.context.collection.objects.link(placed)
-
-
-def camera_matrix(camera):
-    """From the camera to the world: it looks along -z, and y is up."""
-    back = camera["position"] - camera["target"]
-    back = back / np.linalg.norm(back)
-    right = np.cross(camera["up"], back)
-    right = right / np.linalg.norm(right)
-    matrix = np.eye(4)
-    matrix[:3] = np.stack([right, np.cross(back, right), back, camera["position"]], axis=1)
-    return matrix
 
 
 def add_camera(camera):
@@ -86,6 +80,18 @@ def add_camera(camera):
     placed.matrix_world = camera_matrix(camera).T.tolist()
     bpy.context.collection.objects.link(placed)
     bpy.context.scene.camera = placed
+
+
+def add_fog(fog):
+    """The world's volume: scattering by the albedo, and absorption by what it lacks to 1."""
+    world = bpy.context.scene.world = bpy.data.worlds.new("fog")
+    world.use_nodes = True
+    tree = world.node_tree
+    tree.nodes.clear()
+    albedo, density = np.broadcast_to(fog["albedo"], 3), float(fog["extinction"])
+    parts = (new_node(tree, "VolumeScatter", Color=colour(albedo), Density=density, Anisotropy=float(fog["anisotropy"])),
+             new_node(tree, "VolumeAbsorption", Color=colour(albedo), Density=density))
+    tree.links.new(new_node(tree, "OutputWorld").inputs["Volume"], added(tree, *parts).outputs[0])
 
 
 def choose_settings(scene, options):
@@ -130,6 +136,8 @@ class Renderer:
         for surface in scene.surfaces:
             add_mesh(surface)
         add_camera(scene.camera)
+        if scene.fog:
+            add_fog(scene.fog)
         choose_settings(self.scene, options)
         self.discarded_seconds = self.render(1, 0).seconds  # hands the scene over to Cycles, which keeps it
 

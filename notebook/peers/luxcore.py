@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pyluxcore
 from peers.renderers import Frame, timed
-from peers.simple_scenes import refuse_what_peers_lack
+from peers.simple_scenes import corners, refuse_what_peers_lack
 
 POLL = 0.005  # seconds between questions whether it is done: it renders on meanwhile
 
@@ -39,14 +39,16 @@ def make_scene(scene, options):
         "scene.camera.type": "perspective", "scene.camera.fieldofview": float(camera["vertical_fov"]),
         "scene.camera.screenwindow": [-aspect, aspect, -1 - pixel, 1 - pixel], "scene.camera.lookat.orig": floats(camera["position"]),
         "scene.camera.lookat.target": floats(camera["target"]), "scene.camera.up": floats(camera["up"])}))
+    if scene.fog:
+        albedo, extinction = np.broadcast_to(scene.fog["albedo"], 3), scene.fog["extinction"]
+        made.Parse(properties({
+            "scene.volumes.fog.type": "homogeneous", "scene.volumes.fog.scattering": floats(extinction * albedo),
+            "scene.volumes.fog.absorption": floats(extinction * (1 - albedo)), "scene.volumes.fog.asymmetry": floats([scene.fog["anisotropy"]] * 3),
+            "scene.volumes.fog.multiscattering": True, "scene.world.volume.default": "fog"}))
     for number, surface in enumerate(scene.surfaces):
-        name, count = f"surface_{number}", len(surface.positions)
-        normals = None
-        if surface.normals is not None:
-            lengths = np.linalg.norm(surface.normals, axis=2, keepdims=True)
-            normals = list(map(tuple, (surface.normals / lengths).reshape(-1, 3).tolist()))
-        made.DefineMesh(name, list(map(tuple, surface.positions.reshape(-1, 3).tolist())),
-                        list(map(tuple, np.arange(3 * count).reshape(-1, 3).tolist())), normals, None, None, None)
+        name = f"surface_{number}"
+        points, triangles, normals = (values and list(map(tuple, values)) for values in corners(surface))
+        made.DefineMesh(name, points, triangles, normals, None, None, None)
         made.Parse(properties({**material_properties(name, surface.material), f"scene.objects.{name}.shape": name,
                                f"scene.objects.{name}.material": name}))
     return made

@@ -9,6 +9,7 @@ Imports only what every Python has. A renderer's module defines a class Renderer
     discarded_seconds          of renders that only prepared others, such as those that compiled a kernel
     largest                    the most samples of a frame
 """
+import os
 import time
 from contextlib import contextmanager
 from typing import NamedTuple
@@ -52,4 +53,4 @@ def renderer_of(variant):
 
 def python_of(renderer):
     """The Python that has a renderer. Mitsuba is the user's own, such as that of an active virtual environment."""
-    return "python3" if renderer == "mitsuba" else str((FOLDER / renderer / "bin/python").relative_to(ROOT))
+    return "python3" if renderer == "mitsuba" else os.path.relpath(FOLDER / renderer / "bin/python", ROOT)
