@@ -18,24 +18,22 @@ from tables.ages import stamped
 GOES_ON = True
 SCENES = ["cornell_box", "heart_light", "clear_glass"]
 COUNTS = [16, 64, 256, 1024]  # samples of a pixel
-OURS = "chapter {}, native"
 PEERS = {  # case: (--variant, --sampler)
     "Mitsuba LLVM": ("llvm_ad_rgb", "independent"), "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
     "Cycles, light tree": ("cycles", "light_tree"), "Cycles, no light tree": ("cycles", "no_light_tree"),
     "LuxCore, Sobol": ("luxcore", "sobol"), "LuxCore, random": ("luxcore", "random"),
 }
-CHAPTERS = {"fog": "media", "microfacets": "microfacets"}  # scene: the first chapter that has what it needs
-PLAIN = "path_regeneration"
 
 
 def our_case(scene, reference):
-    folder = chapter_named(CHAPTERS.get(scene.stem, PLAIN))
-    return new_case(scene, reference, OURS.format(int(folder[:2])), folder) | {"backend": "native"}
+    folder = chapter_named("path_regeneration")
+    return new_case(scene, reference, f"chapter {int(folder[:2])}, native", folder) | {"backend": "native"}
 
 
 def peer_case(scene, reference, name):
     variant, sampler = PEERS[name]
-    return new_case(scene, reference, name, f"{python_of(renderer_of(variant))} notebook peer --variant {variant}", ("--sampler", sampler), is_peer=True)
+    program = f"{python_of(renderer_of(variant))} notebook peer --variant {variant}"
+    return new_case(scene, reference, name, program, ("--sampler", sampler), is_peer=True)
 
 
 def all_cases():
@@ -61,7 +59,8 @@ def refuse_without_peers():
 def opened(file):
     """The record in the file if it measured the same, or an empty one."""
     cases = all_cases()
-    record = {"settings": {"sources": digest_of_sources(cases)}, "environment": {**dict(zip(("processor", "cores"), processor())), "renderers": {}}, "cases": cases}
+    environment = dict(zip(("processor", "cores"), processor())) | {"renderers": {}}
+    record = {"settings": {"sources": digest_of_sources(cases)}, "environment": environment, "cases": cases}
     previous = read_json(file) if file.exists() else {}
     if previous.get("settings") != record["settings"]:
         return record

@@ -66,10 +66,7 @@ def add_mesh(surface):
     else:
         mesh.shade_smooth()
         mesh.normals_split_custom_set(normals)
-    placed = bpy.data.objects.new(surface.material.name, mesh)
-    # Cycles would move points and turn normals of smooth surfaces, which hides facets in the shadow and changes the mean.
-    placed.shadow_terminator_normal_offset = placed.shadow_terminator_geometry_offset = placed.shadow_terminator_shading_offset = 0.0
-    bpy.context.collection.objects.link(placed)
+    bpy.context.collection.objects.link(bpy.data.objects.new(surface.material.name, mesh))
 
 
 def add_camera(camera):
@@ -107,7 +104,8 @@ def choose_settings(scene, options):
         "device": "CPU", "use_adaptive_sampling": False, "use_denoising": False, "sample_clamp_direct": 0.0, "sample_clamp_indirect": 0.0,
         "pixel_filter_type": "BOX", "filter_width": 1.0, "blur_glossy": 0.0, "caustics_reflective": True, "caustics_refractive": True,
         "max_bounces": bounces, "min_light_bounces": 0, "sampling_pattern": "TABULATED_SOBOL", "use_auto_tile": False,
-        "use_light_tree": options.sampler == "light_tree", **{f"{kind}_bounces": UNLIMITED for kind in ("diffuse", "glossy", "transmission", "volume")},
+        "use_light_tree": options.sampler == "light_tree",
+        **{f"{kind}_bounces": UNLIMITED for kind in ("diffuse", "glossy", "transmission", "volume")},
     }.items():
         setattr(cycles, name, value)
 

@@ -43,7 +43,8 @@ def make_scene(scene, options):
         albedo, extinction = np.broadcast_to(scene.fog["albedo"], 3), scene.fog["extinction"]
         made.Parse(properties({
             "scene.volumes.fog.type": "homogeneous", "scene.volumes.fog.scattering": floats(extinction * albedo),
-            "scene.volumes.fog.absorption": floats(extinction * (1 - albedo)), "scene.volumes.fog.asymmetry": floats([scene.fog["anisotropy"]] * 3),
+            "scene.volumes.fog.absorption": floats(extinction * (1 - albedo)),
+            "scene.volumes.fog.asymmetry": floats([scene.fog["anisotropy"]] * 3),
             "scene.volumes.fog.multiscattering": True, "scene.world.volume.default": "fog"}))
     for number, surface in enumerate(scene.surfaces):
         name = f"surface_{number}"

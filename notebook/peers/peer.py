@@ -36,10 +36,12 @@ def report(module, options):
 def main():
     parser = Parser("./lab notebook peer", __doc__)
     parser.add_argument("scene", type=Path)
-    parser.add_argument("--variant", choices=[*VARIANTS, *(name for name in SETTINGS if name != "mitsuba")], required=True, help="of Mitsuba, or another renderer")
+    variants = [*VARIANTS, *(name for name in SETTINGS if name != "mitsuba")]
+    parser.add_argument("--variant", choices=variants, required=True, help="of Mitsuba, or another renderer")
     for name in ("width", "height", "max-path-length", "seed"):
         parser.add_argument(f"--{name}", type=int, required=True)
-    parser.add_argument("--sampler", help="; ".join(f"of {name}: {', '.join(values)}" for name, values in SETTINGS.items()) + "; default: the first")
+    samplers = "; ".join(f"of {name}: {', '.join(values)}" for name, values in SETTINGS.items())
+    parser.add_argument("--sampler", help=f"{samplers}; default: the first")
     length = parser.add_mutually_exclusive_group(required=True)
     length.add_argument("--samples", type=int, nargs="+", help="a pixel, or as many more as the sampler needs")
     length.add_argument("--time-limit", type=float, help="stop after so many seconds of rendering")

@@ -12,14 +12,16 @@ def by_scene(record):
     for case in record["cases"]:
         if case["runs"]:
             scenes.setdefault(scene_of(case["scene"]), []).append(case)
-    return {scene: ([case for case in cases if not case["is_peer"]][0], [case for case in cases if case["is_peer"]]) for scene, cases in scenes.items()}
+    return {scene: (next(case for case in cases if not case["is_peer"]), [case for case in cases if case["is_peer"]])
+            for scene, cases in scenes.items()}
 
 
 def renderer_gains(record, clock):
     """{scene: {renderer: {samples: times that our chapter is faster to the same error, with its interval}}}."""
-    return {scene: {peer["case"]: {samples: paired_ratio(errors(peer, clock, index), errors(ours, clock, index)) for index, samples in enumerate(COUNTS)}
-                    for peer in peers}
-            for scene, (ours, peers) in by_scene(record).items()}
+    def gains(peer, ours):
+        return {samples: paired_ratio(errors(peer, clock, index), errors(ours, clock, index)) for index, samples in enumerate(COUNTS)}
+
+    return {scene: {peer["case"]: gains(peer, ours) for peer in peers} for scene, (ours, peers) in by_scene(record).items()}
 
 
 def difference(case, comparisons):
@@ -42,10 +44,14 @@ def renderer_table(record):
     scenes, environment = by_scene(record), record["environment"]
     comparisons = 3 * sum(1 + len(peers) for _, peers in scenes.values())
     gains = {clock: renderer_gains(record, key) for clock, key in CLOCKS.items()}
-    rows = [[f"`{scene}`" if case is ours else "", case["case"], *per_sample(case, COUNTS.index(64)), *per_sample(case, -1)[:1], difference(case, comparisons),
-             *("1" if case is ours else with_interval(gains[clock][scene][case["case"]][samples]) for clock in CLOCKS for samples in COUNTS)]
-            for scene, (ours, peers) in scenes.items() for case in (ours, *peers)]
-    head = ["scene", "", "error of one sample at 64", "CPU seconds per million samples", f"error of one sample at {COUNTS[-1]}", "mean minus the reference's",
-            *(f"ours faster at {samples}, {clock}" for clock in CLOCKS for samples in COUNTS)]
+
+    def cells(scene, case, is_ours):
+        compared = ("1" if is_ours else with_interval(gains[clock][scene][case["case"]][samples]) for clock in CLOCKS for samples in COUNTS)
+        return [f"`{scene}`" if is_ours else "", case["case"], *per_sample(case, COUNTS.index(64)), per_sample(case, -1)[0],
+                difference(case, comparisons), *compared]
+
+    rows = [cells(scene, case, case is ours) for scene, (ours, peers) in scenes.items() for case in (ours, *peers)]
+    head = ["scene", "", "error of one sample at 64", "CPU seconds per million samples", f"error of one sample at {COUNTS[-1]}",
+            "mean minus the reference's", *(f"ours faster at {samples}, {clock}" for clock in CLOCKS for samples in COUNTS)]
     names = ", ".join(dict.fromkeys(name for case, name in environment["renderers"].items() if case in PEERS))
     return f"{environment['processor']}, {environment['cores']} cores, and {names}.\n\n" + table(head, rows, left=2)

@@ -34,8 +34,8 @@ class Constant:
 
 class SimpleScenesTest(unittest.TestCase):
     def test_what_no_peer_is_compared_on(self):
-        for name, words in (("microfacets", "microfacets of our formula.* and a background"), ("glossy", "a Phong lobe"), ("glass", "glass that absorbs"),
-                            ("textured", "textures"), ("focus", "a lens")):
+        for name, words in (("microfacets", "microfacets of our formula.* and a background"), ("glossy", "a Phong lobe"),
+                            ("glass", "glass that absorbs"), ("textured", "textures"), ("focus", "a lens")):
             with self.assertRaisesRegex(UserError, f"^A is not compared on scenes with.*{words}"):
                 simple_scenes.refuse_what_peers_lack(scene_named(name), "A")
         for name in ("cornell_box", "heart_light", "clear_glass", "fog"):
@@ -85,8 +85,10 @@ class CommandTest(unittest.TestCase):
                 compare.refuse_without_peers()
 
     def test_a_setting_of_another_renderer_is_refused(self):
-        arguments = ["peer", "scene.json", "--variant=cycles", "--sampler=sobol", "--width=8", "--height=8", "--max-path-length=1", "--seed=1", "--samples=1"]
-        with mock.patch.object(sys, "argv", arguments), self.assertRaisesRegex(UserError, "cycles has no --sampler sobol: light_tree, no_light_tree"):
+        arguments = ["peer", "scene.json", "--variant=cycles", "--sampler=sobol", "--width=8", "--height=8", "--max-path-length=1",
+                     "--seed=1", "--samples=1"]
+        with (mock.patch.object(sys, "argv", arguments),
+              self.assertRaisesRegex(UserError, "cycles has no --sampler sobol: light_tree, no_light_tree")):
             peer.main()
 
     def test_more_repetitions_are_added_to_a_record(self):
@@ -97,7 +99,8 @@ class CommandTest(unittest.TestCase):
             rows = [{"samples": samples} for samples in (8, *compare.COUNTS)]
             return {"device": "a device", "rows": rows}
 
-        with tempfile.TemporaryDirectory() as folder, mock.patch.object(compare, "refuse_without_peers"), mock.patch.object(compare, "run_case", run_case):
+        with (tempfile.TemporaryDirectory() as folder, mock.patch.object(compare, "refuse_without_peers"),
+              mock.patch.object(compare, "run_case", run_case)):
             file = Path(folder) / "record.json"
             for repetitions in (2, 3):
                 with mock.patch.object(sys, "argv", ["renderers", f"--record={file}", f"--repetitions={repetitions}"]):
@@ -105,7 +108,8 @@ class CommandTest(unittest.TestCase):
             cases = json.loads(file.read_text())["cases"]
         self.assertEqual(seeds, [seed for seed in (1, 2, 3) for _ in cases])
         self.assertEqual({len(case["runs"]) for case in cases}, {3})
-        self.assertEqual({tuple(row["samples"] for row in case["runs"][0]["rows"]) for case in cases if not case["is_peer"]}, {tuple(compare.COUNTS)})
+        ours = {tuple(row["samples"] for row in case["runs"][0]["rows"]) for case in cases if not case["is_peer"]}
+        self.assertEqual(ours, {tuple(compare.COUNTS)})
 
 
 if __name__ == "__main__":

@@ -104,15 +104,18 @@ class CpuTableTest(unittest.TestCase):
 class RendererTableTest(unittest.TestCase):
     def case(self, name, errors, cpu_seconds, is_peer=True):
         """Two runs with the same errors, whose means differ by 2 % around the reference's."""
-        rows = [[{"samples": samples, "rel_mse": error, "seconds": 2 * cpu_seconds, "cpu_seconds": cpu_seconds, "mean": [mean] * 3, "difference": [0.01] * 3}
-                 for samples, error in zip(renderer_table.COUNTS, errors)] for mean in (0.99, 1.01)]
+        rows = [[{"samples": samples, "rel_mse": error, "seconds": 2 * cpu_seconds, "cpu_seconds": cpu_seconds, "mean": [mean] * 3,
+                  "difference": [0.01] * 3} for samples, error in zip(renderer_table.COUNTS, errors)] for mean in (0.99, 1.01)]
         reference = {"mean": [1.0] * 3, "variance": [0.0] * 3, "freedom": 10, "rel_mse_deviation": 0.0}
-        return {"case": name, "is_peer": is_peer, "scene": "box_6", "width": 100, "height": 100, "program": "10_path_regeneration" if not is_peer else "another",
-                "reference": reference, "runs": [{"seed": seed + 1, "rows": part} for seed, part in enumerate(rows)]}
+        return {"case": name, "is_peer": is_peer, "scene": "box_6", "width": 100, "height": 100,
+                "program": "another" if is_peer else "10_path_regeneration", "reference": reference,
+                "runs": [{"seed": seed + 1, "rows": part} for seed, part in enumerate(rows)]}
 
     def record(self):
-        cases = [self.case("chapter 10, native", [0.04, 0.01, 0.0025, 0.0005], 1.0, False), self.case("LuxCore, Sobol", [0.08, 0.03, 0.005, 0.002], 2.0)]
-        return {"environment": {"processor": "a CPU", "cores": 2, "renderers": {"chapter 10, native": "a driver", "LuxCore, Sobol": "LuxCore 2"}}, "cases": cases}
+        cases = [self.case("chapter 10, native", [0.04, 0.01, 0.0025, 0.0005], 1.0, False),
+                 self.case("LuxCore, Sobol", [0.08, 0.03, 0.005, 0.002], 2.0)]
+        renderers = {"chapter 10, native": "a driver", "LuxCore, Sobol": "LuxCore 2"}
+        return {"environment": {"processor": "a CPU", "cores": 2, "renderers": renderers}, "cases": cases}
 
     def test_gains_are_of_pictures_with_as_many_samples(self):
         gains = renderer_table.renderer_gains(self.record(), "cpu_seconds")["box"]["LuxCore, Sobol"]
