@@ -10,14 +10,15 @@ import time
 from pathlib import Path
 
 from peers.renderers import python_of, renderer_of
-from project import Parser, UserError, chapter_named, number, processor, read_json, show_progress, write_json
+from project import Parser, UserError, chapter_named, number, processor, read_json, scene_of, show_progress, write_json
 from references.images import find_references
 from report.measurement import Refused, digest_of_sources, new_case, run_case
 from tables.ages import stamped
 
 GOES_ON = True
-SCENES = ["cornell_box", "heart_light", "clear_glass"]
 COUNTS = [16, 64, 256, 1024]  # samples of a pixel
+# Scene: (the chapter that is the best there, numbers of samples). A sample of fog takes others the longest.
+SCENES = {**dict.fromkeys(("cornell_box", "heart_light", "clear_glass"), ("path_regeneration", COUNTS)), "fog": ("media", COUNTS[:-1])}
 PEERS = {  # case: (--variant, --sampler)
     "Mitsuba LLVM": ("llvm_ad_rgb", "independent"), "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
     "Cycles, light tree": ("cycles", "light_tree"), "Cycles, no light tree": ("cycles", "no_light_tree"),
@@ -26,7 +27,7 @@ PEERS = {  # case: (--variant, --sampler)
 
 
 def our_case(scene, reference):
-    folder = chapter_named("path_regeneration")
+    folder = chapter_named(SCENES[scene.stem][0])
     return new_case(scene, reference, f"chapter {int(folder[:2])}, native", folder) | {"backend": "native"}
 
 
@@ -44,9 +45,9 @@ def all_cases():
 def render(case, seed):
     """The run with this seed. A chapter's rows are those of one picture, whose first samples are those of a smaller one."""
     settings = {"backend": case["backend"], "device": None}
-    counts = COUNTS if case["is_peer"] else COUNTS[-1:]
-    report = run_case(case, settings, ["--samples", *counts, "--seed", seed])
-    rows = report["rows"] if case["is_peer"] else [row for row in report["rows"] if row["samples"] in COUNTS]
+    _, counts = SCENES[scene_of(case["scene"])]
+    report = run_case(case, settings, ["--samples", *(counts if case["is_peer"] else counts[-1:]), "--seed", seed])
+    rows = report["rows"] if case["is_peer"] else [row for row in report["rows"] if row["samples"] in counts]
     return {"seed": seed, "rows": rows}, report["device"]
 
 

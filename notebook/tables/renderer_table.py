@@ -19,7 +19,8 @@ def by_scene(record):
 def renderer_gains(record, clock):
     """{scene: {renderer: {samples: times that our chapter is faster to the same error, with its interval}}}."""
     def gains(peer, ours):
-        return {samples: paired_ratio(errors(peer, clock, index), errors(ours, clock, index)) for index, samples in enumerate(COUNTS)}
+        counts = COUNTS[:len(ours["runs"][0]["rows"])]
+        return {samples: paired_ratio(errors(peer, clock, index), errors(ours, clock, index)) for index, samples in enumerate(counts)}
 
     return {scene: {peer["case"]: gains(peer, ours) for peer in peers} for scene, (ours, peers) in by_scene(record).items()}
 
@@ -39,6 +40,10 @@ def per_sample(case, index):
     return [short(error, 2), short(1e6 * cost, 2)]
 
 
+def gain_text(gain):
+    return with_interval(gain) if gain else ""
+
+
 def renderer_table(record):
     """The Markdown tables of one CPU."""
     scenes, environment = by_scene(record), record["environment"]
@@ -46,12 +51,12 @@ def renderer_table(record):
     gains = {clock: renderer_gains(record, key) for clock, key in CLOCKS.items()}
 
     def cells(scene, case, is_ours):
-        compared = ("1" if is_ours else with_interval(gains[clock][scene][case["case"]][samples]) for clock in CLOCKS for samples in COUNTS)
-        return [f"`{scene}`" if is_ours else "", case["case"], *per_sample(case, COUNTS.index(64)), per_sample(case, -1)[0],
+        compared = ("1" if is_ours else gain_text(gains[clock][scene][case["case"]].get(samples)) for clock in CLOCKS for samples in COUNTS)
+        return [f"`{scene}`" if is_ours else "", case["case"], *per_sample(case, COUNTS.index(64)), per_sample(case, COUNTS.index(256))[0],
                 difference(case, comparisons), *compared]
 
     rows = [cells(scene, case, case is ours) for scene, (ours, peers) in scenes.items() for case in (ours, *peers)]
-    head = ["scene", "", "error of one sample at 64", "CPU seconds per million samples", f"error of one sample at {COUNTS[-1]}",
+    head = ["scene", "", "error of one sample at 64", "CPU seconds per million samples", "error of one sample at 256",
             "mean minus the reference's", *(f"ours faster at {samples}, {clock}" for clock in CLOCKS for samples in COUNTS)]
     names = ", ".join(dict.fromkeys(name for case, name in environment["renderers"].items() if case in PEERS))
     return f"{environment['processor']}, {environment['cores']} cores, and {names}.\n\n" + table(head, rows, left=2)

@@ -126,9 +126,16 @@ class RendererTableTest(unittest.TestCase):
         self.assertIn("a CPU, 2 cores, and LuxCore 2.", text)
         _, _, ours, peer = rows_of(text)
         self.assertEqual(ours[:3] + ours[-1:], ["`box`", "chapter 10, native", "0.64", "1"])
-        self.assertEqual(peer[:5], ["", "LuxCore, Sobol", "1.9", "3.1", "2.0"])
+        self.assertEqual(peer[:5], ["", "LuxCore, Sobol", "1.9", "3.1", "1.3"])
         self.assertRegex(peer[5], r"^[+]0.000 ± 12\.7\d\d %$")
         self.assertEqual(peer[7], "6.0 (6.0 – 6.0)")
+
+    def test_a_scene_may_have_fewer_numbers_of_samples(self):
+        record = self.record()
+        for run in (run for case in record["cases"] for run in case["runs"]):
+            del run["rows"][-1]
+        self.assertEqual([*renderer_table.renderer_gains(record, "seconds")["box"]["LuxCore, Sobol"]], [16, 64, 256])
+        self.assertEqual(rows_of(renderer_table.renderer_table(record))[3][-2:], ["4.0 (4.0 – 4.0)", ""])
 
     def test_what_is_biased_is_said(self):
         record = self.record()
