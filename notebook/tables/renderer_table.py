@@ -40,23 +40,31 @@ def per_sample(case, index):
     return [short(error, 2), short(1e6 * cost, 2)]
 
 
-def gain_text(gain):
-    return with_interval(gain) if gain else ""
+def gain_texts(gains, case, is_ours):
+    """A cell for each number of samples; those that a scene lacks are empty."""
+    counts = next(iter(gains.values()))
+    return ["" if samples not in counts else "1" if is_ours else with_interval(gains[case["case"]][samples]) for samples in COUNTS]
 
 
 def renderer_table(record):
-    """The Markdown tables of one CPU."""
+    """The Markdown tables of one CPU, the first with what differs between renderers, and one for each clock."""
     scenes, environment = by_scene(record), record["environment"]
     comparisons = 3 * sum(1 + len(peers) for _, peers in scenes.values())
-    gains = {clock: renderer_gains(record, key) for clock, key in CLOCKS.items()}
-
-    def cells(scene, case, is_ours):
-        compared = ("1" if is_ours else gain_text(gains[clock][scene][case["case"]].get(samples)) for clock in CLOCKS for samples in COUNTS)
-        return [f"`{scene}`" if is_ours else "", case["case"], *per_sample(case, COUNTS.index(64)), per_sample(case, COUNTS.index(256))[0],
-                difference(case, comparisons), *compared]
-
-    rows = [cells(scene, case, case is ours) for scene, (ours, peers) in scenes.items() for case in (ours, *peers)]
-    head = ["scene", "", "error of one sample at 64", "CPU seconds per million samples", "error of one sample at 256",
-            "mean minus the reference's", *(f"ours faster at {samples}, {clock}" for clock in CLOCKS for samples in COUNTS)]
     names = ", ".join(dict.fromkeys(name for case, name in environment["renderers"].items() if case in PEERS))
-    return f"{environment['processor']}, {environment['cores']} cores, and {names}.\n\n" + table(head, rows, left=2)
+    text = f"{environment['processor']}, {environment['cores']} cores, and {names}.\n"
+
+    def rows(cells):
+        return [[f"`{scene}`" if case is ours else "", case["case"], *cells(scene, case, case is ours)]
+                for scene, (ours, peers) in scenes.items() for case in (ours, *peers)]
+
+    def numbers(_, case, is_ours):
+        return [*per_sample(case, COUNTS.index(64)), per_sample(case, COUNTS.index(256))[0], difference(case, comparisons)]
+
+    head = ["scene", "", "error of one sample at 64", "CPU seconds per million samples", "error of one sample at 256",
+            "mean minus the reference's"]
+    text += "\n" + table(head, rows(numbers), left=2)
+    for clock, key in CLOCKS.items():
+        gains = renderer_gains(record, key)
+        head = ["scene", f"ours faster in {clock}", *(f"{samples} samples" for samples in COUNTS)]
+        text += "\n" + table(head, rows(lambda scene, case, is_ours, of=gains: gain_texts(of[scene], case, is_ours)), left=2)
+    return text

@@ -104,7 +104,7 @@ class CpuTableTest(unittest.TestCase):
 class RendererTableTest(unittest.TestCase):
     def case(self, name, errors, cpu_seconds, is_peer=True):
         """Two runs with the same errors, whose means differ by 2 % around the reference's."""
-        rows = [[{"samples": samples, "rel_mse": error, "seconds": 2 * cpu_seconds, "cpu_seconds": cpu_seconds, "mean": [mean] * 3,
+        rows = [[{"samples": samples, "rel_mse": error, "seconds": 1 + cpu_seconds, "cpu_seconds": cpu_seconds, "mean": [mean] * 3,
                   "difference": [0.01] * 3} for samples, error in zip(renderer_table.COUNTS, errors)] for mean in (0.99, 1.01)]
         reference = {"mean": [1.0] * 3, "variance": [0.0] * 3, "freedom": 10, "rel_mse_deviation": 0.0}
         return {"case": name, "is_peer": is_peer, "scene": "box_6", "width": 100, "height": 100,
@@ -124,18 +124,19 @@ class RendererTableTest(unittest.TestCase):
     def test_table(self):
         text = renderer_table.renderer_table(self.record())
         self.assertIn("a CPU, 2 cores, and LuxCore 2.", text)
-        _, _, ours, peer = rows_of(text)
-        self.assertEqual(ours[:3] + ours[-1:], ["`box`", "chapter 10, native", "0.64", "1"])
+        _, _, ours, peer, _, _, _, by_cpu, _, _, _, by_wall = rows_of(text)
+        self.assertEqual(ours[:5], ["`box`", "chapter 10, native", "0.64", "1.6", "0.64"])
         self.assertEqual(peer[:5], ["", "LuxCore, Sobol", "1.9", "3.1", "1.3"])
         self.assertRegex(peer[5], r"^[+]0.000 ± 12\.7\d\d %$")
-        self.assertEqual(peer[7], "6.0 (6.0 – 6.0)")
+        self.assertEqual(by_cpu[3], "6.0 (6.0 – 6.0)")
+        self.assertEqual(by_wall[3], "4.5 (4.5 – 4.5)")
 
     def test_a_scene_may_have_fewer_numbers_of_samples(self):
         record = self.record()
         for run in (run for case in record["cases"] for run in case["runs"]):
             del run["rows"][-1]
         self.assertEqual([*renderer_table.renderer_gains(record, "seconds")["box"]["LuxCore, Sobol"]], [16, 64, 256])
-        self.assertEqual(rows_of(renderer_table.renderer_table(record))[3][-2:], ["4.0 (4.0 – 4.0)", ""])
+        self.assertEqual(rows_of(renderer_table.renderer_table(record))[7][-2:], ["4.0 (4.0 – 4.0)", ""])
 
     def test_what_is_biased_is_said(self):
         record = self.record()
