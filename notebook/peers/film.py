@@ -53,9 +53,10 @@ def growing_rows(film, options):
 
 
 def mean_row(rows):
-    """The mean of each number."""
-    return {key: [sum(column) / len(rows) for column in zip(*values)] if key == "mean" else sum(values) / len(rows)
-            for key, values in ((key, [row[key] for row in rows]) for key in rows[0])}
+    """The mean of each number, and of each channel; without a reference there is no error."""
+    columns = {key: [row[key] for row in rows] for key in rows[0]}
+    means = {key: None if None in values else sum(values) / len(rows) for key, values in columns.items() if key != "mean"}
+    return means | {"mean": [sum(channel) / len(rows) for channel in zip(*columns["mean"])]}
 
 
 def separate_rows(film, counts):

@@ -13,7 +13,7 @@ from project import VARIANTS, Parser, UserError, write_json
 def load(renderer):
     """The renderer's module."""
     try:
-        return import_module(f"peers.{renderer}")
+        return import_module(f"peers.{renderer}_peer")
     except ImportError as error:
         raise UserError(f"{error}: ./lab notebook install_peer {renderer}") from None
 

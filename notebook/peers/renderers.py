@@ -1,6 +1,6 @@
 """The renderers that chapters are compared with: their packages, and the settings that are measured.
 
-Imports only what every Python has. A renderer's module defines a class Renderer:
+Imports only what every Python has. NAME_peer.py defines a class Renderer:
 
     Renderer(scene, options)   opens a scene that references/scenes.py has read, or raises UserError if it cannot render it.
                                options: width, height, max_path_length, variant, sampler

@@ -70,6 +70,10 @@ class FilmTest(unittest.TestCase):
         self.assertEqual([row["rel_mse"] for row in rows], [(1 + 4 + 9 + 16) / 4, 25.0])
         self.assertEqual([(row["samples"], row["seconds"], row["cpu_seconds"]) for row in rows], [(16, 0.5, 1.0), (64, 0.5, 1.0)])
 
+    def test_without_a_reference_there_is_no_error(self):
+        row, = film.separate_rows(film.Film(Constant(), None, 1), [16])
+        self.assertEqual((row["rel_mse"], row["mean"]), (None, [2.5] * 3))
+
     def test_one_picture_grows(self):
         options = types.SimpleNamespace(samples=[250], sampler="stratified", time_limit=None)
         rows = film.growing_rows(film.Film(Constant(), None, 1), options)
