@@ -49,12 +49,13 @@ SHARED_CONSTANT BINDING_TEXTURE_SIZES = 22u;
 SHARED_CONSTANT BINDING_MICROFACETS = 23u;
 SHARED_CONSTANT BINDING_MEDIA = 24u;
 SHARED_CONSTANT BINDING_BOUNDARIES = 25u;
-SHARED_CONSTANT BINDING_LIGHT_NODES = 26u;
-SHARED_CONSTANT BINDING_LIGHT_LEAVES = 27u;
-SHARED_CONSTANT BINDING_LIGHT_PLACES = 28u;
+SHARED_CONSTANT BINDING_DENSITIES = 26u;
+SHARED_CONSTANT BINDING_LIGHT_NODES = 27u;
+SHARED_CONSTANT BINDING_LIGHT_LEAVES = 28u;
+SHARED_CONSTANT BINDING_LIGHT_PLACES = 29u;
 // Of the backend `native` alone. Macros leave the shaders of the others as they are.
-#define BINDING_WORLD_TRIANGLES 29u
-#define BINDING_FIRST_WORLD_TRIANGLES 30u
+#define BINDING_WORLD_TRIANGLES 30u
+#define BINDING_FIRST_WORLD_TRIANGLES 31u
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -97,11 +98,17 @@ struct Microfacets {
     vec2 mean_albedo;                      // the same under uniform light from all directions
 };
 
-// What fills a volume and scatters light: fog, milk, smoke. The same everywhere in it.
+// What fills a volume and scatters light: fog, milk, smoke.
 struct Medium {
-    float extinction;  // collisions per unit of world length; 0 is vacuum
+    float extinction;  // collisions per unit of world length where the density is 1; 0 is vacuum
     vec3 albedo;       // fraction of the light that a collision scatters, in [0,1]; the rest is absorbed
     float anisotropy;  // mean cosine of the angle by which it changes its direction, in (-1,1)
+    // The density is 1, or it comes from a grid: known at the centres of cells, trilinear in between, 0 outside of its box.
+    uvec3 grid_size;        // cells along each axis; 0 without a grid
+    uint first_density;     // index of its first cell
+    float largest_density;  // of all its cells
+    vec3 low;               // corner of the box in the world
+    vec3 high;              // the opposite corner
 };
 
 // What becomes of the medium that a path is in where it meets an instance.

@@ -1,10 +1,4 @@
-// What light meets in a medium: free flights, the phase function, and which medium is where.
-
-// A free flight, with the density σ_t exp(-σ_t t) with respect to length. A vacuum has no end.
-float sample_flight(Medium medium, inout uvec2 seed) {
-    float u = get_random_numbers(seed).x;
-    return medium.extinction > 0.0 ? min(-log(1.0 - u) / medium.extinction, NO_LIMIT) : NO_LIMIT;
-}
+// What light meets in a medium: the phase function, and which medium is where.
 
 // The phase function of Henyey and Greenstein ("Diffuse radiation in the Galaxy", 1941), for light that travels along one unit
 // direction and then along the other: (1 - g²) / (4π (1 + g² - 2 g cos θ)^(3/2)). It integrates to 1 over all directions. The
@@ -84,26 +78,23 @@ uint find_medium(Ray ray) {
     return 0u;
 }
 
-// The fraction of light that gets through, from the ray's origin to t_max, by Beer's law: 0 behind a surface. It goes on through
-// open boundaries.
-float get_transmittance(Ray ray, float t_max, uint medium) {
-    float size = length(ray.direction);
+// The fraction of light that gets through, from the ray's origin to t_max: 0 behind a surface. It goes on through open boundaries.
+float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
 #ifdef FEATURE_OPEN_BOUNDARIES
-    float depth = 0.0;  // ∫ σ_t dt so far
+    float transmittance = 1.0;
     vec3 end = ray.origin + ray.direction;
     for (uint i = 0u; i < MAX_CROSSED_BOUNDARIES; ++i) {
         Hit hit;
-        if (!trace_ray(ray, t_max, hit)) return exp(-(depth + media[medium].extinction * t_max * size));
+        if (!trace_ray(ray, t_max, hit)) return transmittance * get_transmittance_of(media[medium], ray, t_max, seed);
         if (!is_open_boundary(hit)) return 0.0;
-        depth += media[medium].extinction * hit.distance * size;
+        transmittance *= get_transmittance_of(media[medium], ray, hit.distance, seed);
         medium = get_sides(hit, ray.direction, medium).beyond;
         ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
         // A ray that ends at a point still ends there.
         if (t_max < NO_LIMIT) ray.direction = end - ray.origin;
-        size = length(ray.direction);
     }
     return 0.0;
 #else
-    return is_occluded(ray, t_max) ? 0.0 : exp(-media[medium].extinction * t_max * size);
+    return is_occluded(ray, t_max) ? 0.0 : get_transmittance_of(media[medium], ray, t_max, seed);
 #endif
 }

@@ -12,95 +12,9 @@
 #ifndef FEATURE_MEDIA
 #include "07_multiple_importance_sampling/extend_path.glsl"
 #else
+#include "flights.glsl"
 #include "medium.glsl"
+#include "equiangular.glsl"
 #include "scatter.glsl"
-
-// What a path carries from bounce to bounce: as in chapter 7, and the medium that it is in.
-struct Path {
-    Ray ray;
-    vec3 radiance;
-    vec3 throughput;
-    uint path_length;
-    float radiance_scale;
-    bool is_light_sampled;
-    float bounce_density;
-    uint medium;     // index of the one around the ray's origin
-    float distance;  // from x_{k-1} to the ray's origin, through open boundaries
-};
-
-Path start_path(Ray ray) { return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0, find_medium(ray), 0.0); }
-
-bool extend_path(inout Path path, inout uvec2 seed) {
-    // A free flight along x_{k-1}, ω_{k-1} ends in the medium or at the next surface. One that ends within rounding errors of a
-    // surface ends there, so that no collision lies behind it.
-    float flight = sample_flight(media[path.medium], seed);
-    Hit hit;
-    bool is_hit = trace_ray(path.ray, NO_LIMIT, hit);
-    bool is_collision = flight < (is_hit ? (1.0 - 64.0 * ROUNDING) * hit.distance : NO_LIMIT);
-    if (!is_hit && path.medium != 0u) return false;  // its mesh is not closed
-
-    if (!is_hit && !is_collision) {
-        float light_density = path.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
-        if (is_counted(path.path_length))
-            path.radiance += path.radiance_scale * path.throughput * get_bounce_part(light_density, path.bounce_density) *
-                             get_background_radiance(path.ray.direction);
-        return false;
-    }
-
-    Sides sides = Sides(path.medium, path.medium);
-    ShadingData s;
-    if (is_collision) {
-        s = get_medium_point(path.ray.origin + flight * path.ray.direction, path.ray.direction);
-    } else {
-        s = get_shading_data(hit, path.ray.direction);
-        sides = get_sides(hit, path.ray.direction, path.medium);
-        path.throughput *= s.transmittance;
-        path.distance += hit.distance;
-        if (is_open_boundary(hit)) {  // nothing happens here
-            path.ray = get_ray_from_surface(s, path.ray.direction);
-            path.medium = sides.beyond;
-            return true;
-        }
-        float cos_light = dot(s.geometric_normal, s.out_direction);
-        float light_density = path.is_light_sampled ? to_solid_angle(s.light_density, path.distance, cos_light) : 0.0;
-        if (is_counted(path.path_length))
-            path.radiance += path.radiance_scale * path.throughput * get_bounce_part(light_density, path.bounce_density) *
-                             s.emission;
-        if (!is_above_surface(s, s.out_direction)) return false;
-    }
-    if (path.path_length == parameters.max_path_length) return false;
-
-    // The direct light at x_k, at a surface or in the medium.
-    path.is_light_sampled = STRATEGY != STRATEGY_BOUNCES && !s.is_dielectric;
-    if (path.is_light_sampled) {
-        vec3 direct_light = sample_scattered_light(s, sides, seed);
-        if (is_counted(path.path_length + 1u)) path.radiance += path.radiance_scale * path.throughput * direct_light;
-    }
-
-    // Sample ω_k.
-    BsdfSample bounce = sample_scattering(s, media[sides.here], seed);
-    if (bounce.weight == vec3(0.0)) return false;
-    path.throughput *= bounce.weight;
-    path.radiance_scale *= bounce.radiance_scale;
-    path.bounce_density = STRATEGY == STRATEGY_LIGHT ? 0.0 : bounce.density;
-
-    // Russian roulette with the survival probability q = min(max throughput / β_s, cap).
-    if (path.path_length + 1u >= parameters.roulette_start) {
-        float survival_probability = min(max_component(path.throughput) / parameters.survival_weight, parameters.survival_cap);
-        if (!happens(survival_probability, seed)) return false;
-        path.throughput /= survival_probability;
-    }
-    path.ray = get_ray_from_surface(s, bounce.direction);
-    path.medium = get_side(sides, s, bounce.direction);
-    path.distance = 0.0;
-    ++path.path_length;
-    return true;
-}
-
-vec3 path_trace(Ray ray, inout uvec2 seed) {
-    Path path = start_path(ray);
-    while (extend_path(path, seed)) {
-    }
-    return path.radiance;
-}
+#include "extend_path.glsl"
 #endif

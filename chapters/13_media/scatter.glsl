@@ -18,38 +18,64 @@ BsdfSample sample_scattering(ShadingData s, Medium medium, inout uvec2 seed) {
     return BsdfSample(omega, medium.albedo, get_phase(medium, -s.out_direction, omega), false, 1.0);
 }
 
-// Estimates the light that arrives at x_k directly and is scattered along ω_o, by one light sample weighted against bounces as
-// in chapter 7. On its way a medium dims it.
-vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
-    vec3 omega, radiance;
-    float light_density;  // with respect to solid angle
-    Ray shadow_ray;
-    float t_max = NO_LIMIT;
-    if (HAS_LIGHT_PROBE_CELLS && (!HAS_LIGHT_TRIANGLES || happens(LIGHT_PROBE_PROBABILITY, seed))) {
-        float sampled_density;
-        omega = sample_light_probe_direction(seed, sampled_density);
-        light_density = get_background_density(omega);
-        if (light_density == 0.0) return vec3(0.0);
-        radiance = get_background_radiance(omega) * (light_density / sampled_density);
-        shadow_ray = get_ray_from_surface(s, omega);
-    } else {
-        vec2 u;
-        LightTriangle light = choose_light_triangle(seed, u);
-        LightPoint y = get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
-        vec3 to_light = y.position - s.position;
-        float distance = length(to_light);
-        omega = to_light / distance;
-        float cos_light = dot(y.normal, -omega);
-        if (!(cos_light > 0.0)) return vec3(0.0);
-        light_density = to_solid_angle(y.light_density, distance, cos_light);
-        radiance = y.emission * (light.inverse_density * y.light_density);
-        shadow_ray = get_ray_to_point(s, y.position_in_front);
-        t_max = 1.0;
-    }
+// The light that arrives at x_k from one direction, dimmed by the media on its way and scattered along ω_o. A light sample found
+// it; it has the weight of chapter 7 against bounces, with their densities with respect to solid angle.
+vec3 scatter_light(ShadingData s, Sides sides, vec3 omega, vec3 radiance, float light_density, Ray shadow_ray, float t_max,
+                   inout uvec2 seed) {
     Medium medium = media[sides.here];
     vec3 scattering = get_scattering(s, medium, omega);
     if (scattering == vec3(0.0)) return vec3(0.0);
     float bounce_density = STRATEGY == STRATEGY_LIGHT ? 0.0 : get_scattering_density(s, medium, omega);
-    float transmittance = get_transmittance(shadow_ray, t_max, get_side(sides, s, omega));
+    float transmittance = get_transmittance(shadow_ray, t_max, get_side(sides, s, omega), seed);
     return scattering * radiance * (transmittance / (light_density + bounce_density));
+}
+
+// The same from a point y of a lamp. `distance_ratio` is 1 where the path itself found x_k.
+vec3 scatter_lamp(ShadingData s, Sides sides, LightTriangle light, LightPoint y, float distance_ratio, inout uvec2 seed) {
+    vec3 to_light = y.position - s.position;
+    float distance = length(to_light);
+    vec3 omega = to_light / distance;
+    float cos_light = dot(y.normal, -omega);
+    if (!(cos_light > 0.0)) return vec3(0.0);
+    float light_density = distance_ratio * to_solid_angle(y.light_density, distance, cos_light);
+    return scatter_light(s, sides, omega, y.emission * (light.inverse_density * y.light_density), light_density,
+                         get_ray_to_point(s, y.position_in_front), 1.0, seed);
+}
+
+// A point y on a lamp, and the emissive triangle that it lies on.
+LightPoint sample_lamp(out LightTriangle light, inout uvec2 seed) {
+    vec2 u;
+    light = choose_light_triangle(seed, u);
+    return get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
+}
+
+bool chooses_probe(inout uvec2 seed) {
+    return HAS_LIGHT_PROBE_CELLS && (!HAS_LIGHT_TRIANGLES || happens(LIGHT_PROBE_PROBABILITY, seed));
+}
+
+// Estimates the light that arrives at x_k directly and is scattered along ω_o, by one light sample. With equiangular samples, those
+// of the segment find what lamps send to collisions.
+vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
+    if (chooses_probe(seed)) {
+        float sampled_density;
+        vec3 omega = sample_light_probe_direction(seed, sampled_density);
+        float light_density = get_background_density(omega);
+        if (light_density == 0.0) return vec3(0.0);
+        return scatter_light(s, sides, omega, get_background_radiance(omega) * (light_density / sampled_density), light_density,
+                             get_ray_from_surface(s, omega), NO_LIMIT, seed);
+    }
+    if (samples_angles(media[sides.here]) && is_in_medium(s)) return vec3(0.0);
+    LightTriangle light;
+    LightPoint y = sample_lamp(light, seed);
+    return scatter_lamp(s, sides, light, y, 1.0, seed);
+}
+
+// Estimates the light of lamps that is scattered once along a segment.
+vec3 sample_segment(Segment segment, inout uvec2 seed) {
+    if (media[segment.medium].extinction == 0.0 || !HAS_LIGHT_TRIANGLES || chooses_probe(seed)) return vec3(0.0);
+    LightTriangle light;
+    LightPoint y = sample_lamp(light, seed);
+    float t = sample_distance(segment, y.position, get_random_numbers(seed).x);
+    ShadingData s = get_medium_point(segment.ray.origin + t * segment.ray.direction, segment.ray.direction);
+    return scatter_lamp(s, Sides(segment.medium, segment.medium), light, y, get_distance_ratio(segment, y.position, t), seed);
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "error.h"
+#include "scene/density_grid.h"
 
 namespace lab {
 namespace {
@@ -44,22 +45,46 @@ void check_surface(const MeshPlacement& placement, const Scene& scene, const Mes
     }
 }
 
+// A ray takes about as many steps through a grid as its densest cell would take free flights along the box's diagonal.
+constexpr double max_steps = 1e4;
+
+// Adds a medium with its grid, and returns its index.
+uint32_t add_medium(const MediumDescription& description, SourceFiles& files, Scene& scene) {
+    Medium medium = description.medium;
+    if (!description.density.empty()) {
+        const DensityGrid grid = read_density_grid(description.density, files);
+        medium.largest_density = *std::ranges::max_element(grid.densities);
+        if (double{medium.extinction} * medium.largest_density * glm::distance(dvec3(medium.low), dvec3(medium.high)) > max_steps)
+            throw UserError(
+                description.density.string() +
+                ": at its largest density a ray would collide more than 10000 times in its box: lower the \"extinction\"");
+        if (medium.largest_density == 0) medium.extinction = 0;
+        if (medium.extinction > 0) {
+            medium.grid_size = grid.size;
+            medium.first_density = static_cast<uint32_t>(scene.densities.size());
+            scene.densities.insert(scene.densities.end(), grid.densities.begin(), grid.densities.end());
+            if (scene.densities.size() > max_density_cells) throw UserError("its grids have too many cells together");
+        }
+    }
+    scene.media.push_back(medium);
+    return static_cast<uint32_t>(scene.media.size() - 1);
+}
+
 }  // namespace
 
-void add_media(const SceneDescription& description, Scene& scene) {
+void add_media(const SceneDescription& description, SourceFiles& files, Scene& scene) {
     const auto& placements = description.meshes;
     if (!description.fog && std::ranges::none_of(placements, [](const auto& placement) { return placement.medium.has_value(); }))
         return;
-    scene.media.push_back(description.fog.value_or(Medium{}));
+    add_medium(description.fog.value_or(MediumDescription{}), files, scene);
     const auto count = static_cast<uint32_t>(placements.size());
     scene.boundaries.assign(count, {BOUNDARY_NONE, 0, 0});
     for (uint32_t i = 0; i < count; ++i) {
         const Mesh& mesh = scene.mesh_of(i);
         if (placements[i].medium) check_surface(placements[i], scene, mesh);
         if (!placements[i].medium && mesh.dielectric_count == 0) continue;
-        scene.boundaries[i] = {placements[i].is_open ? BOUNDARY_OPEN : BOUNDARY_GLASS, static_cast<uint32_t>(scene.media.size()),
-                               0};
-        scene.media.push_back(placements[i].medium.value_or(Medium{}));
+        scene.boundaries[i] = {placements[i].is_open ? BOUNDARY_OPEN : BOUNDARY_GLASS,
+                               add_medium(placements[i].medium.value_or(MediumDescription{}), files, scene), 0};
     }
     // Outside of a boundary is the innermost of those that enclose it: the one that most others enclose.
     std::vector<std::vector<uint32_t>> around(count);

@@ -98,14 +98,15 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
         }
     };
     load([&] { load_meshes(description, specular || description.specular, sources, scene); });
-    load([&] { add_media(description, scene); });
+    load([&] { add_media(description, sources, scene); });
     scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
 
     if (!description.light_probe.empty()) {
         load([&] { scene.light_probe = read_radiance(description.light_probe, scene.warnings); });
         sources.read(description.light_probe, max_image_file_bytes);  // for the hash
     }
-    if (description.fog && description.fog->extinction > 0 && (scene.background != vec3(0) || !description.light_probe.empty()))
+    if (description.fog && description.fog->density.empty() && description.fog->medium.extinction > 0 &&
+        (scene.background != vec3(0) || !description.light_probe.empty()))
         scene.warnings.push_back(name +
                                  ": its \"fog\" has no end and hides the sky: to see it, fill a mesh with an open boundary");
     if (is_bare_mesh && !features_of(scene).area_lights) {

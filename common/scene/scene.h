@@ -73,6 +73,7 @@ struct Scene {
     std::vector<Instance> instances;
     std::vector<uint32_t> instance_meshes;  // per instance
     std::vector<Medium> media;              // the first lies outside of all boundaries; empty if there is none but vacuum
+    std::vector<float> densities;           // of all media that have a grid
     std::vector<Boundary> boundaries;       // per instance; empty if no medium ends anywhere
     std::vector<Texture> textures;
 

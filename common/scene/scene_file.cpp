@@ -18,7 +18,24 @@ glm::dmat4 read_rotation(const JsonObject& rotation) {
     return glm::rotate(glm::dmat4(1), glm::radians(degrees), axis);
 }
 
-Medium read_medium(const JsonObject& entry) {
+void read_box(const JsonObject& entry, Medium& medium) {
+    const nlohmann::json& corners = entry.array("box");
+    const auto fail = [&] { entry.fail("box", "must be two corners of three numbers, the lower one first"); };
+    if (corners.size() != 2) fail();
+    for (int i = 0; i < 2; ++i) {
+        const nlohmann::json& corner = corners[static_cast<size_t>(i)];
+        if (!corner.is_array() || corner.size() != 3) fail();
+        for (int axis = 0; axis < 3; ++axis) {
+            const nlohmann::json& number = corner[static_cast<size_t>(axis)];
+            if (!number.is_number() || !(std::abs(number.get<double>()) <= 1e9)) fail();
+            (i == 0 ? medium.low : medium.high)[axis] = number.get<float>();
+        }
+    }
+    if (!glm::all(glm::lessThan(medium.low, medium.high))) fail();
+}
+
+// The keys of "fog". A "medium" has one more.
+MediumDescription read_medium(const JsonObject& entry, const std::filesystem::path& folder) {
     Medium medium{};
     const double extinction = entry.required("extinction", entry.number("extinction"));
     if (!(extinction >= 0 && extinction <= 1e9)) entry.fail("extinction", "must be from 0 to 1e9 per unit of length");
@@ -30,7 +47,10 @@ Medium read_medium(const JsonObject& entry) {
     // Closer to 1, 32-bit numbers do not resolve the lobe.
     if (!(std::abs(anisotropy) <= 0.999)) entry.fail("anisotropy", "must be from -0.999 to 0.999");
     medium.anisotropy = static_cast<float>(anisotropy);
-    return medium;
+    const auto density = entry.text("density");
+    if (density) read_box(entry, medium);
+    if (!density && entry.has("box")) entry.fail("box", "needs a \"density\"");
+    return {medium, density ? folder / *density : ""};
 }
 
 // Scale acts on points first, so it is the last factor.
@@ -39,8 +59,8 @@ MeshPlacement read_placement(const JsonObject& entry, const std::filesystem::pat
     placement.file = folder / entry.required("file", entry.text("file"));
     if (const auto materials = entry.text("materials")) placement.materials = folder / *materials;
     if (entry.has("medium")) {
-        const JsonObject medium = entry.object("medium", {"extinction", "albedo", "anisotropy", "boundary"});
-        placement.medium = read_medium(medium);
+        const JsonObject medium = entry.object("medium", {"extinction", "albedo", "anisotropy", "density", "box", "boundary"});
+        placement.medium = read_medium(medium, folder);
         if (const auto boundary = medium.text("boundary")) {
             if (*boundary != "open") medium.fail("boundary", "can only be \"open\": leave it out where there is a surface");
             placement.is_open = true;
@@ -117,7 +137,8 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
             root.object("camera", {"position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance"}));
     if (root.has("background"))
         read_background(root.object("background", {"radiance", "light_probe", "intensity", "rotation_degrees"}), folder, result);
-    if (root.has("fog")) result.fog = read_medium(root.object("fog", {"extinction", "albedo", "anisotropy"}));
+    if (root.has("fog"))
+        result.fog = read_medium(root.object("fog", {"extinction", "albedo", "anisotropy", "density", "box"}), folder);
     result.scene.multiple_scattering = root.boolean("multiple_scattering").value_or(false);
     result.specular = root.boolean("specular").value_or(false);
 

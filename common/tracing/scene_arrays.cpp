@@ -26,6 +26,10 @@ SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_pro
     if (features.media && handles_media) {
         add("media", BINDING_MEDIA, scene.media);
         defines_.emplace_back("FEATURE_MEDIA");
+        if (!scene.densities.empty()) {
+            add("densities of media", BINDING_DENSITIES, scene.densities);
+            defines_.emplace_back("FEATURE_DENSITIES");
+        }
         if (!scene.boundaries.empty()) {
             add("boundaries of media", BINDING_BOUNDARIES, scene.boundaries);
             defines_.emplace_back("FEATURE_BOUNDARIES");

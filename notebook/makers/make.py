@@ -1,6 +1,5 @@
-"""Computes the files in assets/ that follow from formulas: meshes, textures, light probes, and scenes with many
-lamps. Other scenes, materials and
-meshes of a few triangles are edited by hand.
+"""Computes the files in assets/ that follow from formulas: meshes, textures, volumes, light probes, and scenes with many lamps. Other
+scenes, materials and meshes of a few triangles are edited by hand.
 
 The same meshes come out on every machine: numbers are rounded to few decimals.
 """
@@ -9,8 +8,8 @@ import math
 import struct
 
 import numpy as np
-from makers import images, lamps
-from makers.shapes import direction, heart, pumpkin, row_of_balls, sphere, torus
+from makers import images, lamps, volumes
+from makers.shapes import direction, heart, pumpkin, rounded_cylinder, row_of_balls, sphere, torus
 from PIL import Image
 from project import ROOT, Parser, UserError, write_bytes
 
@@ -21,10 +20,12 @@ MESHES = {  # name -> parts
                             + row_of_balls([f"plastic_{i}" for i in range(5)], 0.22, 0.56, 0.45)),
     "hall": lamps.hall, "lamp_cluster": lamps.lamp_cluster, "tower": lambda: lamps.building(30, 7), "house": lambda: lamps.building(16, 6),
     "street_lamp": lamps.street_lamp, "ground": lamps.ground,
-    "heart": heart, "orange_pumpkin": lambda: pumpkin(10, 0.74), "green_pumpkin": lambda: pumpkin(14, 0.6),
+    "rounded_cylinder": lambda: [rounded_cylinder("white")], "heart": heart,
+    "orange_pumpkin": lambda: pumpkin(10, 0.74), "green_pumpkin": lambda: pumpkin(14, 0.6),
 }
 SCENES = {"lamps": lamps.lamps_scene, "city": lamps.city_scene}
 TEXTURES = {"numbered_squares": (256, 256), "planks": (300, 200), "panes": (96, 160)}  # width and height
+VOLUMES = ("smoke",)
 LIGHT_PROBES = {"sky": (256, 128), "clear_sky": (512, 256), "softboxes": (256, 128)}
 
 
@@ -90,6 +91,7 @@ def make_files():
     return ({f"meshes/{name}.obj": encode_obj(name, parts()) for name, parts in MESHES.items()}
             | {f"scenes/{name}.json": scene() for name, scene in SCENES.items()}
             | {f"textures/{name}.png": encode_png(*size, getattr(images, name)) for name, size in TEXTURES.items()}
+            | {f"volumes/{name}.vol": volumes.encode_vol(getattr(volumes, name)()) for name in VOLUMES}
             | {f"light_probes/{name}.hdr": encode_hdr(*size, getattr(images, name)) for name, size in LIGHT_PROBES.items()})
 
 

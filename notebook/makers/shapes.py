@@ -68,6 +68,20 @@ def sphere(material, times_around=0, columns=64):
     return part
 
 
+def rounded_cylinder(material, columns=64, rows=48, power=0.25):
+    """A cylinder about the Y axis with round edges, of radius and half height 1: a sphere whose sine and cosine have that power."""
+    def curve(s, exponent):
+        return math.sin(math.pi * s)**exponent, math.copysign(abs(math.cos(math.pi * s))**exponent, math.cos(math.pi * s))
+
+    def around(t, radius, height):
+        return (radius * math.sin(2 * math.pi * t), height, radius * math.cos(2 * math.pi * t))
+
+    part = globe(material, columns, rows, lambda s, t: around(t, *curve(s, power)) if 0 < s < 1 else (0, 1 - 2 * s, 0))
+    normals = globe(material, columns, rows, lambda s, t: around(t, *curve(s, 2 - power)) if 0 < s < 1 else (0, 1 - 2 * s, 0))
+    part.normals = [normalize(normal) for normal in normals.positions]
+    return part
+
+
 def torus(material):
     """A torus about the Y axis: a tube of radius 0.42 around the circle of radius 1."""
     part, columns, rows = Part(material), 96, 40

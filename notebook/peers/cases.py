@@ -1,14 +1,11 @@
 """What the records of chapters and peers measure: the chapters with their studies, and the variants of Mitsuba."""
+from peers.renderers import CPU_VARIANTS, SAMPLERS, python_of
 from project import ROOT, VARIANTS, UserError, chapter_named, failure_text, run_program
 from references.images import find_references
 from report.measurement import new_case
 from report.studies import measures
 
-GPU_VARIANT = "cuda_ad_rgb"
-CPU_VARIANTS = [variant for variant in VARIANTS if variant != GPU_VARIANT]
-SAMPLERS = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]  # of Mitsuba
-# The user's python3 can find Mitsuba in an active virtual environment, for example. Programs start in the project's folder.
-PEER = "python3 notebook peer --variant"
+PEER = f"{python_of('mitsuba')} notebook peer --variant"  # programs start in the project's folder
 CPU_SCENES = ["cornell_box", "heart_light", "clear_glass"]
 CPU_BACKENDS = {"compute": {"backend": "compute"}, "native, one by one": {"backend": "native", "variables": ["LAB_LANES=0"]},
                 "native, lanes": {"backend": "native"}}

@@ -7,7 +7,8 @@ With a name of your choice for DEVICE,
 """
 from pathlib import Path
 
-from peers.cases import CPU_VARIANTS, GPU_VARIANT, SAMPLERS, cpu_cases, peer_cases, study_cases, working_variants
+from peers.cases import cpu_cases, peer_cases, study_cases, working_variants
+from peers.renderers import CPU_VARIANTS, GPU_VARIANT, SAMPLERS
 from project import CHAPTERS, UserError, chapter_named, processor
 from report.make import chosen, make_report, new_parser, settings_of
 from report.measurement import Measurement, driver_of, find_device, report_cases

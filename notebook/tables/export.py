@@ -20,13 +20,14 @@ from tables.media_table import media_table
 from tables.numerics import case_table, device_tables
 from tables.peer_table import peer_table
 from tables.records import NOTEBOOK, RECORDS, load_records
+from tables.renderer_table import renderer_table
 from tables.result_plots import PLOTS, is_fresh, short_device, write_plot
 
 RESULTS = NOTEBOOK / "results"
 COMMAND = "./lab notebook export"
 # Tables of results/DEVICE.md: from records/FOLDER/DEVICE.json.
 DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table),
-                 "cpu": ("cpu", cpu_table), "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
+                 "cpu": ("cpu", cpu_table), "renderers": ("renderers", renderer_table), "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
 # Shown wherever times on such a device are compared.
 NO_RAY_TRACING_CORES = """
 > **An NVIDIA H200 has no ray tracing cores.** There the driver, our tree and Mitsuba's OptiX all trace rays in software. GPUs with such

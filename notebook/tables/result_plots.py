@@ -18,6 +18,7 @@ from tables.confusion_table import CONDITIONS, rates
 from tables.cpu_table import cpu_gains
 from tables.facet_tables import WAYS, WAYS_IN_WORDS, lost_by_degrees, sampling_cost
 from tables.records import RECORDS, load_records
+from tables.renderer_table import renderer_gains
 
 
 def devices(folder):
@@ -155,6 +156,18 @@ def cpu_backends():
     return figure, shown
 
 
+def renderers():
+    """How many times faster than other renderers is our best chapter, by scene and number of samples, in CPU time?"""
+    record, = load_records("renderers")
+    shown = {scene: {peer: {f"{samples} samples": ratio for samples, ratio in ratios.items()} for peer, ratios in peers.items()}
+             for scene, peers in renderer_gains(record, "cpu_seconds").items()}
+    figure, axes = panels(shown, 44, 4, "times that our chapter is faster to the same error, in CPU time (right of 1: it is)")
+    for axis in axes:
+        axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
+        axis.xaxis.set_minor_formatter(ticker.NullFormatter())
+    return figure, shown
+
+
 def features():
     """What does a feature of a scene cost on each backend? Time per path relative to the scene without it."""
     shown, rows = {}, []
@@ -221,7 +234,7 @@ def facets():
     return figure, {"sampling": shown, "lost": lost}
 
 
-PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, cpu_backends, features, check, facets)}
+PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, cpu_backends, renderers, features, check, facets)}
 
 
 # ---------------------------------------------------------------------------------------------- files

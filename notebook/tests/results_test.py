@@ -12,7 +12,7 @@ import project
 from docs import page_plots
 from docs.tables import DOCS, PAGES
 from report import sources as digests
-from tables import ages, best_table, confusion_table, cpu_table, export, peer_table, result_plots, sources
+from tables import ages, best_table, confusion_table, cpu_table, export, peer_table, renderer_table, result_plots, sources
 
 SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}
 
@@ -99,6 +99,50 @@ class CpuTableTest(unittest.TestCase):
         _, _, native, mitsuba = rows_of(text)
         self.assertEqual(native, ["`box`", "native", "0.0500", "40", "2.5", "1.0 (1.0 – 1.0)", "2.0 (2.0 – 2.0)"])
         self.assertEqual(mitsuba, ["", "Mitsuba LLVM", "0.100", "40", "5.0", "1", "1"])
+
+
+class RendererTableTest(unittest.TestCase):
+    def case(self, name, errors, cpu_seconds, is_peer=True):
+        """Two runs with the same errors, whose means differ by 2 % around the reference's."""
+        rows = [[{"samples": samples, "rel_mse": error, "seconds": 1 + cpu_seconds, "cpu_seconds": cpu_seconds, "mean": [mean] * 3,
+                  "difference": [0.01] * 3} for samples, error in zip(renderer_table.COUNTS, errors)] for mean in (0.99, 1.01)]
+        reference = {"mean": [1.0] * 3, "variance": [0.0] * 3, "freedom": 10, "rel_mse_deviation": 0.0}
+        return {"case": name, "is_peer": is_peer, "scene": "box_6", "width": 100, "height": 100,
+                "program": "another" if is_peer else "10_path_regeneration", "reference": reference,
+                "runs": [{"seed": seed + 1, "rows": part} for seed, part in enumerate(rows)]}
+
+    def record(self):
+        cases = [self.case("chapter 10, native", [0.04, 0.01, 0.0025, 0.0005], 1.0, False),
+                 self.case("LuxCore, Sobol", [0.08, 0.03, 0.005, 0.002], 2.0)]
+        renderers = {"chapter 10, native": "a driver", "LuxCore, Sobol": "LuxCore 2"}
+        return {"environment": {"processor": "a CPU", "cores": 2, "renderers": renderers}, "cases": cases}
+
+    def test_gains_are_of_pictures_with_as_many_samples(self):
+        gains = renderer_table.renderer_gains(self.record(), "cpu_seconds")["box"]["LuxCore, Sobol"]
+        self.assertEqual({samples: round(ratio[0], 6) for samples, ratio in gains.items()}, {16: 4, 64: 6, 256: 4, 1024: 8})
+
+    def test_table(self):
+        text = renderer_table.renderer_table(self.record())
+        self.assertIn("a CPU, 2 cores, and LuxCore 2.", text)
+        _, _, ours, peer, _, _, _, by_cpu, _, _, _, by_wall = rows_of(text)
+        self.assertEqual(ours[:5], ["`box`", "chapter 10, native", "0.64", "1.6", "0.64"])
+        self.assertEqual(peer[:5], ["", "LuxCore, Sobol", "1.9", "3.1", "1.3"])
+        self.assertRegex(peer[5], r"^[+]0.000 ± 12\.7\d\d %$")
+        self.assertEqual(by_cpu[3], "6.0 (6.0 – 6.0)")
+        self.assertEqual(by_wall[3], "4.5 (4.5 – 4.5)")
+
+    def test_a_scene_may_have_fewer_numbers_of_samples(self):
+        record = self.record()
+        for run in (run for case in record["cases"] for run in case["runs"]):
+            del run["rows"][-1]
+        self.assertEqual([*renderer_table.renderer_gains(record, "seconds")["box"]["LuxCore, Sobol"]], [16, 64, 256])
+        self.assertEqual(rows_of(renderer_table.renderer_table(record))[7][-2:], ["4.0 (4.0 – 4.0)", ""])
+
+    def test_what_is_biased_is_said(self):
+        record = self.record()
+        for run in record["cases"][1]["runs"]:
+            run["rows"][-1]["mean"] = [1.5 + 0.001 * run["seed"], 1.0, 1.0]
+        self.assertRegex(renderer_table.renderer_table(record), r"[+]50.* % \(biased\)")
 
 
 class NoRayTracingCoresTest(unittest.TestCase):

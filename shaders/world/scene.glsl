@@ -20,6 +20,10 @@ layout(scalar, set = 0, binding = BINDING_MICROFACETS) readonly buffer Microface
 #ifdef FEATURE_MEDIA
 layout(scalar, set = 0, binding = BINDING_MEDIA) readonly buffer Media { Medium media[]; };
 #endif
+// Grids of media, x fastest, one after the other.
+#ifdef FEATURE_DENSITIES
+layout(scalar, set = 0, binding = BINDING_DENSITIES) readonly buffer Densities { float densities[]; };
+#endif
 // What lies on the two sides of each instance.
 #ifdef FEATURE_BOUNDARIES
 layout(scalar, set = 0, binding = BINDING_BOUNDARIES) readonly buffer Boundaries { Boundary boundaries[]; };

@@ -74,6 +74,7 @@ SCENE = {
     "camera": {"position": [0, 0, 3], "target": [0, 0, 0]}, "background": {"radiance": [1, 1, 1]},
 }
 FOG = {"extinction": 1, "albedo": 1}
+GRID = {**FOG, "density": "quad.obj", "box": [[0, 0, 0], [1, 1, 1]]}  # of which only the name and the bytes are read
 PROBE = {"light_probe": "quad.obj", "intensity": 2}  # of which only the name and the bytes are read
 KEYS = {
     "description": ("description", "two"), "meshes": ("meshes", 2 * SCENE["meshes"]), "camera": ("camera", None),
@@ -87,7 +88,8 @@ KEYS = {
     "target": ("camera/target", [0, 1, 0]), "up": ("camera/up", [1, 0, 0]), "vertical_fov": ("camera/vertical_fov", 50),
     "fog": ("fog", FOG), "extinction": ("fog", {**FOG, "extinction": 2}), "albedo": ("fog", {**FOG, "albedo": 0.5}),
     "anisotropy": ("fog", {**FOG, "anisotropy": 0.5}), "medium": ("meshes/0/medium", FOG),
-    "boundary": ("meshes/0/medium", {**FOG, "boundary": "open"}),
+    "boundary": ("meshes/0/medium", {**FOG, "boundary": "open"}), "density": ("fog", {**GRID, "density": "other.obj"}),
+    "box": ("fog", {**GRID, "box": [[0, 0, 0], [1, 2, 1]]}),
     "aperture_diameter": ("camera/aperture_diameter", 0.1), "focus_distance": ("camera/focus_distance", 2),
     "radiance": ("background/radiance", 0.5), "light_probe": ("background", PROBE),
     "intensity": ("background", {**PROBE, "intensity": 3}), "rotation_degrees": ("background", {**PROBE, "rotation_degrees": 90}),
@@ -144,6 +146,11 @@ class WhatChaptersReadTest(ProgramTest):
                 entry[last] = value
                 if key in ("intensity", "rotation_degrees"):
                     usual = {**SCENE, "background": PROBE}
+                elif key in ("extinction", "albedo", "anisotropy", "density", "box"):
+                    usual = {**SCENE, "fog": GRID if key in ("density", "box") else FOG}
+                elif key == "boundary":
+                    usual = copy.deepcopy(SCENE)
+                    usual["meshes"][0]["medium"] = FOG
                 material = "Ks 0.1 0.1 0.1"
                 self.assert_read_or_refused(key, self.read(usual, material), lambda: self.read(scene, material))
 

@@ -53,7 +53,7 @@ MeanEstimate mean_of(const Scene& scene, const RenderSettings& settings, int cha
 // What a ray finds behind an absorbing slab is the fraction of flights that are longer: e^(-σd).
 TEST(Media, FreeFlightsAreDistributedExponentially) {
     for (const float depth : {0.1f, 1.0f, 3.0f}) {
-        Scene scene = filled(box({-1, -1, -0.5f}, {1, 1, 0}), {2 * depth, vec3(0), 0});
+        Scene scene = filled(box({-1, -1, -0.5f}, {1, 1, 0}), homogeneous_medium(2 * depth, vec3(0)));
         scene.background = vec3(1);
         expect_mean("optical depth " + std::to_string(depth), mean_of(seen(scene, {0, 0, 3}, {0, 0, 0}), media_settings(64)),
                     std::exp(-depth), 0.01, 3);
@@ -71,7 +71,8 @@ TEST(Media, WithoutAbsorptionDisappearInTheFurnace) {
                 SCOPED_TRACE(std::to_string(extinction) + ", " + std::to_string(anisotropy) + (is_glass ? ", glass" : ""));
                 Scene scene = make_sphere(is_glass ? glass : diffuse_material(vec3(0)), Facing::outwards);
                 if (is_glass) scene.meshes[0].dielectric_count = scene.meshes[0].triangle_count;
-                scene = filled(scene, {extinction, vec3(1), anisotropy}, is_glass ? BOUNDARY_GLASS : BOUNDARY_OPEN);
+                scene =
+                    filled(scene, homogeneous_medium(extinction, vec3(1), anisotropy), is_glass ? BOUNDARY_GLASS : BOUNDARY_OPEN);
                 scene.background = vec3(1);
                 const FilmImage film = render(scene, media_settings(4));
                 for (const FilmPixel& pixel : film.pixels) ASSERT_NEAR(pixel.sum.r, 4, 1e-4);
@@ -83,7 +84,7 @@ TEST(Media, InARoomThatGlowsAreAsBrightAsTheWalls) {
     Scene room = make_scene({diffuse_material(vec3(0), vec3(1))}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
     room.camera = {.position = {0, 0, 0.5f}, .target = {0, 0, 0}};
     for (const float anisotropy : {-0.5f, 0.8f}) {
-        const Scene scene = in_fog(room, {2, vec3(1), anisotropy});
+        const Scene scene = in_fog(room, homogeneous_medium(2, vec3(1), anisotropy));
         for (const Strategy strategy : {Strategy::both, Strategy::bounces})
             expect_mean(to_string(strategy) + ", g " + std::to_string(anisotropy),
                         mean_of(scene, media_settings(strategy == Strategy::both ? 16 : 1, strategy)), 1, 0.004, 4);
@@ -114,7 +115,7 @@ TEST(Media, ASlabScattersOnceAsItsPhaseFunctionSays) {
             scene.meshes = {slab, lamp};
             scene.instance_meshes = {0, 1};
             scene.instances.push_back(scene.instances[0]);
-            scene.media = {Medium{}, {1, vec3(static_cast<float>(albedo)), static_cast<float>(g)}};
+            scene.media = {Medium{}, homogeneous_medium(1, vec3(static_cast<float>(albedo)), static_cast<float>(g))};
             scene.boundaries = {{BOUNDARY_OPEN, 1, 0}, {BOUNDARY_NONE, 0, 0}};
             double expected = 0;
             constexpr int n = 200;
@@ -135,6 +136,44 @@ TEST(Media, ASlabScattersOnceAsItsPhaseFunctionSays) {
                             mean_of(seen(scene, {0, 0, 5}, {0, 0, 0}), settings), expected, 0.05, 4);
             }
         }
+}
+
+// A lamp beside the ray in fog: light that has been scattered once, by quadrature over the ray and the lamp. All ways to sample
+// the distance find it, with light samples alone as well as together with bounces.
+TEST(Media, ALampInFogGlowsAsTheIntegralOverTheRaySays) {
+    constexpr double extinction = 0.5, albedo = 0.6, g = 0.4, side = 0.2, x = 0.3;
+    Scene scene = make_scene({diffuse_material(vec3(0), vec3(10))}, {{{0.3f, -0.1f, -0.1f}, {0, 0, 0.2f}, {0, 0.2f, 0}, 0}});
+    scene = in_fog(scene,
+                   homogeneous_medium(static_cast<float>(extinction), vec3(static_cast<float>(albedo)), static_cast<float>(g)));
+    scene.media[0].largest_density = 1, scene.media[0].low = vec3(-20), scene.media[0].high = vec3(20);
+    double expected = 0;
+    constexpr int steps = 4000, n = 24;
+    constexpr double length = 20;
+    for (int k = 0; k < steps; ++k)
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const double t = (k + 0.5) / steps * length;
+                const dvec3 to_light(x, ((i + 0.5) / n - 0.5) * side, ((j + 0.5) / n - 0.5) * side - (2 - t));
+                const double r = glm::length(to_light), cos_theta = -to_light.z / r;
+                expected += length / steps * extinction * albedo * std::exp(-extinction * (t + r)) * 10 * phase(g, cos_theta) *
+                            x / r * side * side / n / n / (r * r);
+            }
+    const std::string light_alone = "STRATEGY STRATEGY_LIGHT", angles = "DISTANCE_SAMPLING SAMPLES_ANGLES";
+    for (const auto& [name, is_grid, samples, defines] :
+         {std::tuple("flights", false, 256u, std::vector<std::string>{}),
+          {"flights, light samples alone", false, 256u, {light_alone}},
+          {"angles", false, 16u, {angles}},
+          {"angles, light samples alone", false, 16u, {angles, light_alone}},
+          {"a grid", true, 256u, {}},
+          {"a grid and angles, which need the same everywhere", true, 256u, {angles}}}) {
+        scene.densities.assign(is_grid ? 2 : 0, 1);
+        scene.media[0].grid_size = is_grid ? uvec3(1, 1, 2) : uvec3(0);
+        RenderSettings settings = media_settings(samples);
+        settings.only_path_length = 1;
+        settings.max_path_length = 1;
+        settings.estimator.defines = defines;
+        expect_mean(name, mean_of(seen(scene, {0, 0, 2}, {0, 0, 0}), settings), expected, 0.01, 4);
+    }
 }
 
 // H(μ) = 1 / (√(1 - a) + a/2 ∫ μ' H(μ') / (μ + μ') dμ') by iteration (Chandrasekhar, "Radiative Transfer", 1950).
@@ -160,7 +199,7 @@ double chandrasekhar_h(double albedo, double mu) {
 void expect_half_space(uint32_t samples, double straight_down, double grazing) {
     const vec3 albedo(0.2f, 0.5f, 0.9f);
     for (const auto& [mu, largest_relative_bias] : {std::pair(1.0, straight_down), std::pair(0.2, grazing)}) {
-        Scene scene = filled(box({-25, -25, -25}, {25, 25, 0}), {1, albedo, 0});
+        Scene scene = filled(box({-25, -25, -25}, {25, 25, 0}), homogeneous_medium(1, albedo));
         scene.background = vec3(1);
         const double sin_theta = std::sqrt(1 - mu * mu);
         RenderSettings settings = media_settings(samples);
@@ -202,7 +241,7 @@ TEST(Media, PathsInAConvexBodyAreAsLongAsItsVolumeOverItsSurfaceSays) {
             Scene scene = lit_scene(ball);
             place(scene, mat4x3(1));
             scene.background = vec3(1);
-            scene = filled(scene, {extinction, vec3(1, 1 - epsilon, 1 - 0.5 * epsilon), anisotropy});
+            scene = filled(scene, homogeneous_medium(extinction, vec3(1, 1 - epsilon, 1 - 0.5 * epsilon), anisotropy));
             scene = seen(scene, {0, 0, 1000}, {0, 0, 0}, static_cast<float>(glm::degrees(2 * std::atan(field / 2000))));
             const Batches batches = render_batches(scene, media_settings(12), 32);
             std::vector<double> lengths;

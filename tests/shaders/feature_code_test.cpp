@@ -47,7 +47,8 @@ const std::map<std::string, Needs>& needs_of_features() {
         {"transforms", {.bindings = {BINDING_INSTANCES}}},
         {"microfacets", {.bindings = {BINDING_MICROFACETS}, .functions = {"get_facet_distribution", "get_fresnel_reflectance"}}},
         {"lens", {.functions = {"sample_disc"}}},
-        {"media", {.bindings = {BINDING_MEDIA}, .functions = {"sample_phase"}}}};
+        {"media", {.bindings = {BINDING_MEDIA}, .functions = {"sample_phase"}}},
+        {"densities", {.bindings = {BINDING_MEDIA, BINDING_DENSITIES}, .functions = {"sample_phase", "get_density"}}}};
     return needs;
 }
 
@@ -118,7 +119,7 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
         }
         const bool has_no_use = (feature.name == "microfacets" && !handles_microfacets(GetParam())) ||
                                 (feature.name == "lens" && !load_chapter(GetParam()).lens) ||
-                                (feature.name == "media" && !load_chapter(GetParam()).media);
+                                ((feature.name == "media" || feature.name == "densities") && !load_chapter(GetParam()).media);
         if (has_no_use) needs = {};
         Scene scene = bare_scene();
         feature.add(scene);

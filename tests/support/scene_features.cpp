@@ -1,6 +1,7 @@
 #include "support/scene_features.h"
 
 #include "scene/microfacets.h"
+#include "support/scenes.h"
 
 namespace lab {
 namespace {
@@ -62,7 +63,15 @@ void add_microfacets(Scene& scene) {
 
 void add_lens(Scene& scene) { scene.camera.aperture_diameter = 0.1f; }
 
-void add_medium(Scene& scene) { scene.media = {{0.1f, vec3(0.5f), 0}}; }
+void add_medium(Scene& scene) { scene.media = {homogeneous_medium(0.1f, vec3(0.5f))}; }
+
+void add_densities(Scene& scene) {
+    add_medium(scene);
+    scene.densities = {1};
+    scene.media.front().grid_size = uvec3(1);
+    scene.media.front().largest_density = 1;
+    scene.media.front().low = vec3(-1), scene.media.front().high = vec3(1);
+}
 
 void add_transform(Scene& scene) { scene.instances.front().object_to_world[3] += vec3(0, 1e-3f, 0); }
 
@@ -80,7 +89,8 @@ const std::vector<SceneFeature>& all_scene_features() {
                                                     {"transforms", add_transform},
                                                     {"microfacets", add_microfacets},
                                                     {"lens", add_lens},
-                                                    {"media", add_medium}};
+                                                    {"media", add_medium},
+                                                    {"densities", add_densities}};
     return features;
 }
 

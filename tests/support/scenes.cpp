@@ -32,6 +32,14 @@ Material diffuse_material(const vec3& albedo, const vec3& emission) {
     return material;
 }
 
+Medium homogeneous_medium(float extinction, const vec3& albedo, float anisotropy) {
+    Medium medium{};
+    medium.extinction = extinction;
+    medium.albedo = albedo;
+    medium.anisotropy = anisotropy;
+    return medium;
+}
+
 Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>& quads) {
     Scene scene;
     scene.materials = materials;

@@ -10,6 +10,9 @@ namespace lab {
 // A Lambertian material whose front emits.
 Material diffuse_material(const vec3& albedo, const vec3& emission = vec3(0));
 
+// The same everywhere.
+Medium homogeneous_medium(float extinction, const vec3& albedo, float anisotropy = 0);
+
 // A parallelogram. Its front is the side that edge_u × edge_v points to.
 struct Quad {
     vec3 corner;

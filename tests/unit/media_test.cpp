@@ -1,4 +1,7 @@
 // Media in scene files: their keys, and which medium is on which side of a mesh.
+#include <cmath>
+#include <limits>
+
 #include "scene/features.h"
 #include "scene/scene.h"
 #include "test_files.h"
@@ -99,6 +102,82 @@ TEST_F(MediaFile, ThatCannotBeAreRefused) {
     expect_refused(filled, "", "behind an opaque surface");
     expect_refused(filled, "", "absorbing glass", glass + "Tf 0.5 1 1\n");
     expect_refused(open("1"), "", "cannot emit", "newmtl m\nKe 1 1 1\n");
+}
+
+// A grid of densities as its file holds it, after a change.
+std::string grid_file(const std::vector<float>& densities, std::vector<int32_t> numbers = {1, 2, 1, 2, 1}) {
+    const auto bytes = [](const auto& values) {
+        return std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+    };
+    return "VOL\3" + bytes(numbers) + bytes(std::vector<float>(6)) + bytes(densities);
+}
+
+class DensityFile : public MediaFile {
+  protected:
+    static constexpr const char* box = R"("box": [[-1, -2, -3], [1, 2, 3]])";
+    Scene load_grid(const std::string& content, const std::string& keys = box, float extinction = 1) const {
+        folder.write("smoke.vol", content);
+        return load(plain, R"(, "background": {"radiance": 1}, "fog": {"albedo": 1, "extinction": )" +
+                               std::to_string(extinction) + R"(, "density": "smoke.vol", )" + keys + "}");
+    }
+};
+
+TEST_F(DensityFile, IsReadWithItsBox) {
+    const Scene scene = load_grid(grid_file({0, 0.5f, 3, 1}));
+    EXPECT_TRUE(scene.warnings.empty()) << "this fog has an end and hides no sky";
+    const Medium& medium = scene.media.at(0);
+    EXPECT_EQ(medium.grid_size, uvec3(2, 1, 2));
+    EXPECT_EQ(medium.largest_density, 3);
+    EXPECT_EQ(medium.low, vec3(-1, -2, -3));
+    EXPECT_EQ(medium.high, vec3(1, 2, 3));
+    EXPECT_EQ(scene.densities, (std::vector<float>{0, 0.5f, 3, 1}));
+    EXPECT_EQ(scene.sources.back().filename(), "smoke.vol") << "or changes would not be seen";
+}
+
+TEST_F(DensityFile, OfZerosIsVacuum) {
+    const Scene scene = load_grid(grid_file({0, 0, 0, 0}));
+    EXPECT_EQ(scene.media.at(0).extinction, 0);
+    EXPECT_TRUE(scene.densities.empty());
+}
+
+TEST_F(DensityFile, SharesOneArrayWithOthers) {
+    folder.write("smoke.vol", grid_file({1, 2, 3, 4}));
+    const std::string keys = std::string(R"(, "density": "smoke.vol", )") + box;
+    const Scene scene = load(placed(R"("medium": {"extinction": 1, "albedo": 1, "boundary": "open")" + keys + "}"),
+                             R"(, "fog": {"extinction": 1, "albedo": 1)" + keys + "}");
+    EXPECT_EQ(scene.media.at(0).first_density, 0u);
+    EXPECT_EQ(scene.media.at(1).first_density, 4u);
+    EXPECT_EQ(scene.densities.size(), 8u);
+}
+
+TEST_F(DensityFile, ThatCannotBeIsRefused) {
+    const auto refuse = [&](const std::string& content, const std::string& reason, const std::string& keys = box) {
+        EXPECT_USER_ERROR(load_grid(content, keys), reason);
+    };
+    const std::vector<float> fine{0, 1, 2, 3};
+    refuse("", "the file is empty");
+    refuse(grid_file(fine).substr(0, 47), "too short");
+    refuse(grid_file({1, 2, 3}), "ends early");
+    refuse(grid_file({1, 2, 3, 4, 5}), "ends late");
+    refuse("VOL\2" + grid_file(fine).substr(4), "no grid of densities");
+    refuse("PNG!" + grid_file(fine).substr(4), "no grid of densities");
+    refuse(grid_file(fine, {3, 2, 1, 2, 1}), "one channel of 32-bit numbers");
+    refuse(grid_file(fine, {1, 2, 1, 2, 3}), "one channel of 32-bit numbers");
+    refuse(grid_file(fine, {1, 0, 1, 2, 1}), "impossible size");
+    refuse(grid_file(fine, {1, -2, 1, 2, 1}), "impossible size");
+    refuse(grid_file(fine, {1, 1 << 24, 1 << 24, 1 << 24, 1}), "more than");
+    refuse(grid_file({1, -2, 3, 4}), "its cell 1 is negative or not finite");
+    refuse(grid_file({1, 2, 3, std::numeric_limits<float>::infinity()}), "its cell 3 is negative or not finite");
+    refuse(grid_file({NAN, 2, 3, 4}), "its cell 0 is negative or not finite");
+    refuse(grid_file({1, 2, 3, 1e4f}), "more than 10000 times");
+    refuse(grid_file(fine), "two corners of three numbers", R"("box": [[0, 0, 0]])");
+    refuse(grid_file(fine), "two corners of three numbers", R"("box": [[0, 0, 0], [1, 1]])");
+    refuse(grid_file(fine), "two corners of three numbers", R"("box": [[0, 0, 0], [1, 1, "a"]])");
+    refuse(grid_file(fine), "two corners of three numbers", R"("box": [[0, 0, 0], [1, 0, 1]])");
+    refuse(grid_file(fine), "\"box\"", R"("anisotropy": 0)");
+    expect_refused(plain, R"(, "fog": {"extinction": 1, "albedo": 1, "box": [[0, 0, 0], [1, 1, 1]]})", "needs a \"density\"");
+    expect_refused(plain, std::string(R"(, "fog": {"extinction": 1, "albedo": 1, "density": "none.vol", )") + box + "}",
+                   "none.vol");
 }
 
 }  // namespace

@@ -180,10 +180,12 @@ def write_scene(scene, folder, name):
     background = scene.get("background", 0)
     if isinstance(background, dict):
         background = background | {"light_probe": str(ROOT / "assets/light_probes" / background["light_probe"])}
+    others = {key: scene[key] for key in OF_THE_SCENE if key in scene}
+    if "density" in others.get("fog", {}):
+        others["fog"] = others["fog"] | {"density": str(ROOT / "assets/volumes" / others["fog"]["density"])}
     file = folder / f"{name}.json"
     file.write_text(json.dumps({
-        "description": "An experiment of ./lab check", "meshes": [{"file": f"{name}.obj"}],
-        **{key: scene[key] for key in OF_THE_SCENE if key in scene},
+        "description": "An experiment of ./lab check", "meshes": [{"file": f"{name}.obj"}], **others,
         "camera": {"position": camera["from"], "target": camera["to"], "up": up, "vertical_fov": camera["fov"]},
         "background": background if isinstance(background, dict) else {"radiance": [background] * 3}}))
     return file

@@ -41,6 +41,8 @@ def make_diffuse_reflectance(material):
 
 def make_bsdf(surface, own_normals):
     material = surface.material
+    if surface.medium and surface.medium["is_open"]:
+        return {"type": "null"}
     if material.roughness > 0 and material.refractive_index > 0:
         bsdf = {"type": "rough_glass", "alpha": material.roughness,
                 "facets": {"type": "roughdielectric", "distribution": "ggx", "alpha": material.roughness,
@@ -82,6 +84,8 @@ def make_mesh(surface, unit, own_normals):
         properties["interior"] = mi.load_dict({
             "type": "homogeneous", "albedo": 0.0, "scale": float(strongest / unit),
             "sigma_t": colour(material.absorption / strongest)})
+    if surface.medium:
+        properties["interior"] = mi.load_dict(make_medium(surface.medium, unit))
     count = len(surface.positions)
     has_own_normals = own_normals and surface.normals is not None and not material.emission.any()
     mesh = mi.Mesh(material.name, 3 * count, count, props=properties, has_vertex_normals=has_own_normals,
@@ -114,8 +118,27 @@ def make_light_probe(scene):
 
 
 def make_medium(medium, unit):
-    return {"type": "homogeneous", "albedo": colour(np.broadcast_to(medium["albedo"], 3)), "sigma_t": medium["extinction"] / unit,
-            "phase": {"type": "hg", "g": medium["anisotropy"]}}
+    content = {"albedo": colour(np.broadcast_to(medium["albedo"], 3)), "phase": {"type": "hg", "g": medium["anisotropy"]}}
+    if "density" not in medium:
+        return {"type": "homogeneous", "sigma_t": medium["extinction"] / unit, **content}
+    return {"type": "heterogeneous", "scale": medium["extinction"] / unit, **content,
+            "sigma_t": {"type": "gridvolume", "filename": str(medium["density"]), "to_world": make_box(medium, unit)}}
+
+
+def make_box(medium, unit):
+    """The transform of the unit cube to the box of a grid."""
+    low, high = unit * np.array(medium["box"], float)
+    return mi.ScalarTransform4f().translate(list(low)).scale(list(high - low))
+
+
+def make_fog(fog, unit, content):
+    """A ray that starts in a medium stays there until it crosses a boundary. A grid ends at its box."""
+    if "density" not in fog:
+        content["sensor"]["medium"] = make_medium(fog, unit)
+    else:
+        from_minus_one = mi.ScalarTransform4f().translate([0.5, 0.5, 0.5]).scale([0.5, 0.5, 0.5])
+        content["fog"] = {"type": "cube", "to_world": make_box(fog, unit) @ from_minus_one, "bsdf": {"type": "null"},
+                          "interior": make_medium(fog, unit)}
 
 
 def make_camera(scene, width, height, unit, sampler):
@@ -141,18 +164,20 @@ def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False,
     """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself where
     nothing emits, and not at all on lights: nearly the same picture, without Python during the render."""
     absorbs = any(surface.material.absorption.any() for surface in scene.surfaces)
-    integrator = "volpath" if absorbs or scene.fog else "path"
+    scatters = scene.fog or any(surface.medium for surface in scene.surfaces)
+    integrator = "volpath" if absorbs or scatters else "path"
     unit = unit_length(scene)
     content = {"type": "scene", "sensor": make_camera(scene, width, height, unit, sampler),
                "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30}}
-    if scene.fog:  # a ray that starts in a medium stays there until it crosses a boundary
-        content["sensor"]["medium"] = make_medium(scene.fog, unit)
+    if scene.fog:
+        make_fog(scene.fog, unit, content)
     for i, surface in enumerate(scene.surfaces):
         content[f"surface_{i}"] = make_mesh(surface, unit, own_normals)
     # Fog without end hides what is infinitely far away. Mitsuba would show it at the distance of a sphere around the scene.
-    if scene.light_probe and not scene.fog:
+    hides_sky = scene.fog and "density" not in scene.fog
+    if scene.light_probe and not hides_sky:
         content["background"] = make_light_probe(scene)
-    elif scene.background.any() and not scene.fog:
+    elif scene.background.any() and not hides_sky:
         content["background"] = {"type": "constant", "radiance": colour(scene.background)}
     return mi.load_dict(content), integrator
 

@@ -38,18 +38,19 @@ class SourceFiles:
 
 @dataclass
 class Surface:
-    """All triangles of one material in world space: arrays [triangle, corner], counter-clockwise seen from the front."""
+    """All triangles of one material around one medium in world space: arrays [triangle, corner], counter-clockwise seen from the front."""
     material: Material
     positions: np.ndarray
     normals: np.ndarray | None  # to be interpolated, then normalised; None to use the triangles' own
     texture_coordinates: np.ndarray  # v down from the top row of the image
+    medium: dict | None  # inside: extinction, albedo, anisotropy, is_open, and with a grid density (its file) and box
 
 
 @dataclass
 class Scene:
     surfaces: list
     camera: dict  # position, target, up, vertical_fov in degrees, aperture_diameter, focus_distance (0: that of the target)
-    fog: dict | None  # extinction, albedo, anisotropy
+    fog: dict | None  # a medium
     background: np.ndarray  # radiance, or factor of the light probe
     light_probe: Path | None
     probe_rotation: float  # degrees
@@ -69,23 +70,25 @@ def limit_reflectance(material, specular):
 
 
 def place_meshes(path, meshes, placements):
-    """Surfaces in world space, one per material; placements: (index of the mesh, object-to-world matrix)."""
+    """Surfaces in world space, one per material and medium; placements: (index of the mesh, object-to-world matrix, medium)."""
     parts = []
-    for index, matrix in placements:
+    for index, matrix, _ in placements:
         mesh, linear = meshes[index], matrix[:3, :3]
         # The front is determined in object space: a mirrored instance keeps it.
         order = [0, 2, 1] if np.linalg.det(linear) < 0 else [0, 1, 2]
         arrays = (mesh.positions @ linear.T + matrix[:3, 3], mesh.normals @ np.linalg.inv(linear), mesh.texture_coordinates)
         parts.append([array[:, order] for array in arrays])
     all_positions, all_normals, all_coordinates = (np.concatenate(arrays) for arrays in zip(*parts))
-    all_materials = [material for index, _ in placements for material in meshes[index].materials]
+    all_materials = [material for index, _, _ in placements for material in meshes[index].materials]
     owners = np.repeat(range(len(parts)), [len(positions) for positions, _, _ in parts])
     all_positions, is_kept = resolve_lamps(path, all_positions, all_materials, owners)
 
     surfaces = []
-    identities = np.array([id(material) for material in all_materials])
-    for material in dict.fromkeys(all_materials):
-        chosen = is_kept & (identities == id(material))
+    media = [placements[owner][2] for owner in owners]
+    identities = [(id(material), id(medium)) for material, medium in zip(all_materials, media)]
+    for identity, material, medium in {identity: (identity, material, medium)
+                                       for identity, material, medium in zip(identities, all_materials, media)}.values():
+        chosen = is_kept & np.array([other == identity for other in identities])
         if not chosen.any():
             continue
         positions, normals, texture_coordinates = (array[chosen] for array in (all_positions, all_normals, all_coordinates))
@@ -93,7 +96,7 @@ def place_meshes(path, meshes, placements):
         normals = np.where(np.isnan(normals), flat, normals)
         length = np.linalg.norm(normals, axis=2, keepdims=True)
         is_flat = np.abs(normals / length - flat).max() < 1e-5
-        surfaces.append(Surface(material, positions, None if is_flat else normals, texture_coordinates))
+        surfaces.append(Surface(material, positions, None if is_flat else normals, texture_coordinates, medium))
     return surfaces
 
 
@@ -112,9 +115,7 @@ def triple(value):
 
 def placement_matrix(path, entry):
     """Scale, then rotation, then translation."""
-    if "medium" in entry:
-        raise UserError(f'{path}: references do not know the "medium" of a mesh, nor its "boundary": leave it out')
-    only(path, entry, "file", "materials", "scale", "rotation", "translation")
+    only(path, entry, "file", "materials", "medium", "scale", "rotation", "translation")
     matrix = np.eye(4)
     matrix[:3, :3] = np.diag(triple(entry.get("scale", 1)))
     if "rotation" in entry:
@@ -128,10 +129,16 @@ def placement_matrix(path, entry):
     return matrix
 
 
+def read_medium(path, entry, *others):
+    medium = {"anisotropy": 0, **only(path, entry, "extinction", "albedo", "anisotropy", "density", "box", *others)}
+    medium["is_open"] = medium.pop("boundary", "") == "open"
+    return medium | ({"density": path.parent / medium["density"]} if "density" in medium else {})
+
+
 def framing_camera(meshes, placements):
     """The camera for scenes without one: the bounding sphere touches the top and bottom of the image."""
     points = []
-    for index, matrix in placements:
+    for index, matrix, _ in placements:
         corners = meshes[index].positions.reshape(-1, 3)
         low, high = corners.min(axis=0), corners.max(axis=0)
         box = np.array(list(itertools.product(*zip(low, high))))
@@ -162,7 +169,8 @@ def read_scene(path):
             if key not in indices:
                 indices[key] = len(meshes)
                 meshes.append(ObjFile(file, files, materials))
-            placements.append((indices[key], placement_matrix(path, entry)))
+            medium = entry.get("medium") and read_medium(path, entry["medium"], "boundary")
+            placements.append((indices[key], placement_matrix(path, entry), medium))
 
         textures = set()
         for mesh in meshes:
@@ -171,6 +179,12 @@ def read_scene(path):
                 if material.texture and material.texture.resolve() not in textures:
                     textures.add(material.texture.resolve())
                     files.read(material.texture)
+        fog = root.get("fog") and read_medium(path, root["fog"])
+        for medium in (fog, *(medium for *_, medium in placements)):
+            if medium and "density" in medium:
+                files.read(medium["density"])
+        if fog and any(medium for *_, medium in placements):
+            raise UserError(f'{path}: references have either "fog" or the "medium" of a mesh: leave one out')
         surfaces = place_meshes(path, meshes, placements)
         if root.get("multiple_scattering") and any(surface.material.roughness > 0 for surface in surfaces):
             raise UserError(f'{path}: Mitsuba has no "multiple_scattering" on microfacets: leave it out')
@@ -186,9 +200,7 @@ def read_scene(path):
                   **(root.get("camera") or framing_camera(meshes, placements))}
         camera = {key: np.asarray(value, float) for key, value in
                   only(path, camera, "position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance").items()}
-        fog = root.get("fog") and only(path, root["fog"], "extinction", "albedo", "anisotropy")
-        return Scene(surfaces, camera, fog and {"anisotropy": 0, **fog},
-                     triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
+        return Scene(surfaces, camera, fog, triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
                      root.get("width", 512), root.get("height", 512), root.get("max_path_length", 8),
                      f"{files.hash:x}")
     except (LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:

@@ -1,0 +1,52 @@
+// Where a light sample is taken along a ray in a medium: where the path collides, or by the angle under which a lamp sees it.
+const uint SAMPLES_FLIGHTS = 0u;
+const uint SAMPLES_ANGLES = 1u;
+#ifndef DISTANCE_SAMPLING
+#define DISTANCE_SAMPLING SAMPLES_FLIGHTS
+#endif
+
+// The formula needs a density of flights, which a grid does not have.
+bool samples_angles(Medium medium) { return DISTANCE_SAMPLING == SAMPLES_ANGLES && !has_grid(medium); }
+
+// A segment without an end has this length, and light from depths beyond the other is none: both keep products finite.
+const float FARTHEST = 1e18;
+const float FARTHEST_DEPTH = 80.0;
+
+// The part of a ray that lies in one medium.
+struct Segment {
+    Ray ray;  // its direction has unit length
+    float t_max;
+    uint medium;
+};
+
+// Equiangular samples (Kulla and Fajardo, "Importance Sampling Techniques for Path Tracing in Participating Media", 2012): y sees a
+// segment at the height h above its line, between the angles θ_a and θ_b of its ends.
+struct Angles {
+    float nearest;  // t of the line's point that is nearest to y
+    float height;   // h
+    float first;    // θ_a
+    float size;     // θ_b - θ_a
+};
+Angles get_angles(Segment segment, vec3 y) {
+    vec3 to_y = y - segment.ray.origin;
+    float nearest = dot(to_y, segment.ray.direction);
+    float height = max(length(to_y - nearest * segment.ray.direction), ROUNDING * length(to_y));
+    float size = atan(height * segment.t_max, height * height - nearest * (segment.t_max - nearest));
+    return Angles(nearest, height, atan(-nearest, height), size);
+}
+
+// The distance t = h tan θ of a uniform angle. Its density with respect to length is h / ((θ_b - θ_a) (h² + t²)), as 1/r² of a
+// light sample, which it cancels.
+float sample_distance(Segment segment, vec3 y, float u) {
+    Angles angles = get_angles(segment, y);
+    return clamp(angles.nearest + angles.height * tan(angles.first + u * angles.size), 0.0, segment.t_max);
+}
+
+// That density over the one of free flights, σ_t exp(-σ_t t): the weights of both kinds of samples need no more.
+float get_distance_ratio(Segment segment, vec3 y, float t) {
+    Angles angles = get_angles(segment, y);
+    float from_nearest = t - angles.nearest;
+    float density = angles.height / (angles.size * (angles.height * angles.height + from_nearest * from_nearest));
+    float extinction = media[segment.medium].extinction;
+    return density * exp(min(extinction * t, FARTHEST_DEPTH)) / extinction;
+}
