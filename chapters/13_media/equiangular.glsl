@@ -1,6 +1,7 @@
-// Where a light sample is taken along a ray in a medium: where the path collides, or by the angle under which a lamp sees it.
-const uint SAMPLES_FLIGHTS = 0u;
-const uint SAMPLES_ANGLES = 1u;
+// Where a light sample is taken along a ray in a medium.
+const uint SAMPLES_FLIGHTS = 0u;  // where the path collides
+const uint SAMPLES_ANGLES = 1u;   // at a uniform angle, seen from the lamp
+// The one that --distance-sampling chooses.
 #ifndef DISTANCE_SAMPLING
 #define DISTANCE_SAMPLING SAMPLES_FLIGHTS
 #endif
@@ -8,9 +9,9 @@ const uint SAMPLES_ANGLES = 1u;
 // The formula needs a density of flights, which a grid does not have.
 bool samples_angles(Medium medium) { return DISTANCE_SAMPLING == SAMPLES_ANGLES && !has_grid(medium); }
 
-// A segment without an end has this length, and light from depths beyond the other is none: both keep products finite.
-const float FARTHEST = 1e18;
-const float FARTHEST_DEPTH = 80.0;
+// Both keep products finite.
+const float FARTHEST = 1e18;        // length of a segment without an end
+const float FARTHEST_DEPTH = 80.0;  // light from beyond this optical depth is none
 
 // The part of a ray that lies in one medium.
 struct Segment {
@@ -27,6 +28,7 @@ struct Angles {
     float first;    // θ_a
     float size;     // θ_b - θ_a
 };
+// The angles of a segment, seen from y.
 Angles get_angles(Segment segment, vec3 y) {
     vec3 to_y = y - segment.ray.origin;
     float nearest = dot(to_y, segment.ray.direction);

@@ -16,6 +16,7 @@ struct Path {
     float flight;  // t of x_{k-1}
 };
 
+// A path that begins with this camera ray, in the medium around the camera.
 Path start_path(Ray ray) {
     return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0, find_medium(ray), 0.0, Segment(ray, 0.0, 0u), 0.0);
 }
@@ -25,6 +26,7 @@ void add_light(inout Path path, uint bounces, vec3 radiance) {
     if (is_counted(path.path_length + bounces)) path.radiance += path.radiance_scale * path.throughput * radiance;
 }
 
+// Extends the path by one bounce and adds the radiance that it finds. Returns false where the path ends.
 bool extend_path(inout Path path, inout uvec2 seed) {
     // A free flight along x_{k-1}, ω_{k-1} ends in the medium or at the next surface. One that ends within rounding errors of a
     // surface ends there, so that no collision lies behind it.

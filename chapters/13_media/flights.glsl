@@ -59,6 +59,7 @@ float track_transmittance(Medium medium, Ray ray, float t_max, inout uvec2 seed)
 }
 #endif
 
+// Whether its density comes from a grid.
 bool has_grid(Medium medium) {
 #ifdef FEATURE_DENSITIES
     return medium.grid_size.x > 0u;

@@ -33,6 +33,7 @@ ShadingData get_medium_point(vec3 position, vec3 ray_direction) {
     s.is_dielectric = false;
     return s;
 }
+// Whether a path scatters in a medium there, not at a surface.
 bool is_in_medium(ShadingData s) { return s.normal == vec3(0.0); }
 
 // The media on the two sides of what a path meets, as indices: on the ray's side and beyond. They differ at boundaries only.
@@ -58,6 +59,7 @@ uint get_side(Sides sides, ShadingData s, vec3 direction) {
     return dot(s.geometric_normal, direction) < 0.0 ? sides.beyond : sides.here;
 }
 
+// Whether what a ray hits is no surface, but only the end of a medium.
 bool is_open_boundary(Hit hit) {
 #ifdef FEATURE_OPEN_BOUNDARIES
     return boundaries[hit.instance].kind == BOUNDARY_OPEN;

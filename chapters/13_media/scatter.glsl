@@ -49,6 +49,7 @@ LightPoint sample_lamp(out LightTriangle light, inout uvec2 seed) {
     return get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
 }
 
+// Whether a light sample goes to the light probe, with the probability that both tables contain.
 bool chooses_probe(inout uvec2 seed) {
     return HAS_LIGHT_PROBE_CELLS && (!HAS_LIGHT_TRIANGLES || happens(LIGHT_PROBE_PROBABILITY, seed));
 }
