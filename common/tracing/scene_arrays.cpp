@@ -68,7 +68,8 @@ void SceneArrays::add_lights(const Scene& scene, const SceneFeatures& features, 
         add("light triangles", BINDING_LIGHT_TRIANGLES, lights_.triangles);
         defines_.emplace_back("FEATURE_LIGHT_TRIANGLES");
     }
-    if (samples_triangles && uses_light_tree) {
+    // Two triangles are one lamp, or leave little to choose: the table alone costs less.
+    if (samples_triangles && uses_light_tree && lights_.triangles.size() > 2) {
         light_tree_ = build_light_tree(scene, lights_);
         add("nodes of the light tree", BINDING_LIGHT_NODES, light_tree_.nodes);
         add("leaves of the light tree", BINDING_LIGHT_LEAVES, light_tree_.leaves);

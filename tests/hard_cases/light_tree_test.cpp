@@ -38,7 +38,16 @@ TEST(LightTree, ProbabilitiesOfLampsInAHall) { expect_right_probabilities(load_s
 // 10⁸ times a lamp is looked for at a point.
 TEST(LightTree, ProbabilitiesOfLampsInAHall_all) { expect_right_probabilities(load_shipped_scene("lamps.json"), 40, 0.003); }
 TEST(LightTree, ProbabilitiesOfLampsOfTwelveDecades) { expect_right_probabilities(random_lamps(100, 12), 64, 0.002); }
-TEST(LightTree, ProbabilitiesOfOneLamp) { expect_right_probabilities(load_shipped_scene("cornell_box.json"), 64, 0.002); }
+TEST(LightTree, ProbabilitiesOfTwoLamps) { expect_right_probabilities(random_lamps(2, 1), 64, 0.002); }
+// There is little to choose, and the table costs less.
+TEST(LightTree, IsLeftOutForALampOfTwoTriangles) {
+    const auto has_tree = [](const Scene& scene) {
+        const GpuScene gpu_scene = make_gpu_scene(scene, {.estimator = chapter_estimator(chapter_named("many_lights"))});
+        return std::ranges::count(gpu_scene.defines(), "FEATURE_LIGHT_TREE") == 1;
+    };
+    EXPECT_FALSE(has_tree(load_shipped_scene("cornell_box.json")));
+    EXPECT_TRUE(has_tree(random_lamps(2, 1)));
+}
 // Points are within all nodes.
 TEST(LightTree, ProbabilitiesOfALampAroundThem) {
     expect_right_probabilities(make_sphere(diffuse_material(vec3(0), vec3(1)), Facing::inwards), 64, 0.002);
