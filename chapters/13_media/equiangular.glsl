@@ -37,8 +37,8 @@ Angles get_angles(Segment segment, vec3 y) {
     return Angles(nearest, height, atan(-nearest, height), size);
 }
 
-// The distance t = h tan θ of a uniform angle. Its density with respect to length is h / ((θ_b - θ_a) (h² + t²)), as 1/r² of a
-// light sample, which it cancels.
+// The distance t = h tan θ of a uniform angle. Its density with respect to length is h / ((θ_b - θ_a) (h² + (t - t_y)²)), as
+// 1/r² of a light sample, which it cancels.
 float sample_distance(Segment segment, vec3 y, float u) {
     Angles angles = get_angles(segment, y);
     return clamp(angles.nearest + angles.height * tan(angles.first + u * angles.size), 0.0, segment.t_max);

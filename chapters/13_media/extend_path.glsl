@@ -29,7 +29,7 @@ void add_light(inout Path path, uint bounces, vec3 radiance) {
 // Extends the path by one bounce and adds the radiance that it finds. Returns false where the path ends.
 bool extend_path(inout Path path, inout uvec2 seed) {
     // A free flight along x_{k-1}, ω_{k-1} ends in the medium or at the next surface. One that ends within rounding errors of a
-    // surface ends there, so that no collision lies behind it.
+    // surface ends there, so that hardly any collision lies behind it.
     Hit hit;
     bool is_hit = trace_ray(path.ray, NO_LIMIT, hit);
     float t_max = is_hit ? (1.0 - 64.0 * ROUNDING) * hit.distance : NO_LIMIT;

@@ -1,6 +1,6 @@
 // Scattering at a surface or in a medium, and light samples for both.
 
-// What multiplies the radiance from a direction where a path scatters: ρ |n·ω| at a surface, the phase function in a medium.
+// What multiplies the radiance from a direction where a path scatters: ρ n·ω at a surface, the phase function in a medium.
 vec3 get_scattering(ShadingData s, Medium medium, vec3 omega) {
     if (is_in_medium(s)) return medium.albedo * get_phase(medium, -s.out_direction, omega);
     return is_above_surface(s, omega) ? get_brdf(s, omega) * dot(s.normal, omega) : vec3(0.0);

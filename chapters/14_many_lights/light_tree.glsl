@@ -74,8 +74,8 @@ bool is_first_chosen(vec2 probabilities, inout uvec2 digits) {
 }
 
 // Descends the tree: one number decides at all nodes, and what is left of it is the first of the two numbers for a point. At each
-// node it chooses one half of the children, and then one of these two. One less the probability of the first would be 0 for a
-// second that is dim.
+// node it chooses one half of the children, and then one of these two. 1 minus the probability of the first would round to
+// 0 for a dim second one.
 LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
     uvec2 words = get_random_words(seed), digits = words;
     u = to_numbers(words);

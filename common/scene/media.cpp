@@ -46,7 +46,8 @@ void check_surface(const MeshPlacement& placement, const Scene& scene, const Mes
 }
 
 // A ray takes about as many steps through a grid as its densest cell would take free flights along the box's diagonal.
-constexpr double max_steps = 1e4;
+// A sample crosses the box up to twice a bounce, and must not look like one that never ends (limited_loops.glsl).
+constexpr double max_steps = 3e3;
 
 // Adds a medium with its grid, and returns its index.
 uint32_t add_medium(const MediumDescription& description, SourceFiles& files, Scene& scene) {
@@ -57,7 +58,7 @@ uint32_t add_medium(const MediumDescription& description, SourceFiles& files, Sc
         if (double{medium.extinction} * medium.largest_density * glm::distance(dvec3(medium.low), dvec3(medium.high)) > max_steps)
             throw UserError(
                 description.density.string() +
-                ": at its largest density a ray would collide more than 10000 times in its box: lower the \"extinction\"");
+                ": at its largest density a ray would collide more than 3000 times in its box: lower the \"extinction\"");
         if (medium.largest_density == 0) medium.extinction = 0;
         if (medium.extinction > 0) {
             medium.grid_size = grid.size;

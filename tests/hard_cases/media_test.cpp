@@ -21,23 +21,24 @@ Scene filled_box(const Medium& medium, const vec3& from, const vec3& to) {
     return scene;
 }
 
+RenderSettings media_settings(const std::string& distances = "SAMPLES_FLIGHTS") {
+    RenderSettings settings{.width = 16,
+                            .height = 16,
+                            .samples = samples,
+                            .max_path_length = max_path_length,
+                            .roulette_start = no_roulette,
+                            .estimator = chapter_estimator(chapter_named("media")),
+                            .backend = fastest_backend()};
+    settings.estimator.defines = {"DISTANCE_SAMPLING " + distances};
+    return settings;
+}
+
 // What a pixel shows is at least `low`, with all samples valid.
 void expect_between(const Scene& scene, float low) {
-    for (const std::string angles : {"DISTANCE_SAMPLING SAMPLES_FLIGHTS", "DISTANCE_SAMPLING SAMPLES_ANGLES"}) {
-        RenderSettings settings{.width = 16,
-                                .height = 16,
-                                .samples = samples,
-                                .max_path_length = max_path_length,
-                                .roulette_start = no_roulette,
-                                .estimator = chapter_estimator(chapter_named("media")),
-                                .backend = fastest_backend()};
-        settings.estimator.defines = {angles};
-        const FilmImage film = render(scene, settings);
-        for (const FilmPixel& pixel : film.pixels) {
-            ASSERT_EQ(pixel.invalid_count, 0u);
-            ASSERT_GE(pixel.sum.r, samples * low);
-            ASSERT_LE(pixel.sum.r, samples * 1.0001f);
-        }
+    for (const FilmPixel& pixel : render(scene, media_settings()).pixels) {
+        ASSERT_EQ(pixel.invalid_count, 0u);
+        ASSERT_GE(pixel.sum.r, samples * low);
+        ASSERT_LE(pixel.sum.r, samples * 1.0001f);
     }
 }
 
@@ -60,6 +61,26 @@ TEST(MediaAtTheirLimits, SeenAtGrazingAnglesAndFromTheBoundary) {
         expect_between(filled_box(medium, {3, 0.1f, height}, {-1, 0.2f, 1}), 0.9999f);
         expect_between(filled_box(medium, {0.3f, 0.1f, height}, {0.2f, 0.3f, -1}), 0.9999f);
     }
+}
+
+// Walls that glow, so that light samples look for them along each ray, from a camera on a wall, too. In thin fog and in dense
+// one, which is as bright, their mean is far from what a wrong density would show.
+TEST(MediaAtTheirLimits, SampledByAnglesWhereAllWallsGlow) {
+    Scene room = make_scene({diffuse_material(vec3(0), vec3(1))}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
+    for (const float extinction : {1e-6f, 1.0f, 1e3f, 1e6f})
+        for (const float height : {0.3f, 1 - 1e-6f}) {
+            SCOPED_TRACE(std::to_string(extinction) + " from " + std::to_string(height));
+            room.media = {homogeneous_medium(extinction, vec3(1), 0.5f)};
+            room.camera = {.position = {0.1f, 0.2f, height}, .target = {0, 0, -1}, .vertical_fov = 50};
+            const FilmImage film = render(room, media_settings("SAMPLES_ANGLES"));
+            EXPECT_EQ(film.invalid_samples(), 0u);
+            double mean = 0;
+            for (const FilmPixel& pixel : film.pixels) mean += double{pixel.sum.r} / samples / 256;
+            EXPECT_TRUE(std::isfinite(mean));
+            if (extinction <= 1) {
+                EXPECT_NEAR(mean, 1, 0.1);
+            }
+        }
 }
 
 TEST(MediaAtTheirLimits, OfGridsThatAreEmptyButForOneCell) {
