@@ -1,5 +1,5 @@
-// Media by closed forms or quadrature: absorption, the furnace, single scattering of a slab, all orders of scattering of a half-space, and the
-// mean length of paths in a convex body.
+// Media by closed forms or quadrature: absorption, the furnace, single scattering of a slab, all orders of scattering of a
+// half-space, and the mean length of paths in a convex body.
 #include <cmath>
 #include <numbers>
 
