@@ -63,8 +63,8 @@ TEST(MediaAtTheirLimits, SeenAtGrazingAnglesAndFromTheBoundary) {
     }
 }
 
-// Walls that glow, so that light samples look for them along each ray, from a camera on a wall, too. In thin fog and in dense
-// one, which is as bright, their mean is far from what a wrong density would show.
+// Walls that glow, so that light samples look for them along each ray, from a camera on a wall, too. In dense fog most paths are
+// longer than 200 bounces.
 TEST(MediaAtTheirLimits, SampledByAnglesWhereAllWallsGlow) {
     Scene room = make_scene({diffuse_material(vec3(0), vec3(1))}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
     for (const float extinction : {1e-6f, 1.0f, 1e3f, 1e6f})

@@ -83,13 +83,14 @@ def place_meshes(path, meshes, placements):
     owners = np.repeat(range(len(parts)), [len(positions) for positions, _, _ in parts])
     all_positions, is_kept = resolve_lamps(path, all_positions, all_materials, owners)
 
+    groups = {}  # triangles by their material and medium
+    for triangle, (material, owner) in enumerate(zip(all_materials, owners)):
+        medium = placements[owner][2]
+        groups.setdefault((id(material), id(medium)), (material, medium, []))[2].append(triangle)
     surfaces = []
-    media = [placements[owner][2] for owner in owners]
-    identities = [(id(material), id(medium)) for material, medium in zip(all_materials, media)]
-    for identity, material, medium in {identity: (identity, material, medium)
-                                       for identity, material, medium in zip(identities, all_materials, media)}.values():
-        chosen = is_kept & np.array([other == identity for other in identities])
-        if not chosen.any():
+    for material, medium, triangles in groups.values():
+        chosen = np.array(triangles)[is_kept[triangles]]
+        if not len(chosen):
             continue
         positions, normals, texture_coordinates = (array[chosen] for array in (all_positions, all_normals, all_coordinates))
         flat = np.broadcast_to(triangle_normals(positions)[:, None], normals.shape)
