@@ -13,7 +13,8 @@ import project  # noqa: E402  (found by the line above)
 
 QUESTIONS = {  # name: module
     "ages": "tables.ages", "assets": "makers.make", "confusion": "learning.confusion", "export": "tables.export", "false_alarms": "measure.false_alarms",
-    "figures": "tables.figures", "hard_cases": "measure.hard_cases", "install_peer": "peers.install_peer", "learn": "learning.learn", "lens_points": "measure.lens_points",
+    "figures": "tables.figures", "hard_cases": "measure.hard_cases", "install_peer": "peers.install_peer", "large_picture": "measure.large_picture",
+    "learn": "learning.learn", "lens_points": "measure.lens_points",
     "light_choices": "measure.light_choices", "media_strategies": "measure.media_strategies",
     "mistakes": "mistakes.cpp_mistake", "mutations": "mistakes.mutations", "native_speed": "measure.native_speed", "peer": "peers.peer", "renderers": "peers.compare", "report": "peers.report", "sizes": "tables.sizes",
     "submissions": "learning.submissions", "variants": "learning.verify_variants",

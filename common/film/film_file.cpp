@@ -68,8 +68,9 @@ void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmHeader& header) {
     ExrFile exr{.image = image.mean(), .channels = {}, .attributes = {}};
     const uint32_t samples = image.min_samples();
+    const uint64_t invalid = image.invalid_samples();
     exr.attributes = {{"seed", std::to_string(header.seed)}, {"first_sample", std::to_string(header.first_sample)},
-                      {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(image.invalid_samples())},
+                      {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(invalid)},
                       {"rays", std::to_string(header.rays)}, {"seconds", to_text(header.seconds)}};
     for (const auto& [name, text] : texts) exr.attributes[name] = header.*text;
     const auto add_channel = [&](const char* name, const auto& value_of) {
@@ -86,7 +87,7 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
     // Only what exceeds the smallest count, since 32-bit floats hold whole numbers only up to 2^24.
     if (!image.has_equal_sample_counts())
         add_channel("further_samples", [&](const FilmPixel& pixel) { return pixel.sample_count - samples; });
-    if (image.invalid_samples() > 0) add_channel("invalid_samples", [](const FilmPixel& pixel) { return pixel.invalid_count; });
+    if (invalid > 0) add_channel("invalid_samples", [](const FilmPixel& pixel) { return pixel.invalid_count; });
     write_exr(file, exr);
 }
 

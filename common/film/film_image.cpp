@@ -79,11 +79,10 @@ std::array<double, 3> FilmImage::mean_difference() const { return mean_over_pixe
 std::string size_text(const uvec2& size) { return std::to_string(size.x) + "x" + std::to_string(size.y); }
 
 Texture to_display(const FilmImage& film, DisplayTransform transform, float exposure) {
-    const Image mean = film.mean();
     float scale = 1;
     if (transform == DisplayTransform::exposure) scale = std::exp2(exposure);
-    if (transform == DisplayTransform::maximum && !mean.pixels.empty()) {
-        const float largest = *std::max_element(mean.pixels.begin(), mean.pixels.end());
+    if (transform == DisplayTransform::maximum && !film.pixels.empty()) {
+        const float largest = std::ranges::max(film.mean().pixels);
         if (largest > 0) scale = 1 / largest;
     }
     Texture result{film.width, film.height, std::vector<uint8_t>(4 * film.pixels.size())};
@@ -92,8 +91,9 @@ Texture to_display(const FilmImage& film, DisplayTransform transform, float expo
             uint8_t* pixel = result.pixels.data() + 4 * i;
             pixel[0] = pixel[2] = pixel[3] = 255;
             if (film.pixels[i].invalid_count > 0) continue;
-            for (size_t channel = 0; channel < 3; ++channel) {
-                float value = std::clamp(scale * mean.pixels[3 * i + channel], 0.0f, 1.0f);
+            const vec3 mean(mean_of(film.pixels[i]));
+            for (int channel = 0; channel < 3; ++channel) {
+                float value = std::clamp(scale * mean[channel], 0.0f, 1.0f);
                 if (transform == DisplayTransform::exposure) value = linear_to_srgb(value);
                 pixel[channel] = static_cast<uint8_t>(std::lround(255 * value));
             }

@@ -98,6 +98,9 @@ void append(void* bytes, void* data, int size) {
     static_cast<std::string*>(bytes)->append(static_cast<const char*>(data), static_cast<size_t>(size));
 }
 
+// Paeth suits rendered pictures; trying all five takes five times as long.
+[[maybe_unused]] const int png_filter = stbi_write_force_png_filter = 4;
+
 void check_written(int success, const std::filesystem::path& file) {
     if (!success) fail(file, "the image cannot be encoded: out of memory");
 }
@@ -143,7 +146,6 @@ Texture read_texture(const std::filesystem::path& file) {
 }
 
 void write_png(const std::filesystem::path& file, const Texture& image) {
-    stbi_write_force_png_filter = 4;  // Paeth suits rendered pictures; trying all five takes five times as long
     std::string bytes;
     const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
     check_written(stbi_write_png_to_func(append, &bytes, width, height, 4, image.pixels.data(), 0), file);

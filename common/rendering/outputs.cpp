@@ -8,6 +8,7 @@
 #include "error.h"
 #include "files/file.h"
 #include "gpu/device.h"
+#include "parallel.h"
 
 namespace lab {
 
@@ -45,13 +46,16 @@ void write_after_failure(const std::exception& error, const FilmImage& film, con
 }
 
 void write_each(const std::vector<std::filesystem::path>& files, const std::function<void(const std::filesystem::path&)>& write) {
-    std::optional<UserError> failure;
-    for (const auto& file : files) try {
-            write(file);
+    std::vector<std::optional<UserError>> failures(files.size());
+    in_parallel(files.size(), 1, [&](size_t i, size_t) {
+        try {
+            write(files[i]);
         } catch (const UserError& error) {
-            if (!failure) failure = error;
+            failures[i] = error;
         }
-    if (failure) throw *failure;
+    });
+    for (const auto& failure : failures)
+        if (failure) throw *failure;
 }
 
 namespace {

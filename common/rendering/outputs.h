@@ -19,7 +19,7 @@ void write_picture(const std::filesystem::path& file, const FilmImage& film, con
 // was kept, or after EndlessWork ends the program. Rethrows other errors.
 [[noreturn]] void write_after_failure(const std::exception& error, const FilmImage& film, const std::function<void()>& write);
 
-// Writes all files even if some fail, then throws the first UserError.
+// Writes all files at once, even if some fail, then throws the first UserError.
 void write_each(const std::vector<std::filesystem::path>& files, const std::function<void(const std::filesystem::path&)>& write);
 
 struct ReportRow {

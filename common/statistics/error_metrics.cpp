@@ -9,7 +9,11 @@
 namespace lab {
 namespace {
 
-// `squared_error(i)` and `variance(i)` of element i of the image, relative to the values of `scale`.
+glm::dvec3 pixel_of(const Image& image, size_t i) {
+    return {image.pixels[3 * i], image.pixels[3 * i + 1], image.pixels[3 * i + 2]};
+}
+
+// `squared_error(i)` and `variance(i)` of pixel i of the image, by channel, relative to the values of `scale`.
 template <typename SquaredError, typename Variance>
 ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, const Variance& variance) {
     const size_t size = scale.pixels.size();
@@ -22,14 +26,16 @@ ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, cons
                                                 }) /
                         count;
     // Sums of errors and variances, each also relative.
-    const auto sums = sum_in_parallel<glm::dvec4>(size, [&](size_t begin, size_t end) {
+    const auto sums = sum_in_parallel<glm::dvec4>(size / 3, [&](size_t begin, size_t end) {
+        const glm::dvec3 one(1);
         glm::dvec4 sum(0);
         for (size_t i = begin; i < end; ++i) {
-            const double r = scale.pixels[i];
+            const glm::dvec3 r = pixel_of(scale, i);
             // A black reference has no scale: its relative error is the absolute one.
-            const double weight = mean > 0 ? 1 / (r * r + 0.01 * mean * mean) : 1;
-            const double error = squared_error(i), uncertainty = variance(i);
-            sum += glm::dvec4(error, weight * error, uncertainty, weight * uncertainty);
+            const glm::dvec3 weight = mean > 0 ? 1.0 / (r * r + 0.01 * mean * mean) : one;
+            const glm::dvec3 error = squared_error(i), uncertainty = variance(i);
+            sum += glm::dvec4(glm::dot(one, error), glm::dot(weight, error), glm::dot(one, uncertainty),
+                              glm::dot(weight, uncertainty));
         }
         return sum;
     });
@@ -43,9 +49,8 @@ ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, cons
 }
 
 // Replaces every pixel by the mean of its block of 8 x 8 pixels.
-Image block_means(const Image& image) {
+Image block_means(Image image) {
     constexpr uint32_t size = 8;
-    Image result = image;
     in_parallel(image.height, size, [&](size_t top, size_t bottom) {
         for (size_t left = 0; left < image.width; left += size)
             for (size_t channel = 0; channel < 3; ++channel) {
@@ -56,10 +61,10 @@ Image block_means(const Image& image) {
                     for (size_t x = left; x < right; ++x) sum += image.pixels[index(x, y)];
                 const auto mean = static_cast<float>(sum / static_cast<double>((bottom - top) * (right - left)));
                 for (size_t y = top; y < bottom; ++y)
-                    for (size_t x = left; x < right; ++x) result.pixels[index(x, y)] = mean;
+                    for (size_t x = left; x < right; ++x) image.pixels[index(x, y)] = mean;
             }
     });
-    return result;
+    return image;
 }
 
 }  // namespace
@@ -98,17 +103,19 @@ ErrorMetrics compare(const Image& image, const Reference& reference) {
     return metrics(
         reference.mean,
         [&](size_t i) {
-            const double error = double{image.pixels[i]} - double{reference.mean.pixels[i]};
+            const glm::dvec3 error = pixel_of(image, i) - pixel_of(reference.mean, i);
             return error * error;
         },
-        [&](size_t i) { return reference.variance ? double{reference.variance->pixels[i]} : 0; });
+        [&](size_t i) { return reference.variance ? pixel_of(*reference.variance, i) : glm::dvec3(0); });
 }
 
 std::optional<ErrorMetrics> estimate_error(const FilmImage& film) {
-    if (film.min_samples() < 2 || film.mean_radiance() == std::array<double, 3>{}) return std::nullopt;
+    Image mean = film.mean();
+    const bool is_black = std::ranges::all_of(mean.pixels, [](float value) { return value == 0; });
+    if (film.min_samples() < 2 || is_black) return std::nullopt;
     return metrics(
-        block_means(film.mean()), [&](size_t i) { return variance_of_mean(film.pixels[i / 3])[static_cast<int>(i % 3)]; },
-        [](size_t) { return 0.0; });
+        block_means(std::move(mean)), [&](size_t i) { return variance_of_mean(film.pixels[i]); },
+        [](size_t) { return glm::dvec3(0); });
 }
 
 NoiseEstimate estimate_noise(const FilmImage& film, glm::uvec2 corner, glm::uvec2 size) {

@@ -1,12 +1,13 @@
 // Renders the first picture of each chapter as its page does, and sends the films to the server of firefox_test.py.
 "use strict";
 (async () => {
-    const { Renderer, Rendering, loadScene } = live.rendering, samples = 16;
+    const { Renderer, Rendering, loadData, unpackWords } = live.rendering, samples = 16;
     const send = (path, body) => fetch(path, { method: "POST", body });
     try {
         const renderer = new Renderer(document.querySelector("canvas"));
         for (const [chapter, { pictures: [picture] }] of Object.entries(live.chapters)) {
-            const scene = await loadScene("/live/", picture.scene), parameters = Uint32Array.from(picture.parameters), { sources } = live;
+            const scene = await loadData("/live/", picture.scene), parameters = Uint32Array.from(picture.parameters), { sources } = live;
+            scene.words ??= await unpackWords(scene.packed);
             const place = renderer.layout.offsetOf("RenderParameters", "image_size"), size = [parameters[place], parameters[place + 1]];
             const translated = live.glsl.translate({ sources, chapter, defines: scene.defines, scene });
             let film;

@@ -186,10 +186,10 @@ void main() {
 
         // Ends render() at its next draw.
         stop() {
-            const { gl, films, arrays, probe } = this;
+            const { gl, films, arrays, words, probe } = this;
             if (this.isStopped) return;
             this.isStopped = true;
-            for (const texture of [arrays, probe, ...films.flatMap(film => film.textures)]) gl.deleteTexture(texture ?? null);
+            for (const texture of [arrays, words, probe, ...films.flatMap(film => film.textures)]) gl.deleteTexture(texture ?? null);
             for (const { frame } of films) gl.deleteFramebuffer(frame);
         }
 
