@@ -62,11 +62,13 @@ def with_frames(text, path):
 
 def shaders():
     """The texts of all shaders that a browser may include: of the engine, the world and the chapters. Pages trace rays as
-    `compute` does. Of those that observe paths, they have the view of surfaces. Comments are left out where no page shows the file."""
+    `compute` does, and have one sample a draw in place of the loop over samples. Of those that observe paths, they have the view of
+    surfaces. Comments are left out where no page shows the file."""
     files = [file for room in ("shaders", "chapters") for file in sorted((ROOT / room).rglob("*"))
              if file.suffix in SHADERS and (file.parent.name != "trace_ray" or file.stem in ("compute", "bvh"))]
     texts = {file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8") for file in files
              if file.name == "view.glsl" or not {"solutions", "variants", "observation"} & set(file.parts)}
+    texts["shaders/engine/sample_loop.glsl"] = texts.pop("shaders/engine/single_sample.glsl")
     return {name: text if name.startswith("chapters/") else re.sub("[ \t]*//.*", "", text) for name, text in texts.items()}
 
 

@@ -180,19 +180,23 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         });
     }
 
-    // Asks is_loop_stuck() in the condition of each loop. `placeOf(line)` returns the number of a place in an estimator's file, or 0.
+    // Asks is_loop_stuck() before each turn of a loop. `placeOf(line)` returns the number of a place in an estimator's file, or 0. The
+    // condition moves to the start of a body in braces, since ANGLE makes two copies of one that calls functions, and compilers for
+    // Direct3D take several times as long.
     function limitLoops(text, placeOf) {
         const loop = /\b(for|while)\s*\(/g;
         let result = "", done = 0, line = 1, counted = 0;
         for (let match; (match = loop.exec(text));) {
             for (; counted < match.index; ++counted) line += text[counted] === "\n";
-            const start = loop.lastIndex, end = closing(text, start - 1), place = placeOf(line);
+            const start = loop.lastIndex, end = closing(text, start - 1), place = placeOf(line), inside = text.slice(start, end - 1);
             if (end < 0 || !place) continue;
-            const parts = match[1] === "while" ? ["", text.slice(start, end - 1), ""] : text.slice(start, end - 1).split(/;/);
-            if (parts.length !== 3 || /^\s*(const\s+)?\w+\s+\w+\s*=[^=]/.test(parts[1])) continue;  // not what it seems, or it declares a variable
-            parts[1] = ` !is_loop_stuck(${place}u)` + (parts[1].trim() ? ` && (${parts[1]})` : "");
-            result += text.slice(done, start) + (match[1] === "while" ? parts[1] : parts.join(";")) + ")";
-            done = end;
+            const [first, condition, last, ...more] = match[1] === "while" ? ["", inside, ""] : inside.split(";");
+            if (last === undefined || more.length || /^\s*(const\s+)?\w+\s+\w+\s*=[^=]/.test(condition)) continue;  // not what it seems, or it declares a variable
+            const goesOn = `!is_loop_stuck(${place}u)` + (condition.trim() ? ` && (${condition})` : ""), brace = /^\s*\{/.exec(text.slice(end));
+            if (brace) result += text.slice(done, match.index) + `for (${first};;${last})${brace[0]} if (!(${goesOn})) break;`;
+            else result += text.slice(done, start) + (match[1] === "while" ? goesOn : `${first}; ${goesOn};${last}`) + ")";
+            done = end + (brace?.[0].length ?? 0);
+            loop.lastIndex = Math.max(start, done);
         }
         return result + text.slice(done);
     }

@@ -157,8 +157,9 @@ void main() {
 
     // A picture of a scene with a compiled program.
     class Rendering {
-        constructor(renderer, { linked, scene, parameters, size }) {  // `busy`: milliseconds of draws
-            Object.assign(this, { renderer, gl: renderer.gl, linked, size, samples: 0, busy: 0, isFirstPass: true, isStopped: false });
+        // `hasSampleLoop`: whether the chapter has its own, which renders several samples in a draw.
+        constructor(renderer, { linked, scene, parameters, size, hasSampleLoop }) {  // `busy`: milliseconds of draws
+            Object.assign(this, { renderer, gl: renderer.gl, linked, size, hasSampleLoop, samples: 0, busy: 0, isFirstPass: true, isStopped: false });
             const { gl, layout } = renderer, { words } = scene, height = Math.ceil(words.length / 4 / WIDTH), texels = new Uint32Array(4 * WIDTH * height);
             texels.set(words);
             // The tree is read by four words. Compilers for Direct3D take twice as long where a single word is picked out of four.
@@ -243,12 +244,17 @@ void main() {
             const { gl, size } = this;
             let { rows, step } = pace, isPreview = true;
             while (this.samples < target()) {
-                const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1), next = Math.min(this.samples + step, look_at, target());
+                const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1);
+                const next = Math.min(this.samples + (isPreview || rows < size[1] ? 1 : step), look_at, target());
                 for (let row = 0; row < size[1];) {
                     while (!this.isStopped && isPaused()) await pause(10);
                     if (this.isStopped || gl.isContextLost()) return false;
                     const started = performance.now();
-                    this.draw(row, Math.min(rows, size[1] - row), next, isPreview);
+                    for (let target = this.hasSampleLoop ? next : this.samples + 1; ; ++target) {
+                        this.draw(row, Math.min(rows, size[1] - row), target, isPreview);
+                        if (target === next) break;
+                        this.films.reverse();  // one draw has rendered all rows
+                    }
                     await this.finished();
                     if (this.isStopped || gl.isContextLost()) return false;
                     row += rows;
