@@ -27,7 +27,7 @@ live.Editor = (() => {
         try { return localStorage.getItem(keyOf(path)); } catch { return null; }
     }
 
-    // The files that a chapter is made of: that of its lesson, its estimator, and what it includes from chapters/.
+    // The files that a chapter is made of: that of its lesson, its estimator, and what these include from chapters/.
     function filesOf(chapter) {
         const estimator = `chapters/${chapter}/path_trace.glsl`;
         const files = [...new Set([live.chapters[chapter].exercise?.file ?? estimator, estimator])];
@@ -38,7 +38,7 @@ live.Editor = (() => {
                 const path = [file.replace(/[^/]*$/, ""), "chapters/"].map(folder => folder + name).find(p => p in live.sources);
                 if (path && !files.includes(path)) files.push(path);
             }
-        return files;
+        return files.filter(file => !/^#include "[^"]*"\s*$/.test(live.sources[file]));  // not those that only name another
     }
 
     async function transform(bytes, stream) {
