@@ -246,6 +246,12 @@ class SimilarNamesTest(unittest.TestCase):
             self.assertEqual([head for head, _ in hint_lines(result)], heads)
             self.assertEqual(headline(result), ("biased", first))
 
+    def test_what_is_no_light_has_no_percentage(self):
+        found = {"facts": [], "right": [], "next": None, "mistakes": [], "fits": False}
+        for value, words in ((-0.2, "(by up to -20 %)"), (-9e36, "has values that no light has"), (float("nan"), "has values that no light has")):
+            scene = {"scene": "room", "verdict": "biased", "image": [{"value": value, "is_biased": True}], "tiles": []}
+            self.assertIn(words, headline({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found, "scenes": [scene]})[1])
+
     def test_a_single_name_that_may_fit_is_no_headline_and_leaves_the_next_experiment(self):
         found = {"facts": [{"text": "f", "evidence": ["long"]}], "right": [], "next": "./lab run 3", "mistakes": [{"hint": "1?", "slide": "s"}]}
         scene = {"scene": "room", "verdict": "biased", "image": [{"value": -0.2, "is_biased": True}], "tiles": []}
