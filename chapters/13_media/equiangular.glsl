@@ -39,16 +39,13 @@ Angles get_angles(Segment segment, vec3 y) {
 
 // The distance t = h tan θ of a uniform angle. Its density with respect to length is h / ((θ_b - θ_a) (h² + (t - t_y)²)), as
 // 1/r² of a light sample, which it cancels.
-float sample_distance(Segment segment, vec3 y, float u) {
-    Angles angles = get_angles(segment, y);
-    return clamp(angles.nearest + angles.height * tan(angles.first + u * angles.size), 0.0, segment.t_max);
+float sample_distance(Angles angles, float t_max, float u) {
+    return clamp(angles.nearest + angles.height * tan(angles.first + u * angles.size), 0.0, t_max);
 }
 
 // That density over the one of free flights, σ_t exp(-σ_t t): the weights of both kinds of samples need no more.
-float get_distance_ratio(Segment segment, vec3 y, float t) {
-    Angles angles = get_angles(segment, y);
+float get_distance_ratio(Angles angles, float extinction, float t) {
     float from_nearest = t - angles.nearest;
     float density = angles.height / (angles.size * (angles.height * angles.height + from_nearest * from_nearest));
-    float extinction = media[segment.medium].extinction;
     return density * exp(min(extinction * t, FARTHEST_DEPTH)) / extinction;
 }

@@ -64,7 +64,8 @@ bool extend_path(inout Path path, inout uvec2 seed) {
         float cos_light = dot(s.geometric_normal, s.out_direction);
         float light_density = path.is_light_sampled ? to_solid_angle(s.light_density, path.distance, cos_light) : 0.0;
         if (DISTANCE_SAMPLING == SAMPLES_ANGLES && path.segment.t_max > 0.0)
-            light_density *= get_distance_ratio(path.segment, s.position, path.flight);
+            light_density *= get_distance_ratio(get_angles(path.segment, s.position), media[path.segment.medium].extinction,
+                                                path.flight);
         add_light(path, 0u, get_bounce_part(light_density, path.bounce_density) * s.emission);
         if (!is_above_surface(s, s.out_direction)) return false;
     }

@@ -1,5 +1,14 @@
 // How far light gets in a medium: free flights for paths, and the transmittance for light samples.
+
+// The optical depth -ln(1 - u) at which a free flight ends, for a random word of 32 bits: 24 of them, or 1 - u rounded, would make
+// collisions in a thin medium too frequent, since a small u decides there. The bits of ~word are those of 1 - u.
+float get_flight_depth(uint word) {
+    float u = (float(word) + 0.5) / 4294967296.0;
+    return u < 0.001 ? u + 0.5 * u * u : -log((float(~word) + 0.5) / 4294967296.0);
+}
+
 #ifdef FEATURE_DENSITIES
+// The number of one cell.
 float get_cell_density(Medium medium, uint x, uint y, uint z) {
     return densities[medium.first_density + x + medium.grid_size.x * (y + medium.grid_size.y * z)];
 }
@@ -36,10 +45,11 @@ float track_flight(Medium medium, Ray ray, float t_max, inout uvec2 seed) {
     // From where the ray enters the box, since a small step from a camera far away would round to none.
     float t = 0.0;
     while (t < range.y - range.x) {
-        vec2 u = get_random_numbers(seed);
-        t -= log(1.0 - u.x) / majorant;
+        uvec2 words = get_random_words(seed);
+        float v = to_numbers(words).y;
+        t += get_flight_depth(words.x) / majorant;
         vec3 position = ray.origin + (range.x + t) * ray.direction;
-        if (t < range.y - range.x && u.y * medium.largest_density < get_density(medium, position)) return range.x + t;
+        if (t < range.y - range.x && v * medium.largest_density < get_density(medium, position)) return range.x + t;
     }
     return NO_LIMIT;
 }
@@ -51,7 +61,7 @@ float track_transmittance(Medium medium, Ray ray, float t_max, inout uvec2 seed)
     vec2 range = get_range_in_box(medium, ray, t_max);
     float transmittance = 1.0, t = 0.0;
     while (t < range.y - range.x) {
-        t -= log(1.0 - get_random_numbers(seed).x) / majorant;
+        t += get_flight_depth(get_random_words(seed).x) / majorant;
         vec3 position = ray.origin + (range.x + t) * ray.direction;
         if (t < range.y - range.x) transmittance *= 1.0 - get_density(medium, position) / medium.largest_density;
     }
@@ -74,8 +84,8 @@ float sample_flight(Medium medium, Ray ray, float t_max, inout uvec2 seed) {
 #ifdef FEATURE_DENSITIES
     if (has_grid(medium)) return track_flight(medium, ray, t_max, seed);
 #endif
-    float u = get_random_numbers(seed).x;
-    return medium.extinction > 0.0 ? min(-log(1.0 - u) / medium.extinction, NO_LIMIT) : NO_LIMIT;
+    float depth = get_flight_depth(get_random_words(seed).x);
+    return medium.extinction > 0.0 ? min(depth / medium.extinction, NO_LIMIT) : NO_LIMIT;
 }
 
 // The fraction of light that does not collide between the ray's origin and t_max, by Beer's law, or an estimate of it.

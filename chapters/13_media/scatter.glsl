@@ -73,10 +73,12 @@ vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
 
 // Estimates the light of lamps that is scattered once along a segment.
 vec3 sample_segment(Segment segment, inout uvec2 seed) {
-    if (media[segment.medium].extinction == 0.0 || !HAS_LIGHT_TRIANGLES || chooses_probe(seed)) return vec3(0.0);
+    float extinction = media[segment.medium].extinction;
+    if (extinction == 0.0 || !HAS_LIGHT_TRIANGLES || chooses_probe(seed)) return vec3(0.0);
     LightTriangle light;
     LightPoint y = sample_lamp(light, seed);
-    float t = sample_distance(segment, y.position, get_random_numbers(seed).x);
+    Angles angles = get_angles(segment, y.position);
+    float t = sample_distance(angles, segment.t_max, get_random_numbers(seed).x);
     ShadingData s = get_medium_point(segment.ray.origin + t * segment.ray.direction, segment.ray.direction);
-    return scatter_lamp(s, Sides(segment.medium, segment.medium), light, y, get_distance_ratio(segment, y.position, t), seed);
+    return scatter_lamp(s, Sides(segment.medium, segment.medium), light, y, get_distance_ratio(angles, extinction, t), seed);
 }

@@ -14,6 +14,7 @@ namespace lab {
 namespace {
 
 constexpr uint32_t max_events = 4096;
+constexpr float no_limit = std::numeric_limits<float>::max();  // the shaders' NO_LIMIT
 
 // The head of the buffer; the events follow.
 struct Header {
@@ -22,19 +23,24 @@ struct Header {
     uint32_t event_count;
 };
 
+bool has_flight(const RecordedEvent& event) { return event.kind == EVENT_RAY && event.flight != NO_FLIGHT; }
 bool is_ray(const RecordedEvent& event) { return event.kind == EVENT_RAY || event.kind == EVENT_SHADOW_RAY; }
 
 // Turns events into vertices.
 class PathBuilder {
   public:
-    explicit PathBuilder(std::span<const RecordedEvent> events) : events_(events) {}
+    explicit PathBuilder(std::span<const RecordedEvent> events)
+        : events_(events), has_flights_(std::ranges::any_of(events, has_flight)) {}
 
     RecordedPath build() {
         for (next_ = 0; next_ < events_.size();) {
             const RecordedEvent& event = events_[next_++];
             switch (event.kind) {
                 case EVENT_RAY:
-                    add_vertex(event);
+                    if (looks_for_boundaries(event))
+                        add_light_sample(event);
+                    else
+                        add_vertex(event);
                     break;
                 case EVENT_SHADOW_RAY:
                     add_light_sample(event);
@@ -71,7 +77,7 @@ class PathBuilder {
         float smallest = std::numeric_limits<float>::infinity();
         for (size_t i = path_.vertices.size(); i-- > 0;) {
             const PathVertex& vertex = path_.vertices[i];
-            if (!vertex.is_hit) continue;
+            if (!vertex.is_in_scene()) continue;
             const float distance = glm::length(vertex.position - origin);
             if (distance < smallest) {
                 smallest = distance;
@@ -80,6 +86,9 @@ class PathBuilder {
         }
         return nearest;
     }
+
+    // In media, rays of a path have a flight. The others look for boundaries: from the camera, or on a light sample's way.
+    bool looks_for_boundaries(const RecordedEvent& event) const { return has_flights_ && !has_flight(event); }
 
     void add_vertex(const RecordedEvent& event) {
         PathVertex vertex{.parent = vertex_at(event.origin),
@@ -96,16 +105,35 @@ class PathBuilder {
                           .light_samples = {},
                           .lost_roulettes = {}};
         survival_probability_.reset();
+        const float t_max = vertex.is_hit ? glm::distance(vertex.position, vertex.origin) : no_limit;
+        if (has_flight(event) && event.flight < t_max) {
+            vertex.is_hit = false;
+            vertex.is_collision = true;
+            vertex.position = vertex.origin + event.flight * vertex.direction;
+            vertex.normal = vec3(0);
+        }
         path_.vertices.push_back(std::move(vertex));
         site_ = static_cast<int>(path_.vertices.size()) - 1;
         is_light_sampled_ = false;
     }
 
+    // Whether a ray goes on behind the boundary that ended the ray before.
+    bool goes_on(const RecordedEvent& event) const {
+        if (next_ < 2 || event.kind != EVENT_RAY) return false;
+        const RecordedEvent& before = events_[next_ - 2];
+        if (before.kind != EVENT_RAY || !looks_for_boundaries(before) || before.is_hit == 0) return false;
+        return glm::distance(before.position, event.origin) <= 1e-4f * (1 + glm::length(event.origin));
+    }
+
     void add_light_sample(const RecordedEvent& event) {
+        if (goes_on(event)) {
+            if (is_light_sampled_) site().light_samples.back().is_visible = event.is_hit == 0;
+            return;
+        }
         site_ = vertex_at(event.origin);
         if (site_ < 0) return;
-        LightSample light{.direction = glm::normalize(event.direction), .point = {}, .is_visible = event.is_hit == 0};
-        constexpr float no_limit = std::numeric_limits<float>::max();  // the shaders' NO_LIMIT
+        LightSample light{
+            .start = event.origin, .direction = glm::normalize(event.direction), .point = {}, .is_visible = event.is_hit == 0};
         if (event.end < no_limit) light.point = event.origin + event.end * event.direction;
         site().light_samples.push_back(light);
         is_light_sampled_ = true;
@@ -138,6 +166,7 @@ class PathBuilder {
     PathVertex& site() { return path_.vertices[static_cast<size_t>(site_)]; }
 
     std::span<const RecordedEvent> events_;
+    bool has_flights_;  // the scene has media
     size_t next_ = 0;
     RecordedPath path_;
     int site_ = -1;  // the vertex of the current events

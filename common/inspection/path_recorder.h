@@ -10,28 +10,32 @@ namespace lab {
 
 // What a shadow ray was sent to.
 struct LightSample {
+    vec3 start;                 // of its ray: at a vertex, or anywhere along a ray in a medium
     vec3 direction;             // unit length
     std::optional<vec3> point;  // on a light, or null: the sky
     bool is_visible = false;
     vec3 radiance{0};  // contribution, throughput included
 };
 
-// Where a ray hit something, or the direction in which it left the scene.
+// Where a ray hit something or a free flight along it ended in a medium, or the direction in which it left the scene.
 struct PathVertex {
-    int parent = -1;  // vertex that the ray came from; -1: the camera. Where paths split, several have the same.
-    vec3 origin;      // of the ray
-    vec3 direction;   // of the ray, unit length
-    bool is_hit = false;
+    int parent = -1;            // vertex that the ray came from; -1: the camera. Where paths split, several have the same.
+    vec3 origin;                // of the ray
+    vec3 direction;             // of the ray, unit length
+    bool is_hit = false;        // at a surface
+    bool is_collision = false;  // in a medium
     uint32_t instance = 0;
     uint32_t triangle = 0;  // index into the scene's triangles
     vec2 barycentrics{0};
-    vec3 position{0};                           // of the hit
+    vec3 position{0};                           // of the hit or collision
     vec3 normal{0};                             // for shading, on the ray's side
     vec3 throughput{1};                         // that the ray carried
     std::optional<float> survival_probability;  // of the Russian roulette that the ray survived
     std::vector<LightSample> light_samples;
     vec3 radiance{0};                   // added here, by light samples as well, throughput included
     std::vector<float> lost_roulettes;  // survival probabilities of paths that ended here
+
+    bool is_in_scene() const { return is_hit || is_collision; }
 };
 
 struct RecordedPath {

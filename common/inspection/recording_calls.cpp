@@ -97,6 +97,7 @@ class Scanner : ShaderEditor {
             return " record_radiance(EVENT_RADIANCE" + starts + expression + ", " + std::to_string(number) + "u);";
         }
         if (variable == "survival_probability" && is_declaration) return " record_survival(survival_probability);";
+        if (variable == "flight" && is_declaration) return " record_flight(flight);";
         return "";
     }
 

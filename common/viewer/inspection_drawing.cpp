@@ -9,7 +9,7 @@
 namespace lab {
 namespace {
 
-constexpr uint32_t blue = IM_COL32(60, 200, 255, 255);
+constexpr uint32_t blue = IM_COL32(60, 200, 255, 255), collision_green = IM_COL32(120, 255, 120, 255);
 
 // Radiance as the picture shows it at exposure 0.
 uint32_t colour_of(const vec3& radiance) {
@@ -61,21 +61,21 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
     const auto& vertices = path.vertices;
     for (const PathVertex& vertex : vertices)
         for (const LightSample& light : vertex.light_samples)
-            draw_line(vertex.position, light.point.value_or(far_away(vertex.position, light.direction)),
+            draw_line(light.start, light.point.value_or(far_away(light.start, light.direction)),
                       light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200), 1);
     for (const PathVertex& vertex : vertices) {
         if (vertex.parent < 0) {  // a pinhole's own ray is a single point in the picture
-            if (camera.aperture_radius > 0 && vertex.is_hit) draw_lens(list, placement, camera, vertex);
+            if (camera.aperture_radius > 0 && vertex.is_in_scene()) draw_lens(list, placement, camera, vertex);
             continue;
         }
         const vec3 start = vertices[static_cast<size_t>(vertex.parent)].position;
-        const vec3 end = vertex.is_hit ? vertex.position : far_away(start, vertex.direction);
+        const vec3 end = vertex.is_in_scene() ? vertex.position : far_away(start, vertex.direction);
         draw_line(start, end, blue, 2);
     }
     for (size_t i = 0; i < vertices.size(); ++i) {
-        const auto position = vertices[i].is_hit ? project(camera, vertices[i].position) : std::nullopt;
+        const auto position = vertices[i].is_in_scene() ? project(camera, vertices[i].position) : std::nullopt;
         if (!position) continue;
-        const uint32_t colour = i == chosen ? IM_COL32(255, 80, 200, 255) : blue;
+        const uint32_t colour = i == chosen ? IM_COL32(255, 80, 200, 255) : vertices[i].is_collision ? collision_green : blue;
         const ImVec2 at = placement.at(*position);
         list.AddCircleFilled(at, i == chosen ? 6.0f : 4.0f, colour);
         const std::string name = "x" + std::to_string(i + 1);

@@ -185,7 +185,9 @@ void InspectionPanel::draw_vertices() {
         if (ImGui::Selectable(title, i == selection.vertex)) selection.vertex = i;
         if (vertex.survival_probability) ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
         if (is_weighted) text_colour("throughput", vertex.throughput);
-        if (vertex.is_hit) {
+        if (vertex.is_collision) {
+            text_point("collides in the medium, at", vertex.position);
+        } else if (vertex.is_hit) {
             text_point("position", vertex.position);
             text_point("normal", vertex.normal);
         } else {
@@ -207,7 +209,7 @@ void InspectionPanel::draw_vertices() {
 
 void InspectionPanel::draw_hemisphere() {
     if (!inspection_.has_hemisphere()) {
-        ImGui::TextColored(grey, "no hemisphere: glass, or beyond the scene");
+        ImGui::TextColored(grey, "no hemisphere without a BRDF");
         return;
     }
     const HemisphereView& view = inspection_.hemisphere();

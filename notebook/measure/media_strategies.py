@@ -15,9 +15,10 @@ from tables.ages import stamped
 
 CHAPTER = "13_media"
 WAYS = {"both": [], "light": ["--strategy=light"], "bounces": ["--strategy=bounces"], "equiangular": ["--distance-sampling=equiangular"]}
-LIGHT = {"scattered once": ["--only-path-length=1"],
-         "scattered once, beside the lamp": ["--only-path-length=1", "--camera-target=0.2,1,-1.1", "--vertical-fov=6"],
-         "all light": [f"--reference={ROOT / 'assets/references/fog_5.exr'}"]}
+ONCE = ["--only-path-length=1", "--max-path-length=1"]
+LIGHT = {"scattered once": ONCE,
+         "scattered once, beside the lamp": [*ONCE, "--camera-target=0.2,1,-1.1", "--vertical-fov=6"],
+         "all light": ["--max-path-length=5", f"--reference={ROOT / 'assets/references/fog_5.exr'}"]}
 
 
 def main():
@@ -32,7 +33,7 @@ def main():
             for run in range(options.runs):
                 for way, found in products.items():
                     subprocess.run([program_file(CHAPTER), "fog", "--headless", "--quiet", "--backend=native", "--width=192", "--height=128",
-                                    "--samples=64", "--max-path-length=5", f"--seed={1 + run}", *WAYS[way], *chosen,
+                                    "--samples=64", f"--seed={1 + run}", *WAYS[way], *chosen,
                                     f"--output={folder}/picture.exr", f"--report={report}"], check=True)
                     row = read_json(report)["rows"][-1]
                     found.append(row["mse"] * row["cpu_seconds"])

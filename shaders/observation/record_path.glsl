@@ -1,7 +1,7 @@
 // Wraps a chapter's estimator and records what it does for one sample of one pixel.
 //
-// trace_ray() and is_occluded() are replaced here. After the estimator's assignments to `throughput`, `radiance` and
-// `survival_probability`, common/inspection/recording_calls.cpp has inserted calls of the functions record_…() below.
+// trace_ray() and is_occluded() are replaced here. After the estimator's assignments to `throughput`, `radiance`,
+// `survival_probability` and `flight`, common/inspection/recording_calls.cpp has inserted calls of the functions record_…() below.
 #include "observation/recorded_path.h"
 
 layout(scalar, set = 0, binding = BINDING_RECORDED_PATH) buffer RecordedPath {
@@ -30,6 +30,7 @@ void record_ray(uint kind, Ray ray, bool is_hit, float end, Hit hit) {
     events[i].direction = ray.direction;
     events[i].is_hit = is_hit ? 1u : 0u;
     events[i].end = end;
+    events[i].flight = NO_FLIGHT;
     if (kind == EVENT_SHADOW_RAY || !is_hit) return;
     events[i].instance = hit.instance;
     events[i].triangle = hit.triangle;
@@ -58,6 +59,10 @@ void record_value(uint kind, vec3 value, uint variable) {
 void record_throughput(uint kind, vec3 throughput) { record_value(kind, throughput, 0u); }
 void record_throughput(uint kind, float throughput) { record_value(kind, vec3(throughput), 0u); }
 void record_radiance(uint kind, vec3 radiance, uint variable) { record_value(kind, radiance, variable); }
+// A flight belongs to the latest ray.
+void record_flight(float flight) {
+    if (is_recording && event_count > 0u && event_count <= events.length()) events[event_count - 1u].flight = flight;
+}
 void record_survival(float probability) { record_value(EVENT_SURVIVAL, vec3(probability), 0u); }
 
 // At one place for all hits, since drivers compile a function again for every call.

@@ -6,14 +6,16 @@ namespace lab {
 
 SHARED_CONSTANT BINDING_RECORDED_PATH = 41u;
 
-SHARED_CONSTANT EVENT_RAY = 0u;         // trace_ray()
-SHARED_CONSTANT EVENT_SHADOW_RAY = 1u;  // is_occluded()
+SHARED_CONSTANT EVENT_RAY = 0u;                // trace_ray()
+SHARED_CONSTANT EVENT_SHADOW_RAY = 1u;         // is_occluded()
 SHARED_CONSTANT EVENT_THROUGHPUT_STARTS = 2u;  // a declaration of `throughput`: a path or a branch begins
 SHARED_CONSTANT EVENT_THROUGHPUT = 3u;         // an assignment to it
 SHARED_CONSTANT EVENT_RADIANCE_STARTS = 4u;    // a declaration of `radiance`
 SHARED_CONSTANT EVENT_RADIANCE = 5u;           // an assignment to it
 SHARED_CONSTANT EVENT_SURVIVAL = 6u;           // the value of `survival_probability`
 SHARED_CONSTANT EVENT_RESULT = 7u;             // what path_trace() returned
+
+SHARED_NUMBER NO_FLIGHT = -1.0f;
 
 struct RecordedEvent {
     uint kind;
@@ -23,7 +25,9 @@ struct RecordedEvent {
 
     vec3 origin;  // of a ray
     vec3 direction;
-    float end;    // of a ray, in lengths of its direction: t_max
+    float end;  // of a ray, in lengths of its direction: t_max
+    float
+        flight;   // of a path's ray in a medium: where it ends unless a surface is nearer. NO_FLIGHT: the estimator sampled none.
     uint is_hit;  // 0 or 1
     // For hits, except those of shadow rays.
     uint instance;

@@ -26,7 +26,7 @@ struct Recorded {
 
 // Paths of `count` pixels spread over the image, with varying sample indices.
 std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
-    const GpuScene gpu_scene(test_device(), scene, settings.strategy, scene.light_probe.has_value());
+    const GpuScene gpu_scene(test_device(), scene, settings.strategy, scene.light_probe.has_value(), false, !scene.media.empty());
     const auto scene_backend = build_scene_backend(settings.backend, test_device(), gpu_scene);
     PathRecorder recorder(test_device(), *scene_backend, settings.estimator, {settings.width, settings.height});
     std::vector<Recorded> paths;
@@ -165,6 +165,76 @@ TEST_P(PathRecorderOf, MultipliesTheThroughputOfAFurnace) {
     }
     EXPECT_EQ(survived > 10, may_end);
     EXPECT_EQ(lost > 3, may_end);
+}
+
+// A box of a thin medium without a surface, and a lamp above it that looks down.
+Scene box_of_medium_below_a_lamp() {
+    Scene scene = make_scene({diffuse_material(vec3(0)), diffuse_material(vec3(0), vec3(10))}, [] {
+        auto quads = box_sides(vec3(-1), vec3(1), 0, Facing::outwards);
+        quads.push_back({{-0.5f, 3, -0.5f}, {1, 0, 0}, {0, 0, 1}, 1});
+        return quads;
+    }());
+    auto box = scene.meshes[0], lamp = scene.meshes[0];
+    box.triangle_count = 12;
+    lamp.first_triangle = 12, lamp.triangle_count = 2;
+    scene.meshes = {box, lamp};
+    scene.instance_meshes = {0, 1};
+    scene.instances.push_back(scene.instances[0]);
+    scene.media = {Medium{}, homogeneous_medium(1.5f, vec3(0.9f), 0.3f)};
+    scene.boundaries = {{BOUNDARY_OPEN, 1, 0}, {BOUNDARY_NONE, 0, 0}};
+    scene.camera = {.position = {0, 0, 4}, .target = {0, 0, 0}, .vertical_fov = 40};
+    return scene;
+}
+
+// Rays end at collisions, also the last one of a path. Light samples start there or, if they are sampled by angles, on a ray.
+TEST(PathRecorder, EndsRaysInMediaAtCollisions) {
+    const auto is_on = [](const vec3& point, const PathVertex& vertex) {
+        return glm::length(glm::cross(point - vertex.origin, vertex.direction)) < 1e-4f;
+    };
+    for (const bool is_fog : {true, false})
+        for (const bool has_angles : {false, true}) {
+            RenderSettings settings = settings_for(chapter_named("media"));
+            if (has_angles) settings.estimator.defines = {"DISTANCE_SAMPLING SAMPLES_ANGLES"};
+            const Scene scene = is_fog ? load_shipped_scene("fog.json") : box_of_medium_below_a_lamp();
+            SCOPED_TRACE(std::string(is_fog ? "fog" : "a box") + (has_angles ? ", angles" : ""));
+            size_t collisions = 0, last_collisions = 0, bright = 0;
+            for (const auto& [pixel, sample, path] : record_paths(scene, settings, 100)) {
+                vec3 sum(0);
+                for (size_t i = 0; i < path.vertices.size(); ++i) {
+                    const PathVertex& vertex = path.vertices[i];
+                    sum += vertex.radiance;
+                    ASSERT_EQ(vertex.parent, static_cast<int>(i) - 1) << "a ray of no path";
+                    if (i > 0) {
+                        const PathVertex& before = path.vertices[i - 1];
+                        ASSERT_TRUE(before.is_in_scene());
+                        const float rounding = before.is_collision ? 1e-6f : 1e-4f;
+                        EXPECT_LT(glm::distance(before.position, vertex.origin), rounding * (1 + glm::length(vertex.origin)));
+                    }
+                    for (const LightSample& light : vertex.light_samples) {
+                        const bool starts_here = glm::distance(light.start, vertex.position) < 1e-4f;
+                        EXPECT_TRUE(starts_here ||
+                                    (has_angles && std::ranges::any_of(path.vertices, [&](const PathVertex& other) {
+                                         return is_on(light.start, other);
+                                     })));
+                        EXPECT_TRUE(light.point);
+                        if (!light.is_visible) {
+                            EXPECT_EQ(light.radiance, vec3(0));
+                        }
+                        bright += light.radiance.g > 0;
+                    }
+                    if (!vertex.is_collision) continue;
+                    EXPECT_FALSE(vertex.is_hit);
+                    EXPECT_TRUE(is_on(vertex.position, vertex));
+                    EXPECT_TRUE(is_fog || glm::all(glm::lessThan(glm::abs(vertex.position), vec3(1.0001f))));
+                    ++collisions;
+                    last_collisions += i + 1 == path.vertices.size();
+                }
+                EXPECT_LT(glm::length(sum - path.radiance), 1e-5f * (1 + glm::length(path.radiance)));
+            }
+            EXPECT_GT(collisions, 50u);
+            EXPECT_GT(last_collisions, 5u);
+            EXPECT_GT(bright, 50u);
+        }
 }
 
 TEST(PathRecorder, SaysWhetherThereIsAThroughputToFollow) {

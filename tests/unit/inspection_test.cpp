@@ -63,6 +63,7 @@ TEST(RecordingCalls, FollowAssignmentsAndDeclarations) {
     expect_edit("vec3 throughput = vec3(1.0);",
                 "vec3 throughput = vec3(1.0); record_throughput(EVENT_THROUGHPUT_STARTS, throughput);");
     expect_edit("float survival_probability = 0.5;", "float survival_probability = 0.5; record_survival(survival_probability);");
+    expect_edit("float flight = f(path.medium, seed);", "float flight = f(path.medium, seed); record_flight(flight);");
 }
 
 TEST(RecordingCalls, TellTheVariablesNamedRadianceApart) {
@@ -87,7 +88,7 @@ TEST(RecordingCalls, LeaveEverythingElseAlone) {
     expect_no_edit("x = throughput * a; stack[0].throughput = b; f(throughput); throughputs *= 2; my_throughput = c;");
     expect_no_edit("for (uint i = 0u; throughput.x > 0.1; throughput *= 0.5) ++i;");
     expect_no_edit("radiance += somebody_elses;");
-    expect_no_edit("path.radiance_scale /= a; path.survival_probability = b; f.throughput_of(c);");
+    expect_no_edit("path.radiance_scale /= a; path.survival_probability = b; f.throughput_of(c); flight = d; path.flight = e;");
     expect_no_edit("return b ? throughput : radiance;");
     const std::string at_file_scope = "vec3 throughput = vec3(1.0);\nstruct S { vec3 throughput; };\n";
     EXPECT_EQ(add_recording_calls(at_file_scope), at_file_scope);

@@ -141,6 +141,34 @@ TEST_F(InspectionTest, AClickedPointCanBeFocused) {
                 0.05f * camera.focus_distance);
 }
 
+// A point in fog has no surface to look from.
+TEST_F(InspectionTest, CollisionsInFogAreGreen) {
+    chapter_ = load_chapter(chapter_named("media"));
+    Options options = make_options();
+    options.scene.file = scenes / "fog.json";
+    options.image.width = 96;
+    options.image.height = 64;
+    open(options);
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    size_t paths_with_green = 0;
+    for (float x = 500; x < 800; x += 30) {
+        click(x, 200);
+        wait_until("a path", [&] { return inspection().path().has_value(); });
+        const auto& vertices = inspection().path()->vertices;
+        EXPECT_NE(vertices.front().is_collision, inspection().has_hemisphere());
+        take_screenshot("viewer_fog");
+        const Texture& shown = viewer_->screen().captured();
+        size_t green = 0;
+        for (size_t i = 0; i < shown.pixels.size(); i += 4)
+            green += shown.pixels[i] == 120 && shown.pixels[i + 1] == 255 && shown.pixels[i + 2] == 120;
+        paths_with_green += green > 20;
+        if (std::ranges::none_of(vertices, &PathVertex::is_collision)) {
+            EXPECT_EQ(green, 0u);
+        }
+    }
+    EXPECT_GT(paths_with_green, 2u);
+}
+
 TEST_F(InspectionTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_all) {
     chapter_ = load_chapter(chapter_named("multiple_importance_sampling"));
     Options options = options_with_reference();
