@@ -25,10 +25,9 @@ struct RecordedEvent {
 
     vec3 origin;  // of a ray
     vec3 direction;
-    float end;  // of a ray, in lengths of its direction: t_max
-    float
-        flight;   // of a path's ray in a medium: where it ends unless a surface is nearer. NO_FLIGHT: the estimator sampled none.
-    uint is_hit;  // 0 or 1
+    float end;     // of a ray, in lengths of its direction: t_max
+    float flight;  // of a path in a medium: where it ends unless a surface is nearer. NO_FLIGHT: none was sampled
+    uint is_hit;   // 0 or 1
     // For hits, except those of shadow rays.
     uint instance;
     uint triangle;  // index into the scene's triangles
