@@ -8,12 +8,18 @@
 
 namespace lab {
 
+struct Sphere {
+    vec3 centre;
+    float radius;
+};
+
 // What a shadow ray was sent to.
 struct LightSample {
     vec3 direction;             // unit length
     std::optional<vec3> point;  // on a light, or null: the sky
     bool is_visible = false;
-    vec3 radiance{0};  // contribution, throughput included
+    vec3 radiance{0};              // contribution, throughput included
+    std::vector<Sphere> branch{};  // nodes of the light tree that lead to the light, from LightBranches
 };
 
 // Where a ray hit something, or the direction in which it left the scene.

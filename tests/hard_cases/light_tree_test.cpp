@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "files/project_folder.h"
+#include "inspection/light_branches.h"
 #include "support/expect_statistics.h"
 #include "support/render.h"
 #include "support/scenes.h"
@@ -100,6 +101,38 @@ TEST(LightTree, TrailsLeadToLeaves) {
     for (const Scene& scene : {load_shipped_scene("lamps.json"), stretched_lamps()}) {
         const LightTable table = build_light_table(scene);
         expect_right_tree(scene, table, build_light_tree(scene, table));
+    }
+}
+
+// From a point of a lamp's front the window finds the nodes on its trail, and none from behind.
+TEST(LightTree, BranchesOfLightSamples) {
+    for (const Scene& scene : {load_shipped_scene("lamps.json"), stretched_lamps()}) {
+        const LightTable table = build_light_table(scene);
+        const LightTree tree = build_light_tree(scene, table);
+        const LightBranches branches(scene);
+        for (const LightTriangle& light : table.triangles) {
+            std::vector<Sphere> expected;
+            vec3 normal;
+            uint32_t trail =
+                tree.leaves[tree.places[light.triangle] + tree.places[scene.triangles.size() + light.instance]].trail;
+            for (uint32_t node = 0; node < IS_LIGHT_LEAF; trail >>= 2) {
+                const LightNode& parent = tree.nodes[node];
+                const auto i = static_cast<int>(trail & 3);
+                expected.push_back({{parent.centre_x[i], parent.centre_y[i], parent.centre_z[i]}, parent.radius[i]});
+                normal = {parent.mean_normal_x[i], parent.mean_normal_y[i], parent.mean_normal_z[i]};
+                node = parent.child[i];
+            }
+            vec3 point(0);
+            for (int i = 0; i < 3; ++i)
+                point += (i == 0 ? 0.7f : 0.15f) * vec3(world_corner(scene, light.instance, light.triangle, i));
+            const std::vector<Sphere> found = branches.find(point + normal, point);
+            ASSERT_EQ(found.size(), expected.size());
+            for (size_t i = 0; i < found.size(); ++i) {
+                ASSERT_EQ(found[i].centre, expected[i].centre);
+                ASSERT_EQ(found[i].radius, expected[i].radius);
+            }
+            for (const Sphere& sphere : branches.find(point - normal, point)) ASSERT_NE(sphere.radius, expected.back().radius);
+        }
     }
 }
 
