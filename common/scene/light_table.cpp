@@ -14,6 +14,11 @@ namespace lab {
 
 double get_luminance(const vec3& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
+double light_area(const Scene& scene, uint32_t instance, uint32_t triangle) {
+    const double area = world_area(scene, instance, triangle);
+    return area > 0 ? std::max(area, 1e-37) : 0;
+}
+
 namespace {
 
 constexpr uint64_t max_light_triangles = 1u << 24;
@@ -59,7 +64,7 @@ LightTable build_light_table(const Scene& scene, double probability) {
     if (lights.empty()) return table;
     std::vector<double> areas, weights;
     for (const LightTriangle& light : lights) {
-        areas.push_back(world_area(scene, light.instance, light.triangle));
+        areas.push_back(light_area(scene, light.instance, light.triangle));
         weights.push_back(areas.back() * luminance_of(light.triangle));
     }
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);

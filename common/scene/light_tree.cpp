@@ -55,7 +55,7 @@ Light get_light(const Scene& scene, const LightTriangle& triangle, uint32_t inde
     const Instance& instance = scene.instances[triangle.instance];
     const glm::dmat4x3 transform(instance.object_to_world);
     Light light{{}, index};
-    light.power = world_area(scene, triangle.instance, triangle.triangle) * luminance_of(scene, triangle.triangle);
+    light.power = light_area(scene, triangle.instance, triangle.triangle) * luminance_of(scene, triangle.triangle);
     dvec3 magnitude = glm::abs(transform[3]);
     std::array<dvec3, 3> own;  // corners in object space
     for (int i = 0; i < 3; ++i) {
@@ -219,7 +219,7 @@ void fill_leaves(const Scene& scene, const LightTable& table, const std::vector<
     for (size_t i = 0; i < trails.size(); ++i) {
         const LightTriangle& light = table.triangles[i];
         leaf_of(light.instance, light.triangle) = {trails[i],
-                                                   static_cast<float>(world_area(scene, light.instance, light.triangle))};
+                                                   static_cast<float>(light_area(scene, light.instance, light.triangle))};
     }
     if (tree.leaves.size() == trails.size()) return;
     // The others take the leaves of those in their places.

@@ -4,15 +4,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "files/project_folder.h"
 #include "inspection/light_branches.h"
 #include "support/expect_statistics.h"
+#include "support/lambert_polygon.h"
 #include "support/render.h"
 #include "support/scenes.h"
 
 namespace lab {
 namespace {
+
+using glm::dvec3;
 
 Estimator light_tree_probe() {
     return {.file = project_folder() / "tests/hard_cases/light_tree.glsl",
@@ -74,6 +78,38 @@ Scene stretched_lamps() {
     return scene;
 }
 TEST(LightTree, ProbabilitiesOfAMirroredAndStretchedInstance) { expect_right_probabilities(stretched_lamps(), 64, 0.002); }
+
+// Its density would overflow: 1 over an area of 5e-41. It sends too little light to be seen, whoever chooses it.
+TEST(LightTree, ALampThatIsSmallerThanFloatsIsHarmless) {
+    const Quad lamp{{0.3f, 0.2f, 0}, {0, 0.5f, 0}, {0.5f, 0, 0}, 2}, tiny{vec3(0), {0, 1e-20f, 0}, {1e-20f, 0, 0}, 3};
+    Scene scene = make_scene({diffuse_material(vec3(0.8f)), diffuse_material(vec3(0)), diffuse_material(vec3(0), vec3(1)),
+                              diffuse_material(vec3(0), vec3(1e6f))},
+                             {{{-1, -1, -0.8f}, {2, 0, 0}, {0, 2, 0}, 0}, lamp, tiny});
+    scene.camera = {.position = {-0.1f, -0.6f, -0.4f}, .target = {0, 0, -0.8f}, .up = {0, 0, 1}, .vertical_fov = 0.05f};
+    double irradiance = 0;
+    for (const uint32_t triangle : {2, 3}) {
+        std::vector<dvec3> corners;
+        for (int i = 0; i < 3; ++i) corners.emplace_back(scene.corner(triangle, i));
+        irradiance += polygon_irradiance(corners, {0, 0, -0.8}, {0, 0, 1});
+    }
+    Scene dark = scene;
+    dark.materials[2] = dark.materials[1];
+    for (const std::string choice : {"CHOOSES_BY_TREE", "CHOOSES_BY_POWER", "CHOOSES_UNIFORMLY"})
+        for (const Strategy strategy : {Strategy::both, Strategy::light}) {
+            RenderSettings settings{.width = 16,
+                                    .height = 16,
+                                    .samples = 64,
+                                    .max_path_length = 1,
+                                    .strategy = strategy,
+                                    .backend = fastest_backend()};
+            settings.estimator = chapter_estimator(chapter_named("many_lights"));
+            settings.estimator.defines.push_back("LIGHT_CHOICE " + choice);
+            const FilmImage film = render(scene, settings);
+            EXPECT_EQ(film.invalid_samples(), 0) << choice;
+            expect_mean(choice, estimate_mean(pixel_means(film, 0)), 0.8 * irradiance / std::numbers::pi, 0.03, 6);
+            EXPECT_EQ(render(dark, settings).invalid_samples(), 0) << choice << ", without another lamp";
+        }
+}
 
 // Every trail leads to its leaf, which knows the triangle's area, and every child's power is that of its own children.
 void expect_right_tree(const Scene& scene, const LightTable& table, const LightTree& tree) {
