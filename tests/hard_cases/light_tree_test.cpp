@@ -79,6 +79,13 @@ Scene stretched_lamps() {
 }
 TEST(LightTree, ProbabilitiesOfAMirroredAndStretchedInstance) { expect_right_probabilities(stretched_lamps(), 64, 0.002); }
 
+// Positions are rounded to more than the size of some lamps.
+TEST(LightTree, ProbabilitiesOfLampsFarFromTheOrigin) {
+    Scene scene = random_lamps(40, 3, 0.01f);
+    scene.instances[0].object_to_world[3] = vec3(3e4f, -2e4f, 1e4f);
+    expect_right_probabilities(scene, 64, 0.002);
+}
+
 // Its density would overflow: 1 over an area of 5e-41. It sends too little light to be seen, whoever chooses it.
 TEST(LightTree, ALampThatIsSmallerThanFloatsIsHarmless) {
     const Quad lamp{{0.3f, 0.2f, 0}, {0, 0.5f, 0}, {0.5f, 0, 0}, 2}, tiny{vec3(0), {0, 1e-20f, 0}, {1e-20f, 0, 0}, 3};
