@@ -203,12 +203,13 @@ TEST(LightTree, CutsKeepNeighboursTogetherAndLampsThatFaceTheSameWay) {
     for (int i = 0; i < 16; ++i) {
         groups.emplace_back(2 * i + (i < 4 ? 0 : 1000), 0, 0);
         row.emplace_back(2 * i, 0, 0);
-        rows.emplace_back(2 * (i % 2), 0, 2 * (i / 2));
+        rows.emplace_back(i % 2, 0, 2 * (i / 2));
     }
-    const LightNode neighbours = root_of_lamps(groups), facing = root_of_lamps(rows, true),
+    const LightNode neighbours = root_of_lamps(groups), even = root_of_lamps(row), facing = root_of_lamps(rows, true),
                     bright = root_of_lamps(row, false, 1e3f);
     for (int i = 0; i < 4; ++i) {
         EXPECT_LT(neighbours.radius[i], 20);
+        EXPECT_LT(even.radius[i], 4);
         EXPECT_NEAR(std::abs(facing.mean_normal_y[i]), 1, 1e-6);
         // Few others are beside the bright one.
         EXPECT_TRUE(bright.power[i] < 0.9f * glm::dot(bright.power, vec4(1)) || bright.radius[i] < 1.5f) << bright.radius[i];
