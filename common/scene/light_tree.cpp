@@ -146,8 +146,8 @@ class Builder {
         node.power[i] = static_cast<float>(unit_ * cluster.power);
     }
 
-    // Reorders the lights into two parts: of all cuts between bins along the axes, takes the one of least cost, unless the tree
-    // would become too deep. Only the second part may be empty, and only that of a single light.
+    // Reorders the lights into two parts by the cut between bins of least cost over the length of its axis: others leave thin
+    // boxes. Halves them where the tree would be too deep. Only the second part may be empty, and only that of a single light.
     static std::array<std::span<Light>, 2> split(std::span<Light> lights, uint32_t depth) {
         const size_t count = (lights.size() + 1) / 2;
         const size_t places = depth % 2 == 0 ? 4 : 2;  // of the node, for these lights: as many of them are leaves, however split
@@ -184,7 +184,7 @@ class Builder {
             sum = {};
             for (int i = bin_count - 1; i > 0 && size[axis] > 0; --i) {
                 sum.add(bins[axis][i]);
-                const double cost = sum.cost() + costs[i];
+                const double cost = (sum.cost() + costs[i]) / size[axis];
                 if (cost < least) least = cost, best_axis = axis, best_cut = i;
             }
         }
