@@ -203,7 +203,7 @@ TEST(LightTree, CutsKeepNeighboursTogetherAndLampsThatFaceTheSameWay) {
     for (int i = 0; i < 16; ++i) {
         groups.emplace_back(2 * i + (i < 4 ? 0 : 1000), 0, 0);
         row.emplace_back(2 * i, 0, 0);
-        rows.emplace_back(i % 2, 0, 2 * (i / 2));
+        rows.emplace_back(i % 2 * 2 + i / 2 % 2, 0, 2.5f * static_cast<float>(i / 4));
     }
     const LightNode neighbours = root_of_lamps(groups), even = root_of_lamps(row), facing = root_of_lamps(rows, true),
                     bright = root_of_lamps(row, false, 1e3f);
