@@ -44,9 +44,10 @@ vec4 get_importance(LightNode node, Receiver receiver) {
     vec4 size = node.radius + 8.0 * ROUNDING * distance;
     vec4 light_height = get_mean_height(-(node.mean_normal_x * to_x + node.mean_normal_y * to_y + node.mean_normal_z * to_z),
                                         size + node.spread * distance);
-    vec4 height = n == vec3(0.0) ? distance : get_mean_height(n.x * to_x + n.y * to_y + n.z * to_z, size);
+    vec4 height = get_mean_height(n.x * to_x + n.y * to_y + n.z * to_z, size);
     // Within the sphere the distance to its centre says little.
     square = max(square, LEAST_SQUARE * node.radius * node.radius);
+    if (n == vec3(0.0)) height = sqrt(square);
     vec4 importance = node.power * (light_height / square) * (height / square);
     // Where no light arrives from any child, any will do.
     return importance == vec4(0.0) ? vec4(1.0, 0.0, 0.0, 0.0) : importance;

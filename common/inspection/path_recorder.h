@@ -8,13 +8,19 @@
 
 namespace lab {
 
+struct Sphere {
+    vec3 centre;
+    float radius;
+};
+
 // What a shadow ray was sent to.
 struct LightSample {
     vec3 start;                 // of its ray: at a vertex, or anywhere along a ray in a medium
     vec3 direction;             // unit length
     std::optional<vec3> point;  // on a light, or null: the sky
     bool is_visible = false;
-    vec3 radiance{0};  // contribution, throughput included
+    vec3 radiance{0};              // contribution, throughput included
+    std::vector<Sphere> branch{};  // nodes of the light tree that lead to the light, from LightBranches
 };
 
 // Where a ray hit something or a free flight along it ended in a medium, or the direction in which it left the scene.

@@ -14,16 +14,14 @@ namespace lab {
 
 double get_luminance(const vec3& colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
+double light_area(const Scene& scene, uint32_t instance, uint32_t triangle) {
+    const double area = world_area(scene, instance, triangle);
+    return area > 0 ? std::max(area, 1e-37) : 0;
+}
+
 namespace {
 
 constexpr uint64_t max_light_triangles = 1u << 24;
-
-double get_world_area(const Scene& scene, const LightTriangle& light) {
-    const glm::dmat3 linear{mat3(scene.instances[light.instance].object_to_world)};
-    const glm::dvec3 origin(scene.corner(light.triangle, 0));
-    const auto side = [&](int i) { return linear * (glm::dvec3(scene.corner(light.triangle, i)) - origin); };
-    return 0.5 * glm::length(glm::cross(side(1), side(2)));
-}
 
 // Rays find only one of several coincident emissive triangles of different instances: keeps the first.
 void keep_one_in_each_place(const Scene& scene, std::vector<LightTriangle>& lights) {
@@ -66,7 +64,7 @@ LightTable build_light_table(const Scene& scene, double probability) {
     if (lights.empty()) return table;
     std::vector<double> areas, weights;
     for (const LightTriangle& light : lights) {
-        areas.push_back(get_world_area(scene, light));
+        areas.push_back(light_area(scene, light.instance, light.triangle));
         weights.push_back(areas.back() * luminance_of(light.triangle));
     }
     const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);

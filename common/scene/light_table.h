@@ -13,6 +13,10 @@ namespace lab {
 // Luminance of linear sRGB (ITU-R BT.709).
 double get_luminance(const vec3& colour);
 
+// The area of an emissive triangle in world space. A density per area overflows float below 1e-37, so smaller triangles count as
+// that large: what they send is too little to be seen.
+double light_area(const Scene& scene, uint32_t instance, uint32_t triangle);
+
 struct LightTable {
     // Chosen with probability proportional to area times luminance. Empty if nothing emits.
     std::vector<LightTriangle> triangles;

@@ -12,10 +12,6 @@ namespace {
 
 using glm::dvec3;
 
-dvec3 world_corner(const Scene& scene, uint32_t instance, uint32_t triangle, int corner) {
-    return glm::dmat4x3(scene.instances[instance].object_to_world) * glm::dvec4(scene.corner(triangle, corner), 1);
-}
-
 // The solid angle of a triangle seen from the origin, with a sign (van Oosterom and Strackee 1983).
 double solid_angle(const dvec3& a, const dvec3& b, const dvec3& c) {
     const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);

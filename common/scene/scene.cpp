@@ -74,6 +74,18 @@ Bounds world_bounds(const Scene& scene) {
     return world;
 }
 
+glm::dvec3 world_corner(const Scene& scene, uint32_t instance, uint32_t triangle, int i) {
+    return glm::dmat4x3(scene.instances[instance].object_to_world) * glm::dvec4(scene.corner(triangle, i), 1);
+}
+
+double world_area(const Scene& scene, uint32_t instance, uint32_t triangle) {
+    // Without the translation, which would only add rounding errors.
+    const glm::dmat3 linear{mat3(scene.instances[instance].object_to_world)};
+    const glm::dvec3 origin(scene.corner(triangle, 0));
+    const auto side = [&](int i) { return linear * (glm::dvec3(scene.corner(triangle, i)) - origin); };
+    return 0.5 * glm::length(glm::cross(side(1), side(2)));
+}
+
 Scene load_scene(const std::filesystem::path& file, bool specular) {
     const std::string name = file.string();
     const std::string extension = lower_case_extension(file);

@@ -105,6 +105,10 @@ struct Bounds {
 // World-space bounds of all instances, tight unless a mesh is rotated. Without instances, low > high.
 Bounds world_bounds(const Scene& scene);
 
+// A corner of a triangle of an instance, and the triangle's area, in world space.
+glm::dvec3 world_corner(const Scene& scene, uint32_t instance, uint32_t triangle, int i);
+double world_area(const Scene& scene, uint32_t instance, uint32_t triangle);
+
 // Reads a .json scene or a bare .obj. `specular` enables Phong lobes, like the key in the scene. The default camera is
 // framing_pose(); a bare .obj without lights gets a white sky. Throws UserError.
 Scene load_scene(const std::filesystem::path& file, bool specular = false);

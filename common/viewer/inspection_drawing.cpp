@@ -38,6 +38,22 @@ void draw_lens(ImDrawList& list, const Placement& placement, const Camera& camer
     if (pixel && hit) list.AddLine(placement.at(*pixel), placement.at(*hit), blue, 2);
 }
 
+// Three great circles.
+template <typename DrawLine>
+void draw_sphere(const Sphere& sphere, uint32_t colour, const DrawLine& draw_line) {
+    constexpr int corners = 48;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto corner = [&](int i) {
+            const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / corners;
+            vec3 point = sphere.centre;
+            point[axis] += sphere.radius * std::cos(angle);
+            point[(axis + 1) % 3] += sphere.radius * std::sin(angle);
+            return point;
+        };
+        for (int i = 0; i < corners; ++i) draw_line(corner(i), corner(i + 1), colour, 1.0f);
+    }
+}
+
 }  // namespace
 
 Placement::Placement(const Rectangle& picture) {
@@ -59,6 +75,10 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
         return start + far * glm::length(start - camera.position) * direction;
     };
     const auto& vertices = path.vertices;
+    if (chosen < vertices.size())
+        for (const LightSample& light : vertices[chosen].light_samples)
+            for (size_t i = 0; i < light.branch.size(); ++i)
+                draw_sphere(light.branch[i], IM_COL32(90, 230, 110, 80 + 175 * (i + 1) / light.branch.size()), draw_line);
     for (const PathVertex& vertex : vertices)
         for (const LightSample& light : vertex.light_samples)
             draw_line(light.start, light.point.value_or(far_away(light.start, light.direction)),

@@ -200,6 +200,7 @@ void InspectionPanel::draw_vertices() {
                 text_colour("  visible: adds", light.radiance);
             else
                 ImGui::TextUnformatted("  hidden: adds nothing");
+            if (!light.branch.empty()) ImGui::Text("  by %zu nodes of the tree (green)", light.branch.size());
         }
         if (vertex.radiance != vec3(0)) text_colour("radiance found", vertex.radiance);
         for (const float probability : vertex.lost_roulettes) ImGui::Text("Russian roulette: ended, survival %.3g", probability);
@@ -254,6 +255,12 @@ static bool has_brdf(const PathVertex& vertex, const Scene& scene) {
     return vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
 }
 
+// The tree is the first of the light choices, so no define asks for it.
+static bool descends_light_tree(const GpuScene& scene, const Estimator& estimator) {
+    return std::ranges::count(scene.defines(), "FEATURE_LIGHT_TREE") > 0 &&
+           std::ranges::none_of(estimator.defines, [](const std::string& text) { return text.starts_with("LIGHT_CHOICE "); });
+}
+
 // Whether the tools for the session's estimator are ready; if not, starts building them.
 bool Inspection::have_tools(const Session& session) {
     if (work_.is_under_way()) {
@@ -288,6 +295,8 @@ bool Inspection::have_tools(const Session& session) {
         const SceneBackend& scene_backend = *wanted->scene_backend;
         wanted->recorder = std::make_unique<PathRecorder>(device, scene_backend, wanted->estimator, wanted->image_size);
         wanted->hemisphere = std::make_unique<HemisphereView>(device, scene_backend, wanted->estimator);
+        if (descends_light_tree(*wanted->gpu_scene, wanted->estimator))
+            wanted->light_branches = std::make_unique<LightBranches>(*wanted->scene);
         return wanted;
     });
     return false;
@@ -306,8 +315,10 @@ void Inspection::update(const Session& session, double seconds) try {
     selection_->pixel = glm::min(selection_->pixel, parameters.image_size - 1u);
     if (shown_ != selection_) {
         message_.clear();
-        if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample)
+        if (!shown_ || shown_->pixel != selection_->pixel || shown_->sample != selection_->sample) {
             path_ = tools_->recorder->record(parameters, selection_->pixel, parameters.first_sample + selection_->sample);
+            if (tools_->light_branches) tools_->light_branches->add_to(*path_);
+        }
         has_hemisphere_ = false;
         if (const auto& vertices = path_->vertices; !vertices.empty()) {  // otherwise it traced no ray
             selection_->vertex = std::min(selection_->vertex, vertices.size() - 1);

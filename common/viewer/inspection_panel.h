@@ -1,6 +1,7 @@
 // The inside view: live verdict, tiles, a pixel's path, and what its vertices see.
 #pragma once
 #include "inspection/hemisphere_view.h"
+#include "inspection/light_branches.h"
 #include "viewer/session.h"
 #include "viewer/tile_overlay.h"
 
@@ -45,6 +46,7 @@ class Inspection {
         uvec2 image_size;
         std::unique_ptr<PathRecorder> recorder = nullptr;
         std::unique_ptr<HemisphereView> hemisphere = nullptr;
+        std::unique_ptr<LightBranches> light_branches = nullptr;  // if light samples choose by the tree
     };
     bool have_tools(const Session& session);
 

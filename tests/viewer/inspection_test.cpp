@@ -169,6 +169,42 @@ TEST_F(InspectionTest, CollisionsInFogAreGreen) {
     EXPECT_GT(paths_with_green, 2u);
 }
 
+// The nodes above the lamp of a light sample are green, and only if it was chosen by the tree.
+TEST_F(InspectionTest, TheBranchOfALightSampleIsShown) {
+    chapter_ = load_chapter(chapter_named("many_lights"));
+    Options options = make_options();
+    options.scene.file = scenes / "heart_light.json";
+    options.light.max_path_length = 2;
+    const auto green_pixels = [&](const char* screenshot) {
+        wait_until("a path", [&] { return inspection().path().has_value() && !inspection().path()->vertices.empty(); });
+        take_screenshot(screenshot);
+        const Texture& shown = viewer_->screen().captured();
+        size_t count = 0;
+        for (size_t i = 0; i < shown.pixels.size(); i += 4)
+            count += shown.pixels[i + 1] > shown.pixels[i] + 60 && shown.pixels[i + 1] > shown.pixels[i + 2] + 60;
+        return count;
+    };
+    open(options);
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    click(640, 500);  // the floor
+    const size_t by_tree = green_pixels("viewer_branch");
+    const auto& lights = inspection().path()->vertices.front().light_samples;
+    ASSERT_EQ(lights.size(), 1u);
+    ASSERT_GE(lights[0].branch.size(), 4u);
+    const Sphere& lamp = lights[0].branch.back();
+    EXPECT_LE(glm::distance(lamp.centre, *lights[0].point), 1.001f * lamp.radius);
+    EXPECT_LT(lamp.radius, 0.1f * lights[0].branch.front().radius);
+
+    options.estimator.choices["--light-choice"] = 1;
+    session().change(options);
+    run_frames(1);
+    wait_until("by power", [&] { return !session().is_building() && session().samples() >= 1; });
+    const size_t by_power = green_pixels("viewer_branch_by_power");
+    EXPECT_GT(by_tree, by_power + 300);
+    for (const PathVertex& vertex : inspection().path()->vertices)
+        for (const LightSample& light : vertex.light_samples) EXPECT_TRUE(light.branch.empty());
+}
+
 TEST_F(InspectionTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_all) {
     chapter_ = load_chapter(chapter_named("multiple_importance_sampling"));
     Options options = options_with_reference();
