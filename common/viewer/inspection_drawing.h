@@ -18,8 +18,8 @@ struct Placement {
 };
 
 // Draws a path over the picture: rays in blue, light samples in yellow or, if occluded, grey; the chosen vertex is highlighted.
-// Green are collisions in a medium and the nodes of the light tree that lead to the chosen vertex's light samples, the smaller the
-// brighter. A lens blurs the first hit to a disc, which is drawn with the ray from its pixel.
+// Green are collisions in a medium and the nodes of the light tree that lead to the chosen vertex's light samples, the smaller
+// the brighter. A lens blurs the first hit to a disc, which is drawn with the ray from its pixel.
 void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, const Rectangle& picture);
 
 // Draws a disc of HemisphereView times a factor, at reduced resolution for speed.
