@@ -4,11 +4,14 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 
 from program import PROJECT, ProgramTest
 
 INSTALLED = "#!/bin/sh\nfor name; do printf '%s:installed ' \"$name\"; done\n"
 NOTING = "#!/bin/sh\necho \"${{0##*/}}${{LAB_TEST_COPY:+, copy $LAB_TEST_COPY:}} $@\" >>'{notes}'\n"
+# The scripts in Python that only choose what to build do so.
+CHOOSING = NOTING + "case $2 in chapters|targets|run) exec '{python}' -B \"$@\";; esac\n"
 # A test program that has one test.
 LISTING = NOTING + "[ $1 != --gtest_list_tests ] || echo '  AreThree'\n"
 
@@ -31,7 +34,7 @@ class WhatIsBuilt(ProgramTest):
 
     def setUp(self):
         super().setUp()
-        for folder in ("build", "bin", "tests/shaders", "tests/cli"):
+        for folder in ("build", "bin", "tests/shaders", "tests/cli", "tools/lesson"):
             (self.folder / "tree" / folder).mkdir(parents=True)
         for name, title in (("03_three", "Three"), ("12_twelve", "Twelve"), ("20_mine", "Three")):
             page = f"# {title}\nDone\n   when all tests named `{title}Things` and `More` pass.\n"
@@ -41,9 +44,11 @@ class WhatIsBuilt(ProgramTest):
         self.write("tree/tests/shaders/three_test.cpp", "TEST_P(ThreeThings, AreThree) {\nTEST(Other, IsOther) {\n")
         self.write("tree/tests/cli/four_test.py", "class FourTest(TestCase):\n")
         self.write("tree/CMakeLists.txt", "")
-        shutil.copy(PROJECT / "lab", self.folder / "tree")
-        for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", NOTING), ("ctest", NOTING)):
-            self.write(f"tree/bin/{name}", script.format(notes=self.folder / "notes")).chmod(0o755)
+        for name in ("lab", *(f"tools/{name}.py" for name in ("__main__", "project", "lesson/chapters")),
+                     *(f"tests/{name}.py" for name in ("__main__", "cited_tests", "test_report"))):
+            shutil.copy(PROJECT / name, self.folder / "tree" / name)
+        for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", CHOOSING), ("ctest", NOTING)):
+            self.write(f"tree/bin/{name}", script.format(notes=self.folder / "notes", python=sys.executable)).chmod(0o755)
 
     def noted(self, *arguments, code=0):
         """What a command of lab calls, one line each."""
