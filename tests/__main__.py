@@ -71,8 +71,8 @@ def exercise(chapter, suites, others):
         failed = False
         for target in targets:
             # As in tests/CMakeLists.txt: Mesa's driver for CPUs takes long to optimise.
-            unoptimised = {} if target.startswith("convergence_") else {"GALLIVM_PERF": "nopt"}
-            failed |= subprocess.run([BUILD / "bin" / target, "--gtest_brief=1", chosen], cwd=ROOT, env=os.environ | unoptimised).returncode != 0
+            environment = os.environ | ({} if target.startswith("convergence_") else {"GALLIVM_PERF": "nopt"})
+            failed |= subprocess.run([BUILD / "bin" / target, "--gtest_brief=1", chosen], cwd=ROOT, env=environment).returncode != 0
         if not failed and not any(list_tests(BUILD / "bin" / target, chosen) for target in targets):
             fail(f"{chapter} has no tests named {' or '.join(suites)}")
         return failed
