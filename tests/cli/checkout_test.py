@@ -78,6 +78,8 @@ class WhatIsBuilt(ProgramTest):
     def test_the_name_of_a_test_may_not_be_missing(self):
         for arguments in (["test", "-R"], ["test", 3, "-R"]):
             self.assert_refused(arguments, "-R needs the name of a test", program=self.folder / "tree/lab")
+        self.assert_refused(["test", "-R", "("], "lab: -R needs a regular expression", program=self.folder / "tree/lab",
+                            environment={"PYTHONDONTWRITEBYTECODE": "1"})
 
     def test_what_is_not_named_is_left_to_all(self):
         for arguments, targets, choice in (((), "all", r" -LE \^all\$"), (("--all",), "all only_in_all", ""),
@@ -100,3 +102,19 @@ class WhatIsBuilt(ProgramTest):
         self.assertRegex(noted, r"(?m) --target shaders_tests$")
         self.assertIn(r" -R IsOther -E /chapter_(12_twelve|20_mine)(_all)?$" + "\n", noted)
         self.assertIn("\nctest, copy 20_mine: ", "\n" + noted)
+
+    def test_the_summary_counts_what_ran(self):
+        """A run in which nothing runs has failed."""
+        cases = {"a.Passes": (1, "run", ""), "a.IsSlow": (22.5, "run", ""), "a.Fails": (3, "fail", "<failure/>"), "a.IsOff": (0, "disabled", ""),
+                 "a.NeedsXvfb": (0, "notrun", '<skipped message="SKIP_RETURN_CODE=77"/>'),
+                 "a.IsMissing": (0, "notrun", '<skipped message="Unable to find executable"/>')}
+        for names, code_of_ctest, code, last in ((cases, 8, 1, "2 passed, 2 failed, 2 skipped"), (["a.Passes", "a.IsSlow"], 0, 0, "2 passed, 0 failed"),
+                                                 (["a.IsOff"], 0, 1, "0 passed, 0 failed, 1 skipped")):
+            report = "".join('<testcase name="{}" time="{}" status="{}">{}</testcase>'.format(name, *cases[name]) for name in names)
+            self.write("report.xml", f"<testsuite>{report}</testsuite>")
+            self.write("tree/bin/ctest", f"#!/bin/sh\ncp {self.folder}/report.xml {self.folder}/tree/build/tests.xml\nexit {code_of_ctest}\n")
+            path = f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"
+            actual, out, err = self.run_program("test", program=self.folder / "tree/lab", environment={"PATH": path})
+            self.assertEqual((actual, out.splitlines()[-1]), (code, last), err)
+            if code == 0:
+                self.assertIn("slowest:\n   22.5 s  a.IsSlow\n    1.0 s  a.Passes\n", out)
