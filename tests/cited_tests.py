@@ -1,9 +1,10 @@
-"""Which tests exist, and those that docs/numerics.md cites for each hard case of the numerics: those in hard_cases/cases.json."""
+"""Which tests exist, those that an exercise names, and those that docs/numerics.md cites for each hard case of the numerics: those in
+hard_cases/cases.json."""
 import re
 from pathlib import Path
 
 import test_report
-from project import BINARIES, read_json
+from project import BINARIES, ROOT, read_json, text_of
 
 TESTS = Path(__file__).resolve().parent
 TEST = re.compile(r"^TEST(?:_[PF])?\((\w+), (\w+)\)", re.MULTILINE)
@@ -13,6 +14,13 @@ PROGRAMS = ["unit", "shaders", "convergence", "parity", "hard_cases"]
 def written_tests():
     """(suite, test) of everything that the sources of the tests in C++ define, whether it is built or not."""
     return {pair for file in TESTS.rglob("*.cpp") for pair in TEST.findall(file.read_text(encoding="utf-8"))}
+
+
+def tests_of_exercise(chapter):
+    """The names of the tests that show that exercise 1 on a chapter's page is done."""
+    page = " ".join(text_of(ROOT / "chapters" / chapter / "README.md").split())
+    sentence = re.search("Done when all tests named ([^.,]*)", page)
+    return re.findall("`([A-Za-z]+)`", sentence[1]) if sentence else []
 
 
 def load_cases():

@@ -68,9 +68,9 @@ def _text(value):
     return value.encode("latin-1").decode("utf-8")
 
 
-def list_tests(binary):
-    """Full names of all tests in a program."""
-    lines = subprocess.run([binary, "--gtest_list_tests"], check=True, stdout=subprocess.PIPE, text=True).stdout
+def list_tests(binary, *arguments):
+    """Full names of all tests in a program, or of those that its arguments choose."""
+    lines = subprocess.run([binary, "--gtest_list_tests", *arguments], check=True, stdout=subprocess.PIPE, text=True).stdout
     names, suite = [], ""
     for line in lines.splitlines():
         text = line.split("#")[0].rstrip()

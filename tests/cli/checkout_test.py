@@ -4,11 +4,14 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 
 from program import PROJECT, ProgramTest
 
 INSTALLED = "#!/bin/sh\nfor name; do printf '%s:installed ' \"$name\"; done\n"
 NOTING = "#!/bin/sh\necho \"${{0##*/}}${{LAB_TEST_COPY:+, copy $LAB_TEST_COPY:}} $@\" >>'{notes}'\n"
+# The scripts in Python that only choose what to build do so.
+CHOOSING = NOTING + "case $2 in chapters|targets|run) exec '{python}' -B \"$@\";; esac\n"
 # A test program that has one test.
 LISTING = NOTING + "[ $1 != --gtest_list_tests ] || echo '  AreThree'\n"
 
@@ -31,7 +34,7 @@ class WhatIsBuilt(ProgramTest):
 
     def setUp(self):
         super().setUp()
-        for folder in ("build", "bin", "tests/shaders", "tests/cli"):
+        for folder in ("build", "bin", "tests/shaders", "tests/cli", "tools/lesson"):
             (self.folder / "tree" / folder).mkdir(parents=True)
         for name, title in (("03_three", "Three"), ("12_twelve", "Twelve"), ("20_mine", "Three")):
             page = f"# {title}\nDone\n   when all tests named `{title}Things` and `More` pass.\n"
@@ -41,9 +44,11 @@ class WhatIsBuilt(ProgramTest):
         self.write("tree/tests/shaders/three_test.cpp", "TEST_P(ThreeThings, AreThree) {\nTEST(Other, IsOther) {\n")
         self.write("tree/tests/cli/four_test.py", "class FourTest(TestCase):\n")
         self.write("tree/CMakeLists.txt", "")
-        shutil.copy(PROJECT / "lab", self.folder / "tree")
-        for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", NOTING), ("ctest", NOTING)):
-            self.write(f"tree/bin/{name}", script.format(notes=self.folder / "notes")).chmod(0o755)
+        for name in ("lab", *(f"tools/{name}.py" for name in ("__main__", "project", "lesson/chapters")),
+                     *(f"tests/{name}.py" for name in ("__main__", "cited_tests", "test_report"))):
+            shutil.copy(PROJECT / name, self.folder / "tree" / name)
+        for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", CHOOSING), ("ctest", NOTING)):
+            self.write(f"tree/bin/{name}", script.format(notes=self.folder / "notes", python=sys.executable)).chmod(0o755)
 
     def noted(self, *arguments, code=0):
         """What a command of lab calls, one line each."""
@@ -65,7 +70,7 @@ class WhatIsBuilt(ProgramTest):
 
     def test_tests_that_are_chosen_are_built_alone(self):
         for regex, targets in (("ThreeThings", "shaders_tests"), ("shaders.*IsOther", "shaders_tests"), ("FourTest", "all only_in_all"),
-                               ("mistakes", "all only_in_all"), ("Nothing", "all only_in_all")):
+                               ("mistakes", "all only_in_all"), ("Nothing", "all only_in_all"), ("ThreeThings|FourTest", "all only_in_all")):
             noted = self.noted("test", "-R", regex, code=1)
             self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$", regex)
             self.assertRegex(noted, rf"(?m)^ctest .* -R {re.escape(regex)}$")
@@ -73,6 +78,8 @@ class WhatIsBuilt(ProgramTest):
     def test_the_name_of_a_test_may_not_be_missing(self):
         for arguments in (["test", "-R"], ["test", 3, "-R"]):
             self.assert_refused(arguments, "-R needs the name of a test", program=self.folder / "tree/lab")
+        self.assert_refused(["test", "-R", "("], "lab: -R needs a regular expression", program=self.folder / "tree/lab",
+                            environment={"PYTHONDONTWRITEBYTECODE": "1"})
 
     def test_what_is_not_named_is_left_to_all(self):
         for arguments, targets, choice in (((), "all", r" -LE \^all\$"), (("--all",), "all only_in_all", ""),
@@ -95,3 +102,20 @@ class WhatIsBuilt(ProgramTest):
         self.assertRegex(noted, r"(?m) --target shaders_tests$")
         self.assertIn(r" -R IsOther -E /chapter_(12_twelve|20_mine)(_all)?$" + "\n", noted)
         self.assertIn("\nctest, copy 20_mine: ", "\n" + noted)
+
+    def test_the_summary_counts_what_ran(self):
+        """A run in which nothing runs has failed."""
+        cases = {"a.Passes": (1, "run", ""), "a.IsSlow": (22.5, "run", ""), "a.Fails": (3, "fail", "<failure/>"),
+                 "a.IsOff": (0, "disabled", ""), "a.NeedsXvfb": (0, "notrun", '<skipped message="SKIP_RETURN_CODE=77"/>'),
+                 "a.IsMissing": (0, "notrun", '<skipped message="Unable to find executable"/>')}
+        for names, code_of_ctest, code, last in ((cases, 8, 1, "2 passed, 2 failed, 2 skipped"),
+                                                 (["a.Passes", "a.IsSlow"], 0, 0, "2 passed, 0 failed"),
+                                                 (["a.IsOff"], 0, 1, "0 passed, 0 failed, 1 skipped")):
+            report = "".join('<testcase name="{}" time="{}" status="{}">{}</testcase>'.format(name, *cases[name]) for name in names)
+            self.write("report.xml", f"<testsuite>{report}</testsuite>")
+            self.write("tree/bin/ctest", f"#!/bin/sh\ncp {self.folder}/report.xml {self.folder}/tree/build/tests.xml\nexit {code_of_ctest}\n")
+            path = f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"
+            actual, out, err = self.run_program("test", program=self.folder / "tree/lab", environment={"PATH": path})
+            self.assertEqual((actual, out.splitlines()[-1]), (code, last), err)
+            if code == 0:
+                self.assertIn("slowest:\n   22.5 s  a.IsSlow\n    1.0 s  a.Passes\n", out)

@@ -138,7 +138,7 @@ class DocumentationTest(unittest.TestCase):
             self.assertGreaterEqual(len(kinds), 5, chapter)
             self.assertLessEqual({"Fill in", "Derive", "Measure", "Find the bug", "Explore", "Challenge"}, set(kinds), chapter)
             self.assertEqual((kinds[0], kinds[-1]), ("Fill in", "Challenge"), chapter)
-            named = [name for line in re.findall(r"Done\s+when all tests named ([^.]*)", text) for name in re.findall(r"`(\w+)`", line)]
+            named = cited_tests.tests_of_exercise(chapter)
             self.assertTrue(named and set(named) <= suites, f"{chapter}: tests {named}")
 
     def test_solutions_of_the_first_exercise_are_folded(self):
