@@ -8,7 +8,7 @@ float get_flight_depth(uint word) {
 }
 
 #ifdef FEATURE_DENSITIES
-// The number of one cell.
+// The density of one cell.
 float get_cell_density(Medium medium, uint x, uint y, uint z) {
     return densities[medium.first_density + x + medium.grid_size.x * (y + medium.grid_size.y * z)];
 }

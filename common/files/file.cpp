@@ -1,6 +1,7 @@
 #include "files/file.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <cstdio>
@@ -31,12 +32,13 @@ fs::path target_of(const fs::path& file) {
 }
 
 // In the target's folder, because renaming is atomic only within a file system. The process id separates two programs that write
-// the same file.
+// the same file, and the count two threads.
 fs::path temporary_name(const fs::path& file) {
+    static std::atomic<uint64_t> count = 0;
     fs::path name = ".";
     name += file.filename();
     name += '.';
-    name += std::to_string(process_id());
+    name += std::to_string(process_id()) + '.' + std::to_string(count++);
     name += ".tmp";
     return file.parent_path() / name;
 }

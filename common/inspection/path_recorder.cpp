@@ -105,7 +105,8 @@ class PathBuilder {
                           .light_samples = {},
                           .lost_roulettes = {}};
         survival_probability_.reset();
-        const float t_max = vertex.is_hit ? glm::distance(vertex.position, vertex.origin) : no_limit;
+        constexpr float shortened = 1 - 0x1p-18f;  // as chapter 13 does: flights that end close to a surface end there
+        const float t_max = vertex.is_hit ? shortened * glm::distance(vertex.position, vertex.origin) : no_limit;
         if (has_flight(event) && event.flight < t_max) {
             vertex.is_hit = false;
             vertex.is_collision = true;
@@ -122,7 +123,8 @@ class PathBuilder {
         if (next_ < 2 || event.kind != EVENT_RAY) return false;
         const RecordedEvent& before = events_[next_ - 2];
         if (before.kind != EVENT_RAY || !looks_for_boundaries(before) || before.is_hit == 0) return false;
-        return glm::distance(before.position, event.origin) <= 1e-4f * (1 + glm::length(event.origin));
+        const float size = glm::length(event.origin) + glm::distance(before.origin, before.position);
+        return glm::distance(before.position, event.origin) <= 1e-4f * size;
     }
 
     void add_light_sample(const RecordedEvent& event) {

@@ -2,8 +2,8 @@
 
     ./lab notebook large_picture [--runs 5] [--output FILE.json]
 
-The program's start is a picture of 64 x 64 pixels, rendering is what the report says, and the files are what a command takes beyond both:
-with an EXR, with a PNG, and with both, which includes reading the film back and its error.
+The program's start is a picture of 64 x 64 pixels, and rendering is what the report of one more run says. The others are what a command
+takes with an EXR, with a PNG, and with one of each; beyond start and rendering, that is reading the film back, its error and the files.
 """
 import subprocess
 import tempfile

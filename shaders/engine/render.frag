@@ -10,7 +10,7 @@ DispatchParameters dispatch;
 #include "engine/trace_ray/compute.glsl"
 
 // Counts the iterations of an estimator's loops: a browser cannot interrupt a shader, and a system takes the GPU away from one
-// that goes on for seconds. The translation asks in the condition of every loop, `place` numbers the line.
+// that goes on for seconds. The translation asks before each turn of a loop, `place` numbers the line.
 uint loop_iterations = 0u;
 uint stuck_place = 0u;
 bool is_loop_stuck(uint place) {
@@ -54,6 +54,6 @@ void main() {
     uvec3 difference = floatBitsToUint(film[0].difference);
     film_words_0 = uvec4(sum, compensation.x);
     film_words_1 = uvec4(compensation.yz, difference.xy);
-    uint last = stuck_place != 0u ? STUCK | stuck_place : ray_counters[0];
+    uint last = c.w >= STUCK ? c.w : stuck_place != 0u ? STUCK | stuck_place : ray_counters[0];
     film_words_2 = uvec4(difference.z, film[0].sample_count, film[0].invalid_count, last);
 }

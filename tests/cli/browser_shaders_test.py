@@ -58,14 +58,18 @@ def others():
 
 @unittest.skipUnless(NODE and VALIDATOR, "needs nodejs and glslang-tools, which ./lab test installs")
 class ShadersInBrowserTest(unittest.TestCase):
+    def translate(self, jobs):
+        """Writes files, as {file: (chapter, name, changed texts, feature)}."""
+        task = {"sources": live.shaders(), "jobs": [{"file": str(file), "chapter": CHAPTERS[chapter], "texts": changed, "defines": FEATURES[feature]}
+                                                    for file, (chapter, _, changed, feature) in jobs.items()]}
+        subprocess.run([NODE, PROJECT / "tests/browser/translate.js", TOOLS / "book/live"], input=json.dumps(task), text=True, check=True)
+
     def errors(self, texts, features=tuple(FEATURES)):
         """The errors of (chapter, name, changed texts), by name and features."""
         with tempfile.TemporaryDirectory() as folder:
             jobs = {str(Path(folder) / f"{i}_{feature}.frag"): (chapter, name, changed, feature)
                     for i, (chapter, name, changed) in enumerate(texts) for feature in features}
-            task = {"sources": live.shaders(), "jobs": [{"file": file, "chapter": CHAPTERS[chapter], "texts": changed, "defines": FEATURES[feature]}
-                                                        for file, (chapter, _, changed, feature) in jobs.items()]}
-            subprocess.run([NODE, PROJECT / "tests/browser/translate.js", TOOLS / "book/live"], input=json.dumps(task), text=True, check=True)
+            self.translate(jobs)
             output = subprocess.run([VALIDATOR, *jobs], capture_output=True, text=True).stdout
         self.assertGreater(len(jobs), 0)
         found, file = {}, None
@@ -74,6 +78,16 @@ class ShadersInBrowserTest(unittest.TestCase):
             if line.startswith("ERROR: "):
                 found.setdefault(f"{jobs[file][1]}, {jobs[file][3]}", line)
         return found
+
+    def test_lines_stay_lines(self):
+        path = PROJECT / "chapters" / CHAPTERS[3] / "path_trace.glsl"
+        text = text_of(path)
+        self.assertIn("for (", text)
+        with tempfile.TemporaryDirectory() as folder:
+            files = [Path(folder) / name for name in ("as_it_is", "split")]
+            self.translate({file: (3, "", {path_of(path): changed}, "lamps") for file, changed in zip(files, (text, text.replace("for (", "for\n(")))})
+            counts = [len(file.read_text(encoding="utf-8").splitlines()) for file in files]
+        self.assertEqual(counts[1] - counts[0], text.count("for ("))
 
     def test_every_chapter_compiles(self):
         self.assertEqual(self.errors((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), {})

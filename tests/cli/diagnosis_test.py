@@ -248,7 +248,7 @@ class SimilarNamesTest(unittest.TestCase):
 
     def test_what_is_no_light_has_no_percentage(self):
         found = {"facts": [], "right": [], "next": None, "mistakes": [], "fits": False}
-        for value, words in ((-0.2, "(by up to -20 %)"), (-9e36, "has values that no light has"), (float("nan"), "has values that no light has")):
+        for value, words in ((-0.2, "(by up to -20 %)"), (-3.0, "has negative light"), (-9e36, "has values that no light has"), (float("nan"), "has values that no light has")):
             scene = {"scene": "room", "verdict": "biased", "image": [{"value": value, "is_biased": True}], "tiles": []}
             self.assertIn(words, headline({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found, "scenes": [scene]})[1])
 

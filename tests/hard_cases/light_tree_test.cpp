@@ -136,9 +136,7 @@ void expect_right_tree(const Scene& scene, const LightTable& table, const LightT
             child = node.child[next], power = node.power[next];
         }
         ASSERT_EQ(child, IS_LIGHT_LEAF + i);
-        const auto corner = [&](int k) {
-            return glm::dmat4x3(scene.instances[light.instance].object_to_world) * glm::dvec4(scene.corner(light.triangle, k), 1);
-        };
+        const auto corner = [&](int k) { return world_corner(scene, light.instance, light.triangle, k); };
         const double area = 0.5 * glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
         ASSERT_NEAR(leaf.area, area, 1e-6 * area);
         const double expected = area * get_luminance(scene.material_of(light.triangle).emission);

@@ -9,6 +9,7 @@
 #include "bvh_triangles.h"
 #include "files/file.h"
 #include "image/image.h"
+#include "parallel.h"
 #include "platform.h"
 #include "scene/scene.h"
 #include "test_files.h"
@@ -73,6 +74,15 @@ TEST(WriteFile, FollowsLinksAndKeepsTheMode) {
     for (const char* name : {"pipe", "pipe.png"}) EXPECT_USER_ERROR(write_file(folder / name, "contents"), "not a regular file");
     EXPECT_EQ(folder.file_count(), 7u) << "a temporary file was left behind";
     EXPECT_EQ(elsewhere.file_count(), 1u) << "a temporary file was left behind";
+}
+
+// As a render does whose outputs are one file by two names.
+TEST(WriteFile, ThreadsMayWriteTheSameFile) {
+    const TestFolder folder;
+    const std::string bytes(10'000, 'x');
+    EXPECT_NO_THROW(in_parallel(200, 1, [&](size_t, size_t) { write_file(folder / "a.exr", bytes); }));
+    EXPECT_EQ(file_bytes(folder / "a.exr"), bytes);
+    EXPECT_EQ(folder.file_count(), 1u);
 }
 
 TEST(CheckWritable, RefusesAFolderOfTheSystem) { EXPECT_USER_ERROR(check_writable("/proc/a.png"), "cannot be written"); }

@@ -58,8 +58,10 @@ def worst_scene(result):
         return "the pictures are right, but not what the experiments show"
     if result["verdict"] == "biased":
         worst = max((test["value"] for test in [*scene["image"], *(tile for tile in scene["tiles"] if tile["is_biased"])]), key=abs)
-        if not -1 <= worst <= 1e4:  # also if it is no number
+        if not abs(worst) < 1e6:  # also if it is no number
             return f"{scene['scene']} has values that no light has: is a variable used before it is set?"
+        if worst < -1:
+            return f"{scene['scene']} has negative light: is a cosine below 0?"
         return f"{scene['scene']} is too {'bright' if worst > 0 else 'dark'} (by up to {percent(worst)})"
     if result["verdict"] == "noisy":
         return f"{scene['scene']} has {scene['noise'][0]:.2f} times the noise of the chapter's own shader"

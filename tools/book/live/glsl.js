@@ -193,10 +193,10 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
             const [first, condition, last, ...more] = match[1] === "while" ? ["", inside, ""] : inside.split(";");
             if (last === undefined || more.length || /^\s*(const\s+)?\w+\s+\w+\s*=[^=]/.test(condition)) continue;  // not what it seems, or it declares a variable
             const goesOn = `!is_loop_stuck(${place}u)` + (condition.trim() ? ` && (${condition})` : ""), brace = /^\s*\{/.exec(text.slice(end));
-            if (brace) result += text.slice(done, match.index) + `for (${first};;${last})${brace[0]} if (!(${goesOn})) break;`;
+            if (brace) result += text.slice(done, match.index) + `${match[0].replace(/^\w+/, "for")}${first};;${last})${brace[0]} if (!(${goesOn})) break;`;
             else result += text.slice(done, start) + (match[1] === "while" ? goesOn : `${first}; ${goesOn};${last}`) + ")";
             done = end + (brace?.[0].length ?? 0);
-            loop.lastIndex = Math.max(start, done);
+            loop.lastIndex = done;
         }
         return result + text.slice(done);
     }

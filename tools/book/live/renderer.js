@@ -250,9 +250,9 @@ void main() {
                     while (!this.isStopped && isPaused()) await pause(10);
                     if (this.isStopped || gl.isContextLost()) return false;
                     const started = performance.now();
-                    for (let target = this.hasSampleLoop ? next : this.samples + 1; ; ++target) {
-                        this.draw(row, Math.min(rows, size[1] - row), target, isPreview);
-                        if (target === next) break;
+                    for (let end = this.hasSampleLoop ? next : this.samples + 1; ; ++end) {
+                        this.draw(row, Math.min(rows, size[1] - row), end, isPreview);
+                        if (end >= next) break;
                         this.films.reverse();  // one draw has rendered all rows
                     }
                     await this.finished();
@@ -262,7 +262,7 @@ void main() {
                     if (!isPreview) this.busy += time;  // which may include a driver's compiler
                     if (time < SHORT && rows < size[1]) rows *= 2;
                     else if (time < SHORT && row >= size[1]) step *= 2;
-                    else if (time > LONG && step > 1) step = Math.ceil(step / 2);
+                    else if (time > LONG && step > 1 && rows >= size[1]) step = Math.ceil(step / 2);
                     else if (time > LONG) rows = Math.max(1, Math.floor(rows / 2));
                     Object.assign(pace, { rows, step });
                     if (this.isFirstPass) shown();
@@ -290,7 +290,7 @@ void main() {
             this.renderer.bind(linked, "web_words", 4, this.words);
             this.renderer.bind(linked, "light_probe", 5, this.probe ?? null);
             gl.uniform1ui(place("target_samples"), target);
-            gl.uniform1ui(place("samples_per_pixel"), target - samples);
+            gl.uniform1ui(place("samples_per_pixel"), this.hasSampleLoop ? target - samples : 1);
             gl.uniform1i(place("is_preview"), isPreview ? 1 : 0);
             gl.bindFramebuffer(gl.FRAMEBUFFER, films[1].frame);
             gl.viewport(0, 0, ...size);
