@@ -145,8 +145,10 @@ class Checkpoints(RenderTest):
         outputs = [argument for file in files[:-1] for argument in ("--output", file)]
         command = self.command("--samples=4000000000", "--save-every=0.2", *outputs, "--report", files[-1])
         with self.start(*command) as process:
-            self.wait_for(files[-1], process)
+            for file in files:
+                self.wait_for(file, process)
             resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (100, 100))
+            time.sleep(0.5)  # what had begun to be written may still end
             before = [file.read_bytes() for file in files]
             time.sleep(1)  # the render continues: the disk may have room again when it ends
             self.assertIsNone(process.poll())

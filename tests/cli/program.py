@@ -59,6 +59,15 @@ def open_terminal():
         raise unittest.SkipTest(f"no pseudo-terminals here: {error}") from error
 
 
+class Program(subprocess.Popen):
+    """A running program. A test that fails does not wait for its end."""
+
+    def __exit__(self, kind, *others):
+        if kind:
+            self.kill()
+        super().__exit__(kind, *others)
+
+
 class ProgramTest(unittest.TestCase):
     """Each test has an empty working directory that contains the scene quad.json."""
 
@@ -87,7 +96,7 @@ class ProgramTest(unittest.TestCase):
         """Starts a program; environment variables that are None are removed."""
         variables = {**os.environ, **(environment or {})}
         variables = {name: value for name, value in variables.items() if value is not None}
-        return subprocess.Popen([program, *map(str, arguments)], cwd=self.folder, env=variables, stdin=subprocess.DEVNULL,
+        return Program([program, *map(str, arguments)], cwd=self.folder, env=variables, stdin=subprocess.DEVNULL,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, text=True)
 
     def run_program(self, *arguments, timeout=TIMEOUT_SECONDS, **options):
