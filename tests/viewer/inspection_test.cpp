@@ -14,6 +14,14 @@ class InspectionTest : public ViewerTest {
     void wait_for_verdict() {
         wait_until("a verdict", [&] { return session().latest_verdict() != nullptr; });
     }
+    // Pixels of the last screenshot for whose red, green and blue, each up to 255, is_counted() is true.
+    template <typename IsCounted>
+    size_t count_pixels(const IsCounted& is_counted) {
+        const std::vector<uint8_t>& pixels = viewer_->screen().captured().pixels;
+        size_t count = 0;
+        for (size_t i = 0; i < pixels.size(); i += 4) count += is_counted(pixels[i], pixels[i + 1], pixels[i + 2]);
+        return count;
+    }
 };
 
 TEST_F(InspectionTest, TheVerdictFollowsTheShader) {
@@ -157,10 +165,7 @@ TEST_F(InspectionTest, CollisionsInFogAreGreen) {
         const auto& vertices = inspection().path()->vertices;
         EXPECT_NE(vertices.front().is_collision, inspection().has_hemisphere());
         take_screenshot("viewer_fog");
-        const Texture& shown = viewer_->screen().captured();
-        size_t green = 0;
-        for (size_t i = 0; i < shown.pixels.size(); i += 4)
-            green += shown.pixels[i] == 120 && shown.pixels[i + 1] == 255 && shown.pixels[i + 2] == 120;
+        const size_t green = count_pixels([](int r, int g, int b) { return r == 120 && g == 255 && b == 120; });
         paths_with_green += green > 20;
         if (std::ranges::none_of(vertices, &PathVertex::is_collision)) {
             EXPECT_EQ(green, 0u);
@@ -178,11 +183,7 @@ TEST_F(InspectionTest, TheBranchOfALightSampleIsShown) {
     const auto green_pixels = [&](const char* screenshot) {
         wait_until("a path", [&] { return inspection().path().has_value() && !inspection().path()->vertices.empty(); });
         take_screenshot(screenshot);
-        const Texture& shown = viewer_->screen().captured();
-        size_t count = 0;
-        for (size_t i = 0; i < shown.pixels.size(); i += 4)
-            count += shown.pixels[i + 1] > shown.pixels[i] + 60 && shown.pixels[i + 1] > shown.pixels[i + 2] + 60;
-        return count;
+        return count_pixels([](int r, int g, int b) { return g > r + 60 && g > b + 60; });
     };
     open(options);
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
