@@ -220,9 +220,7 @@ struct ExpandedShader {
 
 constexpr auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
 
-// Sets up glslang for the shader and hands it to `use`.
-template <typename Use>
-void with_glslang(const ShaderSource& source, const ExpandedShader& expanded, const Use& use) {
+std::vector<uint32_t> compile(const ShaderSource& source, const ExpandedShader& expanded, bool has_lines) {
     static const bool initialised = glslang::InitializeProcess();
     if (!initialised) throw UserError("glslang could not be initialised");
     const EShLanguage stage = stage_of(source.file);
@@ -236,20 +234,16 @@ void with_glslang(const ShaderSource& source, const ExpandedShader& expanded, co
     shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 120);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
-    if (!use(shader)) throw UserError(readable_errors(shader.getInfoLog(), expanded.text));
-}
-
-std::vector<uint32_t> compile(const ShaderSource& source, const ExpandedShader& expanded) {
+    if (!shader.parse(GetDefaultResources(), 460, false, messages))
+        throw UserError(readable_errors(shader.getInfoLog(), expanded.text));
+    glslang::TProgram program;
+    program.addShader(&shader);
+    if (!program.link(messages))
+        throw UserError(source.file.generic_string() + ": " + readable_errors(program.getInfoLog(), expanded.text));
     std::vector<uint32_t> words;
-    with_glslang(source, expanded, [&](glslang::TShader& shader) {
-        if (!shader.parse(GetDefaultResources(), 460, false, messages)) return false;
-        glslang::TProgram program;
-        program.addShader(&shader);
-        if (!program.link(messages))
-            throw UserError(source.file.generic_string() + ": " + readable_errors(program.getInfoLog(), expanded.text));
-        glslang::GlslangToSpv(*program.getIntermediate(shader.getStage()), words);
-        return true;
-    });
+    glslang::SpvOptions options;
+    options.generateDebugInfo = has_lines;
+    glslang::GlslangToSpv(*program.getIntermediate(stage), words, &options);
     return words;
 }
 
@@ -261,10 +255,10 @@ std::map<fs::path, fs::path> shader_files(const ShaderSource& source) {
     return includer.read();
 }
 
-std::vector<uint32_t> compile_shader(const ShaderSource& source) {
+std::vector<uint32_t> compile_shader(const ShaderSource& source, bool has_lines) {
     const ExpandedShader expanded(source);
     const auto version = glslang::GetVersion();
-    const std::string key = expanded.preamble + expanded.text + source.file.extension().string() + "/" +
+    const std::string key = expanded.preamble + expanded.text + source.file.extension().string() + (has_lines ? " with lines" : "") + "/" +
                             std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
                             std::to_string(version.patch);
     const std::string name = cache_name("shader", key);
@@ -275,25 +269,16 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source) {
         return words;
     }
     try {
-        words = compile(source, expanded);
+        words = compile(source, expanded, has_lines);
     } catch (const UserError&) {
         if (!source.edit) throw;
         ShaderSource as_written = source;
         as_written.edit = {};
-        compile_shader(as_written);  // describes mistakes in the words of the file
+        compile_shader(as_written, has_lines);  // describes mistakes in the words of the file
         throw;
     }
     write_cache(name, {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)});
     return words;
-}
-
-std::string preprocess_shader(const ShaderSource& source) {
-    std::string text;
-    with_glslang(source, ExpandedShader(source), [&](glslang::TShader& shader) {
-        glslang::TShader::ForbidIncluder none;
-        return shader.preprocess(GetDefaultResources(), 460, ENoProfile, false, false, messages, &text, none);
-    });
-    return text;
 }
 
 }  // namespace lab

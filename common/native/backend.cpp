@@ -23,7 +23,7 @@ void bind_host(native::Bindings& bound, std::span<const Binding> bindings) {
 // Compiles a shader. Reports errors in it as the other backends do: they compile `checked`.
 native::Code load_shader(const ShaderSource& checked, const ShaderSource& source) {
     compile_shader(checked);
-    return native::load(preprocess_shader(source));
+    return native::load(compile_shader(source, true));
 }
 
 // What get_surface_point() knows of each triangle, see shaders/engine/trace_ray/world_triangles.comp.

@@ -43,12 +43,13 @@ struct Array {
     constexpr T& operator[](Index i) { return elements[i.in(size)]; }
     constexpr const T& operator[](Index i) const { return elements[i.in(size)]; }
     static constexpr int length() { return static_cast<int>(size); }
-    bool operator==(const Array&) const = default;
+    template <typename U>
+    requires(std::is_convertible_v<T, U> && !std::is_same_v<T, U>) operator Array<U, size>() const {
+        Array<U, size> converted;
+        for (size_t i = 0; i < size; ++i) converted.elements[i] = elements[i];
+        return converted;
+    }
 };
-template <typename T, typename... Elements>
-constexpr auto make_array(Elements... elements) {
-    return Array<T, sizeof...(Elements)>{{T(elements)...}};
-}
 
 // The array at the end of a buffer.
 template <typename T>
@@ -73,48 +74,6 @@ T& get_constant(const Bindings& bindings, size_t offset) {
     return *reinterpret_cast<T*>(bindings.push_constants + offset);
 }
 
-// Number types: of a scalar itself, of a vector that of its components.
-template <typename T>
-struct ComponentOf {
-    using type = T;
-};
-template <length_t n, typename T, qualifier q>
-struct ComponentOf<vec<n, T, q>> {
-    using type = T;
-};
-template <length_t n, length_t m, typename T, qualifier q>
-struct ComponentOf<mat<n, m, T, q>> {
-    using type = T;
-};
-template <typename T>
-using Component = typename ComponentOf<std::remove_cvref_t<T>>::type;
-template <typename... T>
-using Common = std::common_type_t<Component<T>...>;
-template <typename... T>
-using CommonFloat = std::common_type_t<float, Component<T>...>;
-
-// GLSL's implicit conversions.
-template <typename C, typename T>
-constexpr auto as(const T& x) {
-    if constexpr (std::is_arithmetic_v<T>)
-        return static_cast<C>(x);
-    else
-        return x;
-}
-template <typename C, length_t n, typename T, qualifier q>
-constexpr auto as(const vec<n, T, q>& x) {
-    return vec<n, C, q>(x);
-}
-
-// A scalar made of a scalar or of a vector's first component.
-template <typename S, typename T>
-constexpr S scalar(const T& x) {
-    if constexpr (std::is_arithmetic_v<T>)
-        return static_cast<S>(x);
-    else
-        return static_cast<S>(x[0]);
-}
-
 // Calls `f` for each component of vectors, or for scalars.
 template <typename F, typename T, typename... More>
 constexpr auto each(F f, const T& x, const More&... more) {
@@ -127,132 +86,124 @@ constexpr auto each(F f, const T& x, const More&... more) {
     }
 }
 
-// Operators on numbers of different types. A shift keeps the type of what is shifted.
-template <typename A, typename B>
-concept Mixed = !std::is_same_v<Component<A>, Component<B>> &&
-                (!std::is_arithmetic_v<A> || !std::is_arithmetic_v<B>)&&std::is_arithmetic_v<Component<A>> &&
-                std::is_arithmetic_v<Component<B>>;
-#define LAB_OPERATOR(op, ...)         \
-    template <typename A, typename B> \
-    requires Mixed<A, B>              \
-    constexpr auto operator op(const A& a, const B& b) { return as<__VA_ARGS__>(a) op as<__VA_ARGS__>(b); }
-LAB_OPERATOR(+, Common<A, B>)
-LAB_OPERATOR(-, Common<A, B>)
-LAB_OPERATOR(*, Common<A, B>)
-LAB_OPERATOR(/, Common<A, B>)
-LAB_OPERATOR(%, Common<A, B>)
-LAB_OPERATOR(&, Common<A, B>)
-LAB_OPERATOR(|, Common<A, B>)
-LAB_OPERATOR(^, Common<A, B>)
-LAB_OPERATOR(<<, Component<A>)
-LAB_OPERATOR(>>, Component<A>)
-#undef LAB_OPERATOR
-
-template <int... i, typename V>
-constexpr auto swizzle(const V& v) {
-    if constexpr (std::is_arithmetic_v<V>)
-        return vec<sizeof...(i), V>((i, v)...);
-    else
-        return vec<sizeof...(i), Component<V>>(v[i]...);
+// Vectors and matrices of what is in parentheses, which the shader has brought to their number type.
+template <typename T, typename... Parts>
+constexpr T make(const Parts&... parts) {
+    return T(parts...);
 }
-// A swizzle that is assigned to.
-template <typename V, int... i>
-struct Swizzled {
-    using Value = vec<sizeof...(i), Component<V>>;
-    V& target;
-    operator Value() const { return Value(target[i]...); }
-    Component<V>& operator[](length_t component) const {
-        constexpr length_t indices[]{i...};
-        return target[indices[component]];
-    }
-    Value operator=(Value value) {  // not by reference: it may be the target itself
-        length_t next = 0;
-        ((target[i] = value[next++]), ...);
-        return value;
-    }
-#define LAB_ASSIGNMENT(op)                       \
-    template <typename T>                        \
-    Value operator op##=(const T& x) {           \
-        return *this = Value(Value(*this) op x); \
-    }
-    LAB_ASSIGNMENT(+)
-    LAB_ASSIGNMENT(-)
-    LAB_ASSIGNMENT(*)
-    LAB_ASSIGNMENT(/)
-    LAB_ASSIGNMENT(%)
-    LAB_ASSIGNMENT(&)
-    LAB_ASSIGNMENT(|)
-    LAB_ASSIGNMENT(^)
-    LAB_ASSIGNMENT(<<)
-    LAB_ASSIGNMENT(>>)
-#undef LAB_ASSIGNMENT
-    Value operator++() { return *this += Component<V>(1); }
-    Value operator--() { return *this -= Component<V>(1); }
-};
-template <int... i, typename V>
-Swizzled<V, i...> swizzled(V& v) {
-    return {v};
+template <typename T, typename U>
+constexpr T convert(const U& x) {
+    return T(x);
+}
+// The same words as numbers of another type.
+template <typename T, typename U>
+constexpr T bits(const U& x) {
+    return std::bit_cast<T>(x);
+}
+// Components of two vectors in a row.
+template <int... i, typename A, typename B>
+constexpr auto shuffle(const A& a, const B& b) {
+    return vec<sizeof...(i), typename A::value_type>((i < A::length() ? a[i] : b[i - A::length()])...);
+}
+template <typename T, typename F>
+T changed(T x, const F& change) {
+    change(x);
+    return x;
 }
 
-// An argument of an `out` or `inout` parameter that is copied in and out, since another name may lead to the same variable.
-template <typename Target, typename Value>
-struct Copied {
-    Target target;
-    Value value;
-    operator Value&() { return value; }
-    ~Copied() { target = value; }
-};
-template <typename T>
-Copied<T&, T> copied(T& target) {
-    return {target, target};
+// Whole numbers may be divided by 0 where shaders are not checked: GLSL leaves the result open.
+inline void check_divisor([[maybe_unused]] bool is_zero, [[maybe_unused]] const std::source_location& place) {
+#ifdef LAB_CHECKED
+    if (!is_zero) return;
+    Failed failed;
+    std::snprintf(failed.text, sizeof failed.text, "%s:%u: a division by 0", place.file_name(), static_cast<unsigned>(place.line()));
+    throw failed;
+#endif
 }
-template <typename V, int... i>
-auto copied(Swizzled<V, i...> target) {
-    return Copied<Swizzled<V, i...>, typename Swizzled<V, i...>::Value>{target, target};
-}
+
+constexpr int64_t wide(int x) { return x; }
+constexpr uint64_t wide(uint x) { return x; }
 
 struct Builtins {
-#define LAB_FLOATS(name)                               \
-    template <typename... T>                           \
-    static constexpr auto name(const T&... x) {        \
-        return glm::name(as<CommonFloat<T...>>(x)...); \
-    }
-#define LAB_NUMBERS(name)                         \
-    template <typename... T>                      \
-    static constexpr auto name(const T&... x) {   \
-        return glm::name(as<Common<T...>>(x)...); \
-    }
 #define LAB_SAME(name)                          \
     template <typename... T>                    \
     static constexpr auto name(const T&... x) { \
         return glm::name(x...);                 \
     }
     // clang-format off
-    LAB_FLOATS(radians) LAB_FLOATS(degrees) LAB_FLOATS(sin) LAB_FLOATS(cos) LAB_FLOATS(tan) LAB_FLOATS(asin) LAB_FLOATS(acos)
-    LAB_FLOATS(atan) LAB_FLOATS(sinh) LAB_FLOATS(cosh) LAB_FLOATS(tanh) LAB_FLOATS(asinh) LAB_FLOATS(acosh) LAB_FLOATS(atanh)
-    LAB_FLOATS(pow) LAB_FLOATS(exp) LAB_FLOATS(log) LAB_FLOATS(exp2) LAB_FLOATS(log2) LAB_FLOATS(sqrt) LAB_FLOATS(inversesqrt)
-    LAB_FLOATS(floor) LAB_FLOATS(trunc) LAB_FLOATS(round) LAB_FLOATS(roundEven) LAB_FLOATS(ceil) LAB_FLOATS(fract) LAB_FLOATS(mod)
-    LAB_FLOATS(step) LAB_FLOATS(smoothstep) LAB_FLOATS(isnan) LAB_FLOATS(isinf) LAB_FLOATS(length) LAB_FLOATS(distance)
-    LAB_FLOATS(dot) LAB_FLOATS(cross) LAB_FLOATS(normalize) LAB_FLOATS(faceforward) LAB_FLOATS(reflect) LAB_FLOATS(refract)
-    LAB_SAME(matrixCompMult) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse)
-    LAB_NUMBERS(sign) LAB_NUMBERS(min) LAB_NUMBERS(max) LAB_NUMBERS(clamp) LAB_NUMBERS(lessThan) LAB_NUMBERS(lessThanEqual)
-    LAB_NUMBERS(greaterThan) LAB_NUMBERS(greaterThanEqual) LAB_NUMBERS(equal) LAB_NUMBERS(notEqual) LAB_SAME(any) LAB_SAME(all)
-    LAB_SAME(not_) LAB_SAME(bitCount) LAB_SAME(findLSB) LAB_SAME(bitfieldInsert)
-    LAB_SAME(packHalf2x16) LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
-    LAB_SAME(packUnorm2x16) LAB_SAME(unpackUnorm2x16) LAB_SAME(packSnorm4x8) LAB_SAME(unpackSnorm4x8) LAB_SAME(ldexp)
-#undef LAB_FLOATS
-#undef LAB_NUMBERS
+    LAB_SAME(radians) LAB_SAME(degrees) LAB_SAME(sin) LAB_SAME(cos) LAB_SAME(tan) LAB_SAME(asin) LAB_SAME(acos) LAB_SAME(atan)
+    LAB_SAME(sinh) LAB_SAME(cosh) LAB_SAME(tanh) LAB_SAME(asinh) LAB_SAME(acosh) LAB_SAME(atanh) LAB_SAME(pow) LAB_SAME(exp)
+    LAB_SAME(log) LAB_SAME(exp2) LAB_SAME(log2) LAB_SAME(sqrt) LAB_SAME(inversesqrt) LAB_SAME(floor) LAB_SAME(trunc)
+    LAB_SAME(round) LAB_SAME(roundEven) LAB_SAME(ceil) LAB_SAME(fract) LAB_SAME(mod) LAB_SAME(step) LAB_SAME(smoothstep)
+    LAB_SAME(isnan) LAB_SAME(isinf) LAB_SAME(length) LAB_SAME(distance) LAB_SAME(dot) LAB_SAME(cross) LAB_SAME(faceforward)
+    LAB_SAME(reflect) LAB_SAME(refract) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse)
+    LAB_SAME(sign) LAB_SAME(min) LAB_SAME(max) LAB_SAME(clamp) LAB_SAME(mix) LAB_SAME(any) LAB_SAME(all) LAB_SAME(bitCount)
+    LAB_SAME(findLSB) LAB_SAME(packHalf2x16) LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
+    LAB_SAME(packUnorm2x16) LAB_SAME(unpackUnorm2x16) LAB_SAME(packSnorm4x8) LAB_SAME(unpackSnorm4x8) LAB_SAME(packSnorm2x16)
+    LAB_SAME(unpackSnorm2x16) LAB_SAME(ldexp)
 #undef LAB_SAME
 
-    static float normalize(std::convertible_to<float> auto x) { return float(x) / glm::abs(float(x)); }  // GLM's takes no number
-    template <typename A, typename B, typename Weight>
-    static constexpr auto mix(const A& a, const B& b, const Weight& weight) {
-        if constexpr (std::is_same_v<Component<Weight>, bool>)
-            return glm::mix(as<Common<A, B>>(a), as<Common<A, B>>(b), weight);
-        else
-            return glm::mix(as<CommonFloat<A, B>>(a), as<CommonFloat<A, B>>(b), as<CommonFloat<A, B>>(weight));
+#define LAB_OPERATOR(name, op)                               \
+    template <typename T>                                    \
+    static constexpr auto name(const T& a, const T& b) {     \
+        return each([](auto x, auto y) { return x op y; }, a, b); \
     }
+    LAB_OPERATOR(lessThan, <) LAB_OPERATOR(lessThanEqual, <=) LAB_OPERATOR(greaterThan, >) LAB_OPERATOR(greaterThanEqual, >=)
+    LAB_OPERATOR(equal, ==) LAB_OPERATOR(notEqual, !=)
+#undef LAB_OPERATOR
     // clang-format on
+    static constexpr bool both(bool a, bool b) { return a && b; }
+    static constexpr bool either(bool a, bool b) { return a || b; }
+    template <typename T>
+    static constexpr auto not_(const T& x) {
+        return each([](bool y) { return !y; }, x);
+    }
+    template <typename T>
+    static constexpr T negate(const T& x) {
+        return -x;
+    }
+    template <typename T>
+    static constexpr T flip(const T& x) {
+        return ~x;
+    }
+    template <typename A, typename B>
+    static constexpr auto multiply(const A& a, const B& b) {
+        return a * b;
+    }
+    template <typename C, typename T>
+    static constexpr T select(const C& condition, const T& a, const T& b) {
+        if constexpr (std::is_same_v<C, bool>)
+            return condition ? a : b;
+        else
+            return each([](bool c, auto x, auto y) { return c ? x : y; }, condition, a, b);
+    }
+    template <typename T>
+    static constexpr T quotient(const T& a, const T& b, const std::source_location& place = std::source_location::current()) {
+        return each(
+            [&](auto x, auto y) {
+                check_divisor(y == 0, place);
+                return static_cast<decltype(x)>(y == 0 ? 0 : int64_t{x} / int64_t{y});
+            },
+            a, b);
+    }
+    // Its sign is the divisor's, as SPIR-V says; GLSL leaves it open.
+    template <typename T>
+    static constexpr T remainder(const T& a, const T& b, const std::source_location& place = std::source_location::current()) {
+        return each(
+            [&](auto x, auto y) {
+                check_divisor(y == 0, place);
+                const int64_t rest = y == 0 ? 0 : int64_t{x} % int64_t{y};
+                return static_cast<decltype(x)>(rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest);
+            },
+            a, b);
+    }
+    template <typename T>
+    static T normalize(const T& x) {
+        if constexpr (std::is_arithmetic_v<T>)  // GLM's takes no number
+            return x / glm::abs(x);
+        else
+            return glm::normalize(x);
+    }
     // GLM's know no negative numbers: of those GLSL finds the highest 0, and extends the sign.
     template <typename T>
     static auto findMSB(const T& x) {
@@ -262,9 +213,14 @@ struct Builtins {
     static auto bitfieldReverse(const T& x) {
         return each([](auto bits) { return decltype(bits)(glm::bitfieldReverse(uint(bits))); }, x);
     }
-    template <typename T>
-    static auto bitfieldExtract(const T& x, int offset, int count) {
-        return each([&](auto bits) { return count == 0 ? decltype(bits){} : bits << (32 - offset - count) >> (32 - count); }, x);
+    template <typename T, typename Offset, typename Count>
+    static auto bitfieldInsert(const T& x, const T& y, const Offset& offset, const Count& count) {
+        return glm::bitfieldInsert(x, y, int(offset), int(count));
+    }
+    template <typename T, typename Offset, typename Count>
+    static auto bitfieldExtract(const T& x, const Offset& offset, const Count& count) {
+        const auto first = static_cast<int>(offset), size = static_cast<int>(count);
+        return each([&](auto bits) { return size == 0 ? decltype(bits){} : bits << (32 - first - size) >> (32 - size); }, x);
     }
     template <typename T>
     static auto abs(const T& x) {  // GLM's asks for the sign
@@ -274,48 +230,29 @@ struct Builtins {
     static auto fma(const A& a, const B& b, const C& c) {  // GLM's rounds twice
         return each([](auto x, auto y, auto z) { return std::fma(x, y, z); }, a, b, c);
     }
-#define LAB_BITS(name, From, To)                                        \
-    template <typename T>                                               \
-    static constexpr auto name(const T& bits) {                         \
-        return each([](From x) { return std::bit_cast<To>(x); }, bits); \
-    }
-    LAB_BITS(floatBitsToInt, float, int)
-    LAB_BITS(floatBitsToUint, float, uint)
-    LAB_BITS(intBitsToFloat, int, float)
-    LAB_BITS(uintBitsToFloat, uint, float)
-#undef LAB_BITS
 
-    // Of the types of results, so that `out` arguments may be Copied.
-    template <typename T>
-    using Out = std::type_identity_t<T>&;
-    template <typename T>
-    static T modf(const T& x, Out<T> whole) {
-        whole = glm::trunc(x);
-        return x - whole;
+    // Functions with two results, which the type S holds.
+    template <typename S, typename T>
+    static S modf(const T& x) {
+        return {x - glm::trunc(x), glm::trunc(x)};
     }
-    template <typename T>
-    static T frexp(const T& x, Out<decltype(each([](float) { return 0; }, T()))> exponent) {
-        return glm::frexp(x, exponent);
+    template <typename S, typename T>
+    static S frexp(const T& x) {
+        decltype(S::m1) exponent;
+        const T fraction = glm::frexp(x, exponent);
+        return {fraction, exponent};
     }
-    template <typename A, typename T = decltype(each([](uint) { return 0u; }, A()))>
-    static void umulExtended(const A& a, const std::type_identity_t<T>& b, Out<T> high, Out<T> low) {
-        high = each([](uint x, uint y) { return static_cast<uint>(uint64_t{x} * y >> 32); }, as<uint>(a), b);
-        low = as<uint>(a) * b;
+    template <typename S, typename T>
+    static S multiply_extended(const T& a, const T& b) {
+        return {a * b, each([](auto x, auto y) { return static_cast<decltype(x)>(wide(x) * wide(y) >> 32); }, a, b)};
     }
-    template <typename T>
-    static void imulExtended(const T& a, const T& b, Out<T> high, Out<T> low) {
-        high = each([](int x, int y) { return static_cast<int>(int64_t{x} * y >> 32); }, a, b);
-        low = each([](int x, int y) { return static_cast<int>(static_cast<uint>(x) * static_cast<uint>(y)); }, a, b);
+    template <typename S, typename T>
+    static S add_carry(const T& a, const T& b) {
+        return {a + b, each([](uint x, uint y) { return x + y < x ? 1u : 0u; }, a, b)};
     }
-    template <typename T>
-    static T uaddCarry(const T& a, const std::type_identity_t<T>& b, Out<T> carry) {
-        carry = each([](uint x, uint y) { return x + y < x ? 1u : 0u; }, a, b);
-        return a + b;
-    }
-    template <typename T>
-    static T usubBorrow(const T& a, const std::type_identity_t<T>& b, Out<T> borrow) {
-        borrow = each([](uint x, uint y) { return x < y ? 1u : 0u; }, a, b);
-        return a - b;
+    template <typename S, typename T>
+    static S subtract_borrow(const T& a, const T& b) {
+        return {a - b, each([](uint x, uint y) { return x < y ? 1u : 0u; }, a, b)};
     }
 
 #define LAB_ATOMIC(name, change)                                                                                \
@@ -336,12 +273,8 @@ struct Builtins {
     LAB_ATOMIC(atomicExchange, operand)
 #undef LAB_ATOMIC
 
-    template <typename T>
-    static constexpr T nonuniformEXT(T index) {
-        return index;
-    }
-    static ivec2 textureSize(const Texture& texture, int) { return {texture.width, texture.height}; }
-    static vec4 texelFetch(const Texture& texture, ivec2 position, int) {
+    static ivec2 textureSize(const Texture& texture) { return {texture.width, texture.height}; }
+    static vec4 texelFetch(const Texture& texture, ivec2 position) {
         const Index index(position.x < 0 || position.x >= texture.width ? -1 : position.y * int64_t{texture.width} + position.x);
         const size_t i = 4 * index.in(static_cast<size_t>(texture.width) * texture.height);
         if (texture.is_float) {
@@ -390,9 +323,9 @@ Outcome run_group(char* error, size_t error_size, const Run& run) try {
 template <typename Shader>
 Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) {
     return run_group(error, error_size, [&] {
-        for (uint i = 0; i < Shader::local_size; ++i) {
-            Shader shader{{{}, bindings, uvec3(group, 0, 0), uvec3(i, 0, 0), uvec3(group * Shader::local_size + i, 0, 0), i}};
-            shader.main_();
+        for (uint i = 0; i < Shader::local_size__; ++i) {
+            Shader shader{{{}, bindings, uvec3(group, 0, 0), uvec3(i, 0, 0), uvec3(group * Shader::local_size__ + i, 0, 0), i}};
+            shader.main__();
         }
     });
 }

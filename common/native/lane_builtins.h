@@ -12,88 +12,119 @@ extern "C" Floats _ZGVdN8v_expf(Floats);
 extern "C" Floats _ZGVdN8v_logf(Floats);
 extern "C" Floats _ZGVdN8vv_powf(Floats, Floats);
 
-// Of what is not below, only calls with uniform arguments are known.
+// What a function gives that is called for each lane by itself.
+template <typename T>
+LAB_INLINE auto lane_of(const T& x, int lane) {
+    if constexpr (requires { x.column; }) {
+        mat<T::length(), T::Column::length(), float> result;
+        for (int i = 0; i < T::length(); ++i) result[i] = lane_of(x[i], lane);
+        return result;
+    } else if constexpr (is_lanes<T> && size_of<T> == 1) {
+        return x[lane];
+    } else if constexpr (is_lanes<T>) {
+        vec<size_of<T>, typename ElementOf<std::remove_cvref_t<decltype(x[0])>>::type> result;
+        for (int i = 0; i < size_of<T>; ++i) result[i] = x[i][lane];
+        return result;
+    } else {
+        return x;
+    }
+}
+template <typename T, typename U>
+LAB_INLINE void set_lane(T& target, int lane, const U& value) {
+    if constexpr (std::is_arithmetic_v<U>)
+        target.set(lane, value);
+    else
+        for (int i = 0; i < U::length(); ++i) set_lane(target[i], lane, value[i]);
+}
+template <typename F, typename... T>
+LAB_INLINE auto by_lane(const F& f, const T&... x) {
+    V<decltype(f(lane_of(x, 0)...))> result;
+    for (int lane = 0; lane < lane_count; ++lane) set_lane(result, lane, f(lane_of(x, lane)...));
+    return result;
+}
+// The upper half of a product.
+template <typename T>
+LAB_INLINE Lanes<T> product_above(const Lanes<T>& a, const Lanes<T>& b) {
+    typedef decltype(wide(T())) Wide __attribute__((vector_size(8 * lane_count)));
+    const Wide product = __builtin_convertvector(a.raw, Wide) * __builtin_convertvector(b.raw, Wide);
+    return Lanes<T>::of(__builtin_convertvector(product >> 32, typename Lanes<T>::Raw));
+}
+
 struct Builtins : native::Builtins {
     using Plain = native::Builtins;
     using Float = const Lanes<float>&;
-    template <typename To, typename T>
-    LAB_INLINE static Lanes<To> bits_as(const Lanes<T>& x) {
-        return Lanes<To>::of(reinterpret_cast<typename Lanes<To>::Raw>(x.raw));
-    }
+    using Word = const Lanes<uint>&;
     template <typename F, typename... T>
     LAB_INLINE static Lanes<float> by_vector(const F& f, const T&... x) {
         return Lanes<float>::of(f(Lanes<float>(x).raw...));
     }
 
-    // Functions of each component. What is not below is called for each lane by itself.
-#define LAB_EACH(name, each_of, ...)             \
+    // Functions of each component, of whole vectors, and those that are called for each lane by itself.
+#define LAB_FUNCTION(name, ...)                  \
     template <typename... T>                     \
     LAB_INLINE static auto name(const T&... x) { \
-        if constexpr (Varying<T...>)             \
-            return each_of(__VA_ARGS__, x...);   \
+        if constexpr ((is_varying<T> || ...))    \
+            return __VA_ARGS__;                  \
         else                                     \
             return Plain::name(x...);            \
     }
-#define LAB_ALONE(name) LAB_EACH(name, each_alone, [](auto... y) { return Plain::name(y...); })
+#define LAB_EACH(name, ...) LAB_FUNCTION(name, each(__VA_ARGS__, x...))
+#define LAB_WHOLE(name, ...) LAB_FUNCTION(name, (__VA_ARGS__)(x...))
+#define LAB_ALONE(name) LAB_FUNCTION(name, by_lane([](const auto&... y) { return Plain::name(y...); }, x...))
 #define LAB_VECTOR(name, function) \
-    LAB_EACH(name, each, [](const auto&... y) { return by_vector([](auto... z) { return function; }, y...); })
+    LAB_EACH(name, [](const auto&... y) { return by_vector([](auto... z) { return function; }, y...); })
     // clang-format off
     LAB_ALONE(radians) LAB_ALONE(degrees) LAB_ALONE(tan) LAB_ALONE(asin) LAB_ALONE(acos) LAB_ALONE(atan) LAB_ALONE(sinh)
     LAB_ALONE(cosh) LAB_ALONE(tanh) LAB_ALONE(asinh) LAB_ALONE(acosh) LAB_ALONE(atanh) LAB_ALONE(exp2) LAB_ALONE(log2)
     LAB_ALONE(trunc) LAB_ALONE(round) LAB_ALONE(roundEven) LAB_ALONE(ceil) LAB_ALONE(smoothstep) LAB_ALONE(isnan)
     LAB_ALONE(isinf) LAB_ALONE(sign) LAB_ALONE(bitCount) LAB_ALONE(findLSB) LAB_ALONE(findMSB) LAB_ALONE(bitfieldExtract)
-    LAB_ALONE(bitfieldInsert) LAB_ALONE(ldexp) LAB_ALONE(fma) LAB_ALONE(step) LAB_ALONE(mod)
+    LAB_ALONE(bitfieldInsert) LAB_ALONE(ldexp) LAB_ALONE(fma) LAB_ALONE(step) LAB_ALONE(mod) LAB_ALONE(outerProduct)
+    LAB_ALONE(determinant) LAB_ALONE(inverse) LAB_ALONE(quotient) LAB_ALONE(remainder) LAB_ALONE(packHalf2x16)
+    LAB_ALONE(unpackHalf2x16) LAB_ALONE(packUnorm4x8) LAB_ALONE(unpackUnorm4x8) LAB_ALONE(packUnorm2x16)
+    LAB_ALONE(unpackUnorm2x16) LAB_ALONE(packSnorm4x8) LAB_ALONE(unpackSnorm4x8) LAB_ALONE(packSnorm2x16)
+    LAB_ALONE(unpackSnorm2x16)
     LAB_VECTOR(sin, _ZGVdN8v_sinf(z...)) LAB_VECTOR(cos, _ZGVdN8v_cosf(z...)) LAB_VECTOR(exp, _ZGVdN8v_expf(z...))
     LAB_VECTOR(log, _ZGVdN8v_logf(z...)) LAB_VECTOR(pow, _ZGVdN8vv_powf(z...)) LAB_VECTOR(sqrt, __builtin_ia32_sqrtps256(z...))
-    LAB_EACH(floor, each, [](Float a) { return by_vector([](Floats z) { return __builtin_ia32_roundps256(z, 1); }, a); })
-    LAB_EACH(inversesqrt, each, [](Float a) { return 1.0f / sqrt(a); })
-    LAB_EACH(fract, each, [](Float a) { return a - floor(a); })
-    LAB_EACH(min, each, [](const auto& a, const auto& b) { return select(less(b, a), b, a); })
-    LAB_EACH(max, each, [](const auto& a, const auto& b) { return select(less(a, b), b, a); })
-    LAB_EACH(clamp, each, [](const auto& a, const auto& low, const auto& high) { return min(max(a, low), high); })
-    LAB_EACH(lessThan, each, [](const auto& a, const auto& b) { return less(a, b); })
-    LAB_EACH(lessThanEqual, each, [](const auto& a, const auto& b) { return less_or_equal(a, b); })
-    LAB_EACH(greaterThan, each, [](const auto& a, const auto& b) { return less(b, a); })
-    LAB_EACH(greaterThanEqual, each, [](const auto& a, const auto& b) { return less_or_equal(b, a); })
-    LAB_EACH(equal, each, [](const auto& a, const auto& b) { return lanes::equal(a, b); })
-    LAB_EACH(notEqual, each, [](const auto& a, const auto& b) { return !lanes::equal(a, b); })
-    LAB_EACH(not_, each, [](const Mask& a) { return !a; })
-    LAB_EACH(floatBitsToInt, each, [](Float a) { return bits_as<int>(a); })
-    LAB_EACH(floatBitsToUint, each, [](Float a) { return bits_as<uint>(a); })
-    LAB_EACH(intBitsToFloat, each, [](const auto& a) { return bits_as<float>(a); })
-    LAB_EACH(uintBitsToFloat, each, [](const auto& a) { return bits_as<float>(a); })
-    LAB_EACH(abs, each, []<typename U>(const Lanes<U>& a) {
+    LAB_EACH(floor, [](Float a) { return by_vector([](Floats z) { return __builtin_ia32_roundps256(z, 1); }, a); })
+    LAB_EACH(inversesqrt, [](Float a) { return 1.0f / sqrt(a); })
+    LAB_EACH(fract, [](Float a) { return a - floor(a); })
+    LAB_EACH(min, [](const auto& a, const auto& b) { return lanes::select(less(b, a), b, a); })
+    LAB_EACH(max, [](const auto& a, const auto& b) { return lanes::select(less(a, b), b, a); })
+    LAB_EACH(clamp, [](const auto& a, const auto& low, const auto& high) { return min(max(a, low), high); })
+    LAB_EACH(lessThan, [](const auto& a, const auto& b) { return less(a, b); })
+    LAB_EACH(lessThanEqual, [](const auto& a, const auto& b) { return less_or_equal(a, b); })
+    LAB_EACH(greaterThan, [](const auto& a, const auto& b) { return less(b, a); })
+    LAB_EACH(greaterThanEqual, [](const auto& a, const auto& b) { return less_or_equal(b, a); })
+    LAB_EACH(equal, [](const auto& a, const auto& b) { return lanes::equal(a, b); })
+    LAB_EACH(notEqual, [](const auto& a, const auto& b) { return !lanes::equal(a, b); })
+    LAB_EACH(not_, [](const Mask& a) { return !a; })
+    LAB_EACH(both, [](const Mask& a, const Mask& b) { return a & b; })
+    LAB_EACH(either, [](const Mask& a, const Mask& b) { return a | b; })
+    LAB_EACH(negate, [](const auto& a) { return -a; })
+    LAB_EACH(flip, [](const auto& a) { return ~a; })
+    LAB_EACH(abs, []<typename U>(const Lanes<U>& a) {
         if constexpr (std::is_same_v<U, float>)
-            return bits_as<float>(bits_as<int>(a) & 0x7fffffff);
+            return bits<float>(bits<int>(a) & 0x7fffffff);
         else
-            return select(less(a, 0), -a, a);
+            return lanes::select(less(a, 0), -a, a);
     })
-    LAB_EACH(mix, each, []<typename W>(const auto& a, const auto& b, const W& weight) {
-        if constexpr (std::is_same_v<Element<W>, bool>)
-            return select(weight, b, a);
-        else
-            return a * (1.0f - weight) + b * weight;
-    })
-    LAB_EACH(bitfieldReverse, each, []<typename U>(const Lanes<U>& a) {
+    LAB_EACH(mix, [](const auto& a, const auto& b, const auto& weight) { return a * (1.0f - weight) + b * weight; })
+    LAB_EACH(bitfieldReverse, []<typename U>(const Lanes<U>& a) {
         const auto swap = [](const Lanes<uint>& bits, uint mask, uint shift) {
             return ((bits >> shift) & mask) | ((bits & mask) << shift);
         };
         const Lanes<uint> bits = swap(swap(swap(a, 0x55555555u, 1u), 0x33333333u, 2u), 0x0f0f0f0fu, 4u);
         return Lanes<U>(swap(swap(bits, 0x00ff00ffu, 8u), 0x0000ffffu, 16u));
     })
-#undef LAB_EACH
-#undef LAB_ALONE
-#undef LAB_VECTOR
-
-    // Functions of whole vectors.
-#define LAB_WHOLE(name, ...)                     \
-    template <typename... T>                     \
-    LAB_INLINE static auto name(const T&... x) { \
-        if constexpr (Varying<T...>)             \
-            return (__VA_ARGS__)(x...);          \
-        else                                     \
-            return Plain::name(x...);            \
-    }
+    LAB_WHOLE(select, []<typename C>(const C& condition, const auto& a, const auto& b) {
+        if constexpr (std::is_same_v<C, bool>)
+            return condition ? varying(a) : varying(b);
+        else if constexpr (size_of<C> == 1)
+            return lanes::select(condition, a, b);
+        else
+            return each([](const Mask& c, const auto& y, const auto& z) { return lanes::select(c, y, z); }, condition, a, b);
+    })
+    LAB_WHOLE(multiply, [](const auto& a, const auto& b) { return lanes::multiply(a, b); })
     LAB_WHOLE(all, [](const auto& a) { return lanes::all(a); })
     LAB_WHOLE(any, [](const auto& a) { return !lanes::all(each([](const Mask& b) { return !b; }, a)); })
     LAB_WHOLE(dot, [](const auto& a, const auto& b) {
@@ -112,71 +143,92 @@ struct Builtins : native::Builtins {
     LAB_WHOLE(cross, [](const auto& a, const auto& b) {
         return make<vec3>(a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]);
     })
-    LAB_WHOLE(faceforward, [](const auto& n, const auto& i, const auto& side) { return select(dot(side, i) < 0.0f, n, -n); })
+    LAB_WHOLE(faceforward, [](const auto& n, const auto& i, const auto& side) { return lanes::select(dot(side, i) < 0.0f, n, -n); })
     LAB_WHOLE(refract, [](const auto& i, const auto& n, const auto& eta) {
         const Lanes<float> cosine = dot(n, i), k = 1.0f - eta * eta * (1.0f - cosine * cosine);
-        return select(k < 0.0f, i * 0.0f, i * eta - n * (eta * cosine + sqrt(k)));
-    });
+        return lanes::select(k < 0.0f, i * 0.0f, i * eta - n * (eta * cosine + sqrt(k)));
+    })
+    LAB_WHOLE(transpose, []<typename M>(const M& a) {
+        Mat<M::Column::length(), M::length()> result;
+        for (int i = 0; i < M::length(); ++i)
+            for (int j = 0; j < M::Column::length(); ++j) result[j][i] = a[i][j];
+        return result;
+    })
+#undef LAB_EACH
 #undef LAB_WHOLE
+#undef LAB_ALONE
+#undef LAB_VECTOR
+#undef LAB_FUNCTION
     // clang-format on
 
-    template <typename M>
-    LAB_INLINE static auto transpose(const M& a) {
-        if constexpr (requires { a.column; }) {
-            Mat<M::Column::length(), M::length()> result;
-            for (int i = 0; i < M::length(); ++i)
-                for (int j = 0; j < M::Column::length(); ++j) result[j][i] = a[i][j];
-            return result;
-        } else {
-            return Plain::transpose(a);
-        }
+    // Functions with two results, which the type S holds.
+#define LAB_PAIR(name, ...)                                           \
+    template <typename S, typename... T>                              \
+    LAB_INLINE static S name(const T&... x) {                         \
+        if constexpr ((is_varying<T> || ...))                         \
+            return [](const auto&... y) -> S __VA_ARGS__(x...);       \
+        else                                                          \
+            return Plain::name<S>(x...);                              \
     }
+    LAB_PAIR(modf, { return {(y - trunc(y))..., trunc(y)...}; })
+    LAB_PAIR(add_carry, { return {(y + ...), each([](Word a, Word b) { return Lanes<uint>(less(a + b, a)); }, y...)}; })
+    LAB_PAIR(subtract_borrow, { return {(y - ...), each([](Word a, Word b) { return Lanes<uint>(less(a, b)); }, y...)}; })
+    LAB_PAIR(multiply_extended, {
+        return {(y * ...), each([]<typename A, typename B>(const A& a, const B& b) {
+                    using T0 = Lanes<Element<A, B>>;
+                    return product_above(T0(a), T0(b));
+                }, y...)};
+    })
+    LAB_PAIR(frexp, {
+        const auto part = [](auto number) {
+            return [=](float whole) {
+                int exponent;
+                const float fraction = glm::frexp(whole, exponent);
+                return std::get<decltype(number)>(std::tuple(fraction, exponent));
+            };
+        };
+        return {each([&](const auto& a) { return by_lane(part(0.0f), a); }, y...),
+                each([&](const auto& a) { return by_lane(part(0), a); }, y...)};
+    })
+#undef LAB_PAIR
 
-    template <typename A, typename B, typename High, typename Low>
-    LAB_INLINE static void umulExtended(const A& a, const B& b, High&& high, Low&& low) {
-        typedef uint64_t Wide __attribute__((vector_size(8 * lane_count)));
-        const auto top = each(
-            [](const Lanes<uint>& x, const Lanes<uint>& y) {
-                const Wide product = __builtin_convertvector(x.raw, Wide) * __builtin_convertvector(y.raw, Wide);
-                return Lanes<uint>::of(__builtin_convertvector(product >> 32, Lanes<uint>::Raw));
-            },
-            a, b);
-        low = varying(a) * b;
-        high = top;
-    }
-    template <typename A, typename B, typename Carry>
-    LAB_INLINE static auto uaddCarry(const A& a, const B& b, Carry&& carry) {
-        const auto sum = varying(a) + b;
-        carry = each([](const auto& x, const auto& y) { return Lanes<uint>(less(x, y)); }, sum, varying(a));
-        return sum;
-    }
-
-    template <typename T>
-    LAB_INLINE static T nonuniformEXT(const T& index) {
-        return index;
-    }
-    LAB_INLINE static ivec2 textureSize(const Texture& texture, int level) { return Plain::textureSize(texture, level); }
+    LAB_INLINE static ivec2 textureSize(const Texture& texture) { return Plain::textureSize(texture); }
 
     // These ask which lanes are active.
-    template <typename T>
-    LAB_INLINE static V<T> atomicAdd(const Mask& active, const Ref<T>& target, const V<T>& operand) {
-        V<T> before;
-        for_each_lane(active,
-                      [&](int lane) { before.set(lane, Plain::atomicAdd(target.base[target.word(lane)], operand[lane])); });
-        return before;
+#define LAB_ATOMIC(name)                                                                                             \
+    template <typename T, typename U>                                                                                \
+    LAB_INLINE static V<T> name(const Mask& active, const Ref<T>& target, const U& operand) {                        \
+        const V<T> operands = operand;                                                                               \
+        V<T> before;                                                                                                 \
+        for_each_lane(active, [&](int lane) {                                                                        \
+            before.set(lane, Plain::name(reinterpret_cast<T*>(target.base)[target.word(lane)], operands[lane]));     \
+        });                                                                                                          \
+        return before;                                                                                               \
     }
-    LAB_INLINE static V<vec4> texelFetch(const Mask& active, const Texture& texture, const V<ivec2>& position, int level) {
-        return texelFetch(active, ref_to(texture, 0), position, level);
-    }
-    template <typename T>
-    LAB_INLINE static V<vec4> texelFetch(const Mask& active, const Ref<T>& texture, const V<ivec2>& position, int level) {
-        V<vec4> result;
-        for_each_lane(active, [&](int lane) {
-            const Texture& chosen = texture.base[texture.word(lane) / word_count<Texture>];
-            const vec4 texel = Plain::texelFetch(chosen, ivec2(position.x[lane], position.y[lane]), level);
-            for (int i = 0; i < 4; ++i) result[i].set(lane, texel[i]);
-        });
-        return result;
+    LAB_ATOMIC(atomicAdd)
+    LAB_ATOMIC(atomicMin)
+    LAB_ATOMIC(atomicMax)
+    LAB_ATOMIC(atomicAnd)
+    LAB_ATOMIC(atomicOr)
+    LAB_ATOMIC(atomicXor)
+    LAB_ATOMIC(atomicExchange)
+#undef LAB_ATOMIC
+    template <typename T, typename P>
+    LAB_INLINE static auto texelFetch(const Mask& active, const T& texture, const P& position) {
+        if constexpr (!is_ref<T> && !is_varying<P>) {
+            return Plain::texelFetch(texture, position);
+        } else {
+            V<vec4> result;
+            for_each_lane(active, [&](int lane) {
+                const Texture* chosen;
+                if constexpr (is_ref<T>)
+                    chosen = &texture.base[texture.word(lane) / word_count<Texture>];
+                else
+                    chosen = &texture;
+                set_lane(result, lane, Plain::texelFetch(*chosen, lane_of(position, lane)));
+            });
+            return result;
+        }
     }
 };
 
@@ -239,11 +291,11 @@ struct ShaderBase : Builtins {
 template <typename Shader>
 Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) {
     return native::run_group(error, error_size, [&] {
-        for (uint first = 0; first < Shader::local_size; first += lane_count) {
+        for (uint first = 0; first < Shader::local_size__; first += lane_count) {
             const Lanes<uint> index = Lanes<uint>::of(Lanes<uint>::Raw{0, 1, 2, 3, 4, 5, 6, 7} + first);
-            const V<uvec3> local = make<uvec3>(index, 0u, 0u), global = make<uvec3>(index + group * Shader::local_size, 0u, 0u);
+            const V<uvec3> local = make<uvec3>(index, 0u, 0u), global = make<uvec3>(index + group * Shader::local_size__, 0u, 0u);
             Shader shader{{{}, bindings, uvec3(group, 0, 0), local, global, index}};
-            shader.main_(index < Shader::local_size);
+            shader.main__(index < Shader::local_size__);
         }
     });
 }

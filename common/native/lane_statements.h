@@ -25,50 +25,16 @@ template <typename T>
 inline constexpr bool is_ref = false;
 template <typename T>
 inline constexpr bool is_ref<Ref<T>> = true;
+
+// Changes a variable in the lanes of a mask.
 template <typename T, typename U>
-void store(const Mask& mask, const Ref<T>& target, const U& value);
-
-// A swizzle that is assigned to.
-template <int... i, typename T>
-requires Varying<T> LAB_INLINE auto swizzle(const T& v) {
-    Vec<sizeof...(i), std::remove_cvref_t<decltype(component(v, 0))>> result;
-    int next = 0;
-    ((result[next++] = component(v, i)), ...);
-    return result;
-}
-template <typename T, int... i>
-struct Swizzled {
-    using Value = Vec<sizeof...(i), std::remove_cvref_t<decltype(std::declval<T>()[0])>>;
-    T& target;
-    LAB_INLINE operator Value() const { return lanes::swizzle<i...>(target); }
-    LAB_INLINE auto& operator[](int component) const {
-        constexpr int indices[]{i...};
-        return target[indices[component]];
-    }
-    LAB_INLINE void operator=(Value value) {  // not by reference: it may be the target itself
-        int next = 0;
-        ((target[i] = value[next++]), ...);
-    }
-};
-template <int... i, int n, typename T>
-LAB_INLINE Swizzled<Vec<n, T>, i...> swizzled(Vec<n, T>& v) {
-    return {v};
-}
-
-// Changes a variable in the lanes of a mask. Its value is that of a number.
-template <typename Target, typename U>
-LAB_INLINE auto assign(const Mask& mask, Target&& target, const U& value) {
-    using T = std::remove_cvref_t<Target>;
-    if constexpr (is_ref<T>)
-        store(mask, target, value);
-    else if constexpr (is_number<T>)
-        return target = select(mask, T(value), target);
+LAB_INLINE void assign(const Mask& mask, T& target, const U& value) {
+    if constexpr (is_number<T>)
+        target = select(mask, T(value), target);
     else if constexpr (requires { typename T::VaryingStruct; })
         T::fields([&](auto& x, const auto& y) { assign(mask, x, y); }, target, T(value));
-    else if constexpr (requires { T::length(); })
+    else
         for (int i = 0; i < T::length(); ++i) assign(mask, target[i], value[i]);
-    else  // a swizzle
-        target = select(mask, typename T::Value(value), typename T::Value(target));
 }
 template <typename A, typename B>
 LAB_INLINE auto select(const Mask& mask, const A& a, const B& b) {
@@ -81,31 +47,6 @@ LAB_INLINE auto select(const Mask& mask, const A& a, const B& b) {
         assign(mask, result, a);
         return result;
     }
-}
-
-// `?:`, && and || whose sides must not be evaluated where they do not count.
-template <typename A, typename B>
-LAB_INLINE auto select_lazily(const Mask& active, const Mask& condition, const A& a, const B& b) {
-    const Mask first = active & condition, second = active & !condition;
-    decltype(select(condition, a(first), b(second))) result;
-    if (any(first)) result = varying(a(first));
-    if (any(second)) assign(second, result, b(second));
-    return result;
-}
-template <typename B>
-LAB_INLINE Mask and_lazily(const Mask& active, const Mask& a, const B& b) {
-    const Mask open = active & a;
-    return any(open) ? open & b(open) : Mask(false);
-}
-template <typename B>
-LAB_INLINE Mask or_lazily(const Mask& active, const Mask& a, const B& b) {
-    const Mask open = active & !a;
-    return any(open) ? !open | b(open) : a;  // which `b` may change
-}
-template <typename T, typename F>
-LAB_INLINE T before(T x, const F& change) {
-    change();
-    return x;
 }
 
 // Statements change the mask of those that `active` execute.
@@ -145,6 +86,28 @@ struct Loop {
     }
     LAB_INLINE void ends() { active = active | ended; }
 };
+
+// A `switch`: lanes enter it at their case, and go on until they leave it.
+struct Cases {
+    Mask& active;
+    Mask waiting, ended = false;
+    LAB_INLINE explicit Cases(Mask& active) : active(active), waiting(active) { active = false; }
+    LAB_INLINE void enter(const Mask& condition) {
+        const Mask chosen = waiting & condition;
+        active = active | chosen;
+        waiting = waiting & !chosen;
+    }
+    LAB_INLINE void leave() {
+        ended = ended | active;
+        active = false;
+    }
+    LAB_INLINE void ends() { active = active | ended | waiting; }
+};
+LAB_INLINE Mask is_one_of(const Lanes<uint>& selector, std::initializer_list<uint> literals) {
+    Mask result = false;
+    for (const uint literal : literals) result = result | (selector == literal);
+    return result;
+}
 
 // Memory. Code runs only if some lane is active, so that arrays have a first element.
 template <typename T>
@@ -259,57 +222,59 @@ LAB_INLINE auto pick(const C& container, const Lanes<int>& index) {
     return result;
 }
 
-// An `out` or `inout` argument that is copied in and, in the lanes of a mask, out.
-template <typename Target, typename Value>
-struct Copied {
-    Mask mask;
-    Target target;
-    Value value;
-    LAB_INLINE operator Value&() { return value; }
-    LAB_INLINE void operator=(const Value& x) { value = x; }
-    LAB_INLINE ~Copied() { assign(mask, target, value); }
-};
-template <typename T>
-LAB_INLINE Copied<T&, T> copied(const Mask& mask, T& target) {
-    return {mask, target, target};
-}
-template <typename T, int... i>
-LAB_INLINE auto copied(const Mask& mask, Swizzled<T, i...> target) {
-    return Copied<Swizzled<T, i...>, typename Swizzled<T, i...>::Value>{mask, target, target};
-}
-template <typename T>
-LAB_INLINE auto copied(const Mask& mask, const Ref<T>& target) {
-    return Copied<Ref<T>, V<T>>{mask, target, load(mask, target)};
+template <typename C, typename F>
+LAB_INLINE void put(const Mask& mask, C& container, const Lanes<int>& index, const F& change) {
+    for (int i = 0; i < C::length(); ++i) change(container[i], mask & equal(index, i));
 }
 
 // Constructors: of a vector by the components of all arguments, or by one for all.
 template <typename T, typename... A>
 LAB_INLINE auto make(const A&... x) {
-    V<T> result;
-    int next = 0;
-    if constexpr (!is_number<T> && (!is_matrix<T> || (sizeof...(A) == 1 && (is_matrix<A> && ...)))) {
-        result = V<T>(x...);
-    } else if constexpr (is_matrix<T>) {
-        constexpr int rows = T::col_type::length();
-        static_assert((size_of<A> + ...) == rows * T::length());
-        const auto append = [&]<typename U>(const U& y) {
-            for (int i = 0; i < size_of<U>; ++i, ++next) result[next / rows][next % rows] = component(y, i);
-        };
-        (append(x), ...);
+    if constexpr (!(is_varying<A> || ...)) {
+        return native::make<T>(x...);
     } else {
+        V<T> result;
+        int next = 0;
         const auto append = [&]<typename U>(const U& y) {
-            for (int i = 0; i < size_of<U> && next < T::length(); ++i) result[next++] = component(y, i);
+            for (int i = 0; i < size_of<U>; ++i, ++next) {
+                if constexpr (is_matrix<T>)
+                    result[next / T::col_type::length()][next % T::col_type::length()] = component(y, i);
+                else
+                    result[next] = component(y, i);
+            }
         };
         (append(x), ...);
-        for (; sizeof...(A) == 1 && next < T::length(); ++next) result[next] = result[0];
+        return result;
     }
-    return result;
 }
-template <typename S, typename T>
-requires Varying<T> LAB_INLINE Lanes<S> scalar(const T& x) { return component(x, 0); }
-template <typename T, typename... Elements>
-LAB_INLINE auto make_array(const Elements&... elements) {
-    return Array<V<T>, sizeof...(Elements)>{{V<T>(elements)...}};
+template <typename T, typename U>
+LAB_INLINE auto convert(const U& x) {
+    if constexpr (Varying<U>)
+        return V<T>(x);
+    else
+        return T(x);
+}
+template <typename T, typename U>
+LAB_INLINE auto bits(const U& x) {
+    if constexpr (Varying<U>) {
+        using Number = std::remove_cvref_t<decltype(component(std::declval<T>(), 0))>;
+        return each([](const auto& y) { return Lanes<Number>::of(reinterpret_cast<typename Lanes<Number>::Raw>(y.raw)); }, x);
+    } else {
+        return native::bits<T>(x);
+    }
+}
+template <int... i, typename A, typename B>
+LAB_INLINE auto shuffle(const A& a, const B& b) {
+    if constexpr (Varying<A, B>) {
+        Vec<sizeof...(i), Lanes<Element<decltype(component(a, 0)), decltype(component(b, 0))>>> result;
+        int next = 0;
+        ((result[next++] = i < size_of<A> ? Lanes<Element<decltype(component(a, 0))>>(component(a, i < size_of<A> ? i : 0))
+                                          : component(b, i < size_of<A> ? 0 : i - size_of<A>)),
+         ...);
+        return result;
+    } else {
+        return native::shuffle<i...>(a, b);
+    }
 }
 
 }  // namespace lab::native::lanes

@@ -18,6 +18,8 @@ using Uniform = T;
 
 namespace lab::native::lanes {
 
+using namespace native;
+
 // A float, int, uint or bool for each invocation; a bool is 0 or -1.
 template <typename T>
 struct Lanes {
@@ -127,6 +129,9 @@ inline constexpr bool is_matrix<Mat<n, m>> = true;
 template <length_t n, length_t m, typename T, qualifier q>
 inline constexpr bool is_matrix<mat<n, m, T, q>> = true;
 
+template <typename T>
+inline constexpr bool is_varying = is_lanes<T> || requires(const T& x) { x.column; };
+
 // V<T> is the type of a T that differs between lanes.
 template <typename T>
 struct VaryingOf {};
@@ -164,10 +169,6 @@ LAB_INLINE auto varying(const T& x) {
     else
         return x;
 }
-template <typename T>
-LAB_INLINE T copy(const T& x) {
-    return x;
-}
 
 // The number type that operands have in common.
 template <typename T>
@@ -200,18 +201,6 @@ LAB_INLINE auto each(const F& f, const T&... x) {
         return result;
     }
 }
-// Calls it for each lane, too.
-template <typename F, typename... T>
-LAB_INLINE auto each_alone(const F& f, const T&... x) {
-    return each(
-        [&](const auto&... y) {
-            Lanes<decltype(f(Lanes<Element<decltype(y)>>(y)[0]...))> result;
-            for (int lane = 0; lane < lane_count; ++lane) result.set(lane, f(Lanes<Element<decltype(y)>>(y)[lane]...));
-            return result;
-        },
-        x...);
-}
-
 #define LAB_OPERATOR(op, ...)                                                    \
     template <typename A, typename B>                                            \
     requires Varying<A, B> LAB_INLINE auto operator op(const A& a, const B& b) { \
@@ -225,29 +214,12 @@ LAB_INLINE auto each_alone(const F& f, const T&... x) {
 LAB_OPERATOR(+, X, Y)
 LAB_OPERATOR(-, X, Y)
 LAB_OPERATOR(*, X, Y)
+LAB_OPERATOR(/, X, Y)  // of floats
 LAB_OPERATOR(&, X, Y)
 LAB_OPERATOR(|, X, Y)
 LAB_OPERATOR(^, X, Y)
 LAB_OPERATOR(<<, X)
 LAB_OPERATOR(>>, X)
-#undef LAB_OPERATOR
-// Integers by integers one by one: there may be any number in idle lanes, and none may divide by 0.
-#define LAB_OPERATOR(op)                                                                                              \
-    template <typename A, typename B>                                                                                 \
-    requires Varying<A, B> LAB_INLINE auto operator op(const A& a, const B& b) {                                      \
-        return each(                                                                                                  \
-            []<typename X, typename Y>(const X& x, const Y& y) {                                                      \
-                using T = Element<X, Y>;                                                                              \
-                if constexpr (std::is_same_v<T, float>)                                                               \
-                    return Lanes<T>::of(Lanes<T>(x).raw / Lanes<T>(y).raw);                                           \
-                else                                                                                                  \
-                    return each_alone([](T p, T q) { return static_cast<T>(q == 0 ? 0 : int64_t{p} op int64_t{q}); }, \
-                                      Lanes<T>(x), Lanes<T>(y));                                                      \
-            },                                                                                                        \
-            a, b);                                                                                                    \
-    }
-LAB_OPERATOR(/)
-LAB_OPERATOR(%)
 #undef LAB_OPERATOR
 #define LAB_COMPARISON(name, op)                                                             \
     template <typename A, typename B>                                                        \
@@ -289,23 +261,29 @@ LAB_OPERATOR(-)
 LAB_OPERATOR(~)
 #undef LAB_OPERATOR
 
-// Products of matrices and vectors.
-template <typename M, typename U>
-requires(is_matrix<M>&& size_of<U> != 1 && (is_lanes<U> || requires(M m) { m.column; })) LAB_INLINE auto operator*(const M& m,
-                                                                                                                   const U& v) {
-    auto sum = m[0] * v[0];
-    for (int i = 1; i < M::length(); ++i) sum = sum + m[i] * v[i];
-    return sum;
-}
-template <typename M, typename U>
-requires(is_matrix<M>&& size_of<U> != 1 && (is_lanes<U> || requires(M m) { m.column; })) LAB_INLINE auto operator*(const U& v,
-                                                                                                                   const M& m) {
-    Vec<M::length(), Lanes<float>> result;
-    for (int i = 0; i < M::length(); ++i) {
-        result[i] = m[i][0] * v[0];
-        for (int j = 1; j < size_of<U>; ++j) result[i] = result[i] + m[i][j] * v[j];
+// Products of matrices with each other, with vectors and with numbers.
+template <typename A, typename B>
+LAB_INLINE auto multiply(const A& a, const B& b) {
+    if constexpr (is_matrix<A> && is_matrix<B>) {
+        Mat<B::length(), std::remove_cvref_t<decltype(a[0])>::length()> result;
+        for (int i = 0; i < B::length(); ++i) result[i] = multiply(a, b[i]);
+        return result;
+    } else if constexpr (is_matrix<A> && size_of<B> == 1) {
+        Mat<A::length(), std::remove_cvref_t<decltype(a[0])>::length()> result;
+        for (int i = 0; i < A::length(); ++i) result[i] = a[i] * b;
+        return result;
+    } else if constexpr (is_matrix<A>) {
+        auto sum = a[0] * b[0];
+        for (int i = 1; i < A::length(); ++i) sum = sum + a[i] * b[i];
+        return sum;
+    } else {
+        Vec<B::length(), Lanes<float>> result;
+        for (int i = 0; i < B::length(); ++i) {
+            result[i] = b[i][0] * a[0];
+            for (int j = 1; j < size_of<A>; ++j) result[i] = result[i] + b[i][j] * a[j];
+        }
+        return result;
     }
-    return result;
 }
 
 }  // namespace lab::native::lanes

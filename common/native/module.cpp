@@ -5,7 +5,7 @@
 namespace lab::native {
 std::vector<std::string> missing_tools() { return {"Linux or macOS"}; }
 void set_mode(Mode) {}
-Code load(const std::string&) { return {}; }
+Code load(const std::vector<uint32_t>&) { return {}; }
 MakeRayTracer load_embree() { return nullptr; }
 std::string ray_tracer_name() { return "the lab's own tree"; }
 void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
@@ -302,19 +302,18 @@ std::vector<std::string> missing_tools() {
 
 void set_mode(Mode wanted) { mode = wanted; }
 
-Code load(const std::string& preprocessed_glsl) {
+Code load(const std::vector<uint32_t>& spirv) {
     const auto code_of = [](void* library, const std::string& why_one_by_one) {
         return Code{reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group")), why_one_by_one};
     };
     auto arguments = compiler_arguments();
     std::string refusal = why_no_lanes();
     if (refusal.empty()) {
-        const std::string text = translate_for_lanes(preprocessed_glsl, refusal);
         auto for_lanes = arguments;  // GCC 12 crashes where it tries to make vectors of vectors
         for_lanes.insert(for_lanes.end(), {"-fno-tree-vectorize", "-lmvec"});
-        if (void* library = refusal.empty() ? load_library(text, for_lanes, refusal) : nullptr) return code_of(library, "");
+        if (void* library = load_library(translate_for_lanes(spirv), for_lanes, refusal)) return code_of(library, "");
     }
-    return code_of(load_library(translate(preprocessed_glsl), arguments), refusal);
+    return code_of(load_library(translate(spirv), arguments), refusal);
 }
 
 MakeRayTracer load_embree() {

@@ -28,7 +28,7 @@ struct Code {
     std::string why_one_by_one;
 };
 // It comes from the cache if possible. Throws UserError if the compiler refuses what translate() makes of it.
-Code load(const std::string& preprocessed_glsl);
+Code load(const std::vector<uint32_t>& spirv);
 
 // Rays by Embree, compiled and cached in the same way. Null where Embree or its headers are missing.
 MakeRayTracer load_embree();

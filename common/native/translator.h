@@ -1,13 +1,15 @@
-// Translates GLSL to C++: a compute shader becomes a struct whose globals are members.
+// Translates shaders to C++, from what glslang makes of them.
 #pragma once
+#include <cstdint>
 #include <string>
+#include <vector>
 
 namespace lab::native {
 
-// `glsl` is preprocessed and has been compiled without errors. Lines keep their numbers, by #line directives. Throws UserError
-// for what this translator does not know.
-std::string translate(const std::string& glsl);
-// The same for several invocations at once. Where the shader uses what lanes lack, `refusal` says so.
-std::string translate_for_lanes(const std::string& glsl, std::string& refusal);
+// `spirv` comes from compile_shader() with lines. The C++ has their numbers, by #line directives. Throws UserError for what this
+// translator does not know.
+std::string translate(const std::vector<uint32_t>& spirv);
+// The same for several invocations at once.
+std::string translate_for_lanes(const std::vector<uint32_t>& spirv);
 
 }  // namespace lab::native

@@ -1,5 +1,9 @@
-// trace_ray() by Embree, for the `native` backend only: no GLSL compiler knows the functions native_…(), which are defined in
-// common/native/glsl.h.
+// trace_ray() by Embree, for the `native` backend only: it replaces the functions native_…() by those in common/native/glsl.h.
+bool native_closest_hit(vec3 origin, vec3 direction, float t_max, out uint instance, out uint triangle, out vec2 barycentrics,
+                        out float t) {
+    return false;
+}
+bool native_any_hit(vec3 origin, vec3 direction, float t_max) { return false; }
 
 // Finds the closest hit nearer than t_max, and returns whether there is one.
 bool trace_ray(Ray ray, float t_max, out Hit hit) {
