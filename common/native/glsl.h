@@ -116,7 +116,8 @@ inline void check_divisor([[maybe_unused]] bool is_zero, [[maybe_unused]] const 
 #ifdef LAB_CHECKED
     if (!is_zero) return;
     Failed failed;
-    std::snprintf(failed.text, sizeof failed.text, "%s:%u: a division by 0", place.file_name(), static_cast<unsigned>(place.line()));
+    std::snprintf(failed.text, sizeof failed.text, "%s:%u: a division by 0", place.file_name(),
+                  static_cast<unsigned>(place.line()));
     throw failed;
 #endif
 }
@@ -144,15 +145,17 @@ struct Builtins {
 #undef LAB_SAME
 
 #define LAB_OPERATOR(name, op)                               \
-    template <typename T>                                    \
-    static constexpr auto name(const T& a, const T& b) {     \
+    template <typename A, typename B>                             \
+    static constexpr auto name(const A& a, const B& b) {          \
         return each([](auto x, auto y) { return x op y; }, a, b); \
     }
     LAB_OPERATOR(lessThan, <) LAB_OPERATOR(lessThanEqual, <=) LAB_OPERATOR(greaterThan, >) LAB_OPERATOR(greaterThanEqual, >=)
     LAB_OPERATOR(equal, ==) LAB_OPERATOR(notEqual, !=)
 #undef LAB_OPERATOR
-    // clang-format on
-    static constexpr bool both(bool a, bool b) { return a && b; }
+        // clang-format on
+        static constexpr bool both(bool a, bool b) {
+        return a && b;
+    }
     static constexpr bool either(bool a, bool b) { return a || b; }
     template <typename T>
     static constexpr auto not_(const T& x) {
@@ -186,14 +189,13 @@ struct Builtins {
             },
             a, b);
     }
-    // Its sign is the divisor's, as SPIR-V says; GLSL leaves it open.
+    // GLSL leaves the sign open.
     template <typename T>
     static constexpr T remainder(const T& a, const T& b, const std::source_location& place = std::source_location::current()) {
         return each(
             [&](auto x, auto y) {
                 check_divisor(y == 0, place);
-                const int64_t rest = y == 0 ? 0 : int64_t{x} % int64_t{y};
-                return static_cast<decltype(x)>(rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest);
+                return static_cast<decltype(x)>(y == 0 ? 0 : int64_t{x} % int64_t{y});
             },
             a, b);
     }
@@ -231,28 +233,24 @@ struct Builtins {
         return each([](auto x, auto y, auto z) { return std::fma(x, y, z); }, a, b, c);
     }
 
-    // Functions with two results, which the type S holds.
-    template <typename S, typename T>
-    static S modf(const T& x) {
-        return {x - glm::trunc(x), glm::trunc(x)};
+    // The second results of functions that have two.
+    static auto carry(const auto& a, const auto& b) {
+        return each([](uint x, uint y) { return x + y < x ? 1u : 0u; }, a, b);
     }
-    template <typename S, typename T>
-    static S frexp(const T& x) {
-        decltype(S::m1) exponent;
-        const T fraction = glm::frexp(x, exponent);
-        return {fraction, exponent};
+    static auto borrow(const auto& a, const auto& b) {
+        return each([](uint x, uint y) { return x < y ? 1u : 0u; }, a, b);
     }
-    template <typename S, typename T>
-    static S multiply_extended(const T& a, const T& b) {
-        return {a * b, each([](auto x, auto y) { return static_cast<decltype(x)>(wide(x) * wide(y) >> 32); }, a, b)};
+    static auto upper_half(const auto& a, const auto& b) {  // of a product
+        return each([](auto x, auto y) { return static_cast<decltype(x)>(wide(x) * wide(y) >> 32); }, a, b);
     }
-    template <typename S, typename T>
-    static S add_carry(const T& a, const T& b) {
-        return {a + b, each([](uint x, uint y) { return x + y < x ? 1u : 0u; }, a, b)};
+    static auto fraction(const auto& x) {
+        decltype(each([](float) { return 0; }, x)) exponent;
+        return glm::frexp(x, exponent);
     }
-    template <typename S, typename T>
-    static S subtract_borrow(const T& a, const T& b) {
-        return {a - b, each([](uint x, uint y) { return x < y ? 1u : 0u; }, a, b)};
+    static auto exponent(const auto& x) {
+        decltype(each([](float) { return 0; }, x)) exponent;
+        (void)glm::frexp(x, exponent);
+        return exponent;
     }
 
 #define LAB_ATOMIC(name, change)                                                                                \

@@ -53,7 +53,6 @@ LAB_INLINE Lanes<T> product_above(const Lanes<T>& a, const Lanes<T>& b) {
 struct Builtins : native::Builtins {
     using Plain = native::Builtins;
     using Float = const Lanes<float>&;
-    using Word = const Lanes<uint>&;
     template <typename F, typename... T>
     LAB_INLINE static Lanes<float> by_vector(const F& f, const T&... x) {
         return Lanes<float>::of(f(Lanes<float>(x).raw...));
@@ -82,7 +81,7 @@ struct Builtins : native::Builtins {
     LAB_ALONE(determinant) LAB_ALONE(inverse) LAB_ALONE(quotient) LAB_ALONE(remainder) LAB_ALONE(packHalf2x16)
     LAB_ALONE(unpackHalf2x16) LAB_ALONE(packUnorm4x8) LAB_ALONE(unpackUnorm4x8) LAB_ALONE(packUnorm2x16)
     LAB_ALONE(unpackUnorm2x16) LAB_ALONE(packSnorm4x8) LAB_ALONE(unpackSnorm4x8) LAB_ALONE(packSnorm2x16)
-    LAB_ALONE(unpackSnorm2x16)
+    LAB_ALONE(unpackSnorm2x16) LAB_ALONE(carry) LAB_ALONE(borrow) LAB_ALONE(fraction) LAB_ALONE(exponent)
     LAB_VECTOR(sin, _ZGVdN8v_sinf(z...)) LAB_VECTOR(cos, _ZGVdN8v_cosf(z...)) LAB_VECTOR(exp, _ZGVdN8v_expf(z...))
     LAB_VECTOR(log, _ZGVdN8v_logf(z...)) LAB_VECTOR(pow, _ZGVdN8vv_powf(z...)) LAB_VECTOR(sqrt, __builtin_ia32_sqrtps256(z...))
     LAB_EACH(floor, [](Float a) { return by_vector([](Floats z) { return __builtin_ia32_roundps256(z, 1); }, a); })
@@ -115,6 +114,10 @@ struct Builtins : native::Builtins {
         };
         const Lanes<uint> bits = swap(swap(swap(a, 0x55555555u, 1u), 0x33333333u, 2u), 0x0f0f0f0fu, 4u);
         return Lanes<U>(swap(swap(bits, 0x00ff00ffu, 8u), 0x0000ffffu, 16u));
+    })
+    LAB_EACH(upper_half, []<typename A, typename B>(const A& a, const B& b) {
+        using Number = Lanes<Element<A, B>>;
+        return product_above(Number(a), Number(b));
     })
     LAB_WHOLE(select, []<typename C>(const C& condition, const auto& a, const auto& b) {
         if constexpr (std::is_same_v<C, bool>)
@@ -159,51 +162,22 @@ struct Builtins : native::Builtins {
 #undef LAB_ALONE
 #undef LAB_VECTOR
 #undef LAB_FUNCTION
-    // clang-format on
+        // clang-format on
 
-    // Functions with two results, which the type S holds.
-#define LAB_PAIR(name, ...)                                           \
-    template <typename S, typename... T>                              \
-    LAB_INLINE static S name(const T&... x) {                         \
-        if constexpr ((is_varying<T> || ...))                         \
-            return [](const auto&... y) -> S __VA_ARGS__(x...);       \
-        else                                                          \
-            return Plain::name<S>(x...);                              \
+        LAB_INLINE static ivec2 textureSize(const Texture& texture) {
+        return Plain::textureSize(texture);
     }
-    LAB_PAIR(modf, { return {(y - trunc(y))..., trunc(y)...}; })
-    LAB_PAIR(add_carry, { return {(y + ...), each([](Word a, Word b) { return Lanes<uint>(less(a + b, a)); }, y...)}; })
-    LAB_PAIR(subtract_borrow, { return {(y - ...), each([](Word a, Word b) { return Lanes<uint>(less(a, b)); }, y...)}; })
-    LAB_PAIR(multiply_extended, {
-        return {(y * ...), each([]<typename A, typename B>(const A& a, const B& b) {
-                    using T0 = Lanes<Element<A, B>>;
-                    return product_above(T0(a), T0(b));
-                }, y...)};
-    })
-    LAB_PAIR(frexp, {
-        const auto part = [](auto number) {
-            return [=](float whole) {
-                int exponent;
-                const float fraction = glm::frexp(whole, exponent);
-                return std::get<decltype(number)>(std::tuple(fraction, exponent));
-            };
-        };
-        return {each([&](const auto& a) { return by_lane(part(0.0f), a); }, y...),
-                each([&](const auto& a) { return by_lane(part(0), a); }, y...)};
-    })
-#undef LAB_PAIR
-
-    LAB_INLINE static ivec2 textureSize(const Texture& texture) { return Plain::textureSize(texture); }
 
     // These ask which lanes are active.
-#define LAB_ATOMIC(name)                                                                                             \
-    template <typename T, typename U>                                                                                \
-    LAB_INLINE static V<T> name(const Mask& active, const Ref<T>& target, const U& operand) {                        \
-        const V<T> operands = operand;                                                                               \
-        V<T> before;                                                                                                 \
-        for_each_lane(active, [&](int lane) {                                                                        \
-            before.set(lane, Plain::name(reinterpret_cast<T*>(target.base)[target.word(lane)], operands[lane]));     \
-        });                                                                                                          \
-        return before;                                                                                               \
+#define LAB_ATOMIC(name)                                                                                         \
+    template <typename T, typename U>                                                                            \
+    LAB_INLINE static V<T> name(const Mask& active, const Ref<T>& target, const U& operand) {                    \
+        const V<T> operands = operand;                                                                           \
+        V<T> before;                                                                                             \
+        for_each_lane(active, [&](int lane) {                                                                    \
+            before.set(lane, Plain::name(reinterpret_cast<T*>(target.base)[target.word(lane)], operands[lane])); \
+        });                                                                                                      \
+        return before;                                                                                           \
     }
     LAB_ATOMIC(atomicAdd)
     LAB_ATOMIC(atomicMin)

@@ -187,7 +187,7 @@ LAB_INLINE void load_words(const Mask& mask, const void* base, const Lanes<int>&
 // Calls `f` for each number, in the order of memory.
 template <typename T, typename F>
 LAB_INLINE void for_each_part(T& target, const F& f) {
-    static_assert(!std::is_same_v<T, Mask>, "lanes lack bools in memory");  // where they have one byte
+    static_assert(!std::is_same_v<T, Mask>, "bools have one byte in memory");
     if constexpr (is_number<T> && size_of<T> == 1)
         f(target);
     else if constexpr (requires { typename T::VaryingStruct; })

@@ -35,21 +35,17 @@ size_t LaneWriter::first_varying(const Pointer& pointer) const {
 }
 // Whether each lane has to read or write what is at an address of its own.
 bool LaneWriter::is_memory(const Pointer& pointer) const {
-    return !variance_.varies(pointer.root) && !has_kind(pointer.type, spv::OpTypeBool) &&
+    return !variance_.varies(pointer.root) && !has_kind(pointer.types.back(), spv::OpTypeBool) &&
            first_varying(pointer) < pointer.indices.size();
 }
 std::string LaneWriter::reference(const Pointer& pointer) {
+    if (!is_memory(pointer)) return "lab__::ref_to(" + place(pointer) + ", 0)";
     const size_t first = first_varying(pointer);
     std::string text = place(pointer, first);
-    Id type = program_.pointee(type_of(pointer.root));
-    for (size_t i = 0; i < pointer.indices.size(); ++i) {
-        const bool is_structure = kind(type) == spv::OpTypeStruct;
-        const uint32_t member = is_structure ? program_.number(pointer.indices[i]) : 0;
-        if (i >= first)
-            text = is_structure ? "lab__::field(" + text + ", [](auto& x__) -> auto& { return x__." + field(type, member) + "; })"
-                                : "lab__::at(" + text + ", " + value(pointer.indices[i]) + ")";
-        type = element_type(type, member);
-    }
+    for (size_t i = first; i < pointer.indices.size(); ++i)
+        text = kind(pointer.types[i]) == spv::OpTypeStruct
+                   ? "lab__::field(" + text + ", [](auto& x__) -> auto& { return " + step("x__", pointer, i) + "; })"
+                   : "lab__::at(" + text + ", " + value(pointer.indices[i]) + ")";
     return text;
 }
 std::string LaneWriter::load(const Pointer& pointer) {
@@ -57,59 +53,42 @@ std::string LaneWriter::load(const Pointer& pointer) {
     if (first == pointer.indices.size()) return place(pointer);
     if (is_memory(pointer)) return "lab__::load(active__, " + reference(pointer) + ")";
     std::string text = "lab__::varying(" + place(pointer, first) + ")";
-    Id type = program_.pointee(type_of(pointer.root));
-    for (size_t i = 0; i < first; ++i)
-        type = element_type(type, kind(type) == spv::OpTypeStruct ? program_.number(pointer.indices[i]) : 0);
-    for (size_t i = first; i < pointer.indices.size(); ++i) {
-        if (variance_.varies(pointer.indices[i])) {
-            text = "lab__::pick(" + text + ", " + value(pointer.indices[i]) + ")";
-            type = element_type(type);
-        } else {
-            text = element(text, type, pointer.indices[i]);
-        }
-    }
+    for (size_t i = first; i < pointer.indices.size(); ++i)
+        text = variance_.varies(pointer.indices[i]) ? "lab__::pick(" + text + ", " + value(pointer.indices[i]) + ")"
+                                                    : step(text, pointer, i);
     return text;
 }
 // Assigns to an element that is another one in each lane.
-std::string LaneWriter::change(const std::string& container, Id type, const Pointer& pointer, size_t next,
-                               const std::string& value_text) {
-    if (next == pointer.indices.size()) return "lab__::assign(active__, " + container + ", " + value_text + ");";
-    const Id index = pointer.indices[next];
-    if (!variance_.varies(index)) {
-        const std::string text = element(container, type, index);
-        return change(text, type, pointer, next + 1, value_text);
-    }
-    return "lab__::put(active__, " + container + ", " + value(index) + ", [&](auto& x__, lab__::Mask active__) { " +
-           change("x__", element_type(type), pointer, next + 1, value_text) + " });";
+std::string LaneWriter::change(const std::string& container, const Pointer& pointer, size_t next, const std::string& text) {
+    if (next == pointer.indices.size()) return "lab__::assign(active__, " + container + ", " + text + ");";
+    if (!variance_.varies(pointer.indices[next])) return change(step(container, pointer, next), pointer, next + 1, text);
+    return "lab__::put(active__, " + container + ", " + value(pointer.indices[next]) +
+           ", [&](auto& x__, lab__::Mask active__) { " + change("x__", pointer, next + 1, text) + " });";
 }
 bool LaneWriter::is_parameter(Id id) const {
     const auto& parameters = program_.functions.at(function_).parameters;
     return std::any_of(parameters.begin(), parameters.end(), [&](const Instruction& parameter) { return parameter.id == id; });
 }
-void LaneWriter::assign(const std::string& target, Id variable, Id stored) {
+void LaneWriter::assign(const std::string& target, Id variable, const std::string& text) {
     const bool is_of_some = variance_.varies(variable) && (depth_ > variance_.depth_of(variable, function_, program_) ||
                                                            (returns_ > 0 && is_parameter(variable)));
-    const std::string text = value(stored);
     flush(true);
     out(is_of_some ? "lab__::assign(active__, " + target + ", " + text + "); " : target + " = " + text + "; ");
 }
-void LaneWriter::store(const Pointer& pointer, Id stored) {
+void LaneWriter::store(const Pointer& pointer, const std::string& text) {
     if (is_shared(program_, pointer.root)) {
-        const std::string text = value(stored);
-        const std::string target = is_memory(pointer) ? reference(pointer) : "lab__::ref_to(" + place(pointer) + ", 0)";
+        const std::string target = reference(pointer);
         flush(true);
         return out("lab__::store(active__, " + target + ", " + text + "); ");
     }
-    if (first_varying(pointer) == pointer.indices.size()) return assign(place(pointer), pointer.root, stored);
-    const std::string text = value(stored);
-    const std::string code = change(place(pointer, 0), program_.pointee(type_of(pointer.root)), pointer, 0, text);
+    if (first_varying(pointer) == pointer.indices.size()) return assign(place(pointer), pointer.root, text);
+    const std::string code = change(place(pointer, 0), pointer, 0, text);
     flush(true);
     out(code + " ");
 }
 std::string LaneWriter::atomic(const std::string& name, const Instruction& instruction) {
-    const Pointer pointer = pointer_to(instruction.operands[0]);
-    const std::string target = is_memory(pointer) ? reference(pointer) : "lab__::ref_to(" + place(pointer) + ", 0)";
-    return "lab__::Builtins::" + name + "(active__, " + target + ", " + value(instruction.operands.back()) + ")";
+    return "lab__::Builtins::" + name + "(active__, " + reference(pointer_to(instruction.operands[0])) + ", " +
+           value(instruction.operands.back()) + ")";
 }
 std::string LaneWriter::fetch(const Instruction& instruction) {
     const Pointer texture = pointer_to(instruction.operands[0]);
@@ -212,8 +191,7 @@ void LaneWriter::statement(const Statement& statement) {
         case Kind::instruction:
             return Writer::statement(statement);
         case Kind::merge:
-            assign(value(statement.variable), statement.variable, statement.value);
-            return;
+            return assign(value(statement.variable), statement.variable, value(statement.value));
         case Kind::branch:
             branch(statement);
             break;

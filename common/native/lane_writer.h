@@ -1,5 +1,5 @@
-// Writes a program for several invocations at once: what differs between them has another type, and a mask, `active__`, says which
-// ones execute a statement. Where the mask stays the same for all, so does the C++.
+// Writes a program for several invocations at once: what differs between them has another type, and a mask, `active__`, says
+// which ones execute a statement. Where the mask stays the same for all, so does the C++.
 #pragma once
 #include "native/writer.h"
 
@@ -15,7 +15,7 @@ class LaneWriter : public Writer {
     std::string type_name(Id type, Id of) const override;
     std::string operation(const Instruction& instruction) override;
     std::string load(const Pointer& pointer) override;
-    void store(const Pointer& pointer, Id value) override;
+    void store(const Pointer& pointer, const std::string& value) override;
     std::string atomic(const std::string& name, const Instruction& instruction) override;
     std::string fetch(const Instruction& instruction) override;
     std::string mask(bool has_more) const override { return has_more ? "active__, " : "active__"; }
@@ -27,8 +27,8 @@ class LaneWriter : public Writer {
     size_t first_varying(const Pointer& pointer) const;
     bool is_memory(const Pointer& pointer) const;
     std::string reference(const Pointer& pointer);
-    std::string change(const std::string& container, Id type, const Pointer& pointer, size_t next, const std::string& value);
-    void assign(const std::string& target, Id variable, Id value);
+    std::string change(const std::string& container, const Pointer& pointer, size_t next, const std::string& text);
+    void assign(const std::string& target, Id variable, const std::string& value);
     void branch(const Statement& statement);
     void loop(const Statement& statement);
     void cases(const Statement& statement);

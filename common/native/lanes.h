@@ -130,7 +130,9 @@ template <length_t n, length_t m, typename T, qualifier q>
 inline constexpr bool is_matrix<mat<n, m, T, q>> = true;
 
 template <typename T>
-inline constexpr bool is_varying = is_lanes<T> || requires(const T& x) { x.column; };
+inline constexpr bool is_varying = is_lanes<T> || requires(const T& x) {
+    x.column;
+};
 
 // V<T> is the type of a T that differs between lanes.
 template <typename T>
@@ -155,6 +157,11 @@ struct VaryingOf<mat<n, m, float, q>> {
 template <typename T, size_t size>
 struct VaryingOf<Array<T, size>> {
     using type = Array<typename VaryingOf<T>::type, size>;
+};
+template <typename T>
+requires is_varying<T>
+struct VaryingOf<T> {
+    using type = T;
 };
 template <>
 struct VaryingOf<void> {

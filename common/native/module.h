@@ -24,7 +24,7 @@ void set_mode(Mode mode);
 struct Code {
     RunGroup run;
     // Empty where lane_count invocations run at once. They do on CPUs with AVX2, unless LAB_LANES=0 is in the environment or
-    // lanes lack something that the shader uses.
+    // the compiler refuses what lanes are made of.
     std::string why_one_by_one;
 };
 // It comes from the cache if possible. Throws UserError if the compiler refuses what translate() makes of it.

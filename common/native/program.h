@@ -1,13 +1,12 @@
 // A shader as SPIR-V, taken apart: its types, constants and variables by their ids, and its functions as trees of statements.
 #pragma once
 #define SPV_ENABLE_UTILITY_CODE
-#include <spirv/unified1/spirv.hpp>
-
 #include <algorithm>
 #include <array>
 #include <map>
 #include <set>
 #include <span>
+#include <spirv/unified1/spirv.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +58,12 @@ struct Function {
     Sequence body = {};
 };
 
+// A variable, a parameter or a part of it. The types are those before each index, and of what it leads to.
+struct Pointer {
+    Id root = 0;
+    std::vector<Id> indices = {}, types = {};
+};
+
 class Program {
   public:
     // `words` come from glslang, not optimised and with lines.
@@ -80,6 +85,12 @@ class Program {
     // The type of a value, a variable or a parameter, and what a pointer points to.
     Id type_of(Id id) const { return types_.at(id); }
     Id pointee(Id pointer_type) const { return definition(pointer_type).operands.at(1); }
+    spv::Op kind(Id type) const { return definition(type).op; }
+    // Of an array, a vector, a matrix or a structure, of which `index` is a constant.
+    Id element_type(Id type, Id index) const {
+        return definition(type).operands[kind(type) == spv::OpTypeStruct ? number(index) : 0];
+    }
+    Pointer pointer_to(Id variable) const { return {.root = variable, .types = {pointee(type_of(variable))}}; }
     bool is_pointer(Id type) const { return definition(type).op == spv::OpTypePointer; }
     spv::StorageClass storage(Id variable) const {
         return static_cast<spv::StorageClass>(definition(type_of(variable)).operands.at(0));
@@ -121,7 +132,8 @@ class Program {
     Access first_access(const Sequence& sequence, Id variable) const;
     void move_inwards(Sequence& sequence) const;
     static std::string text_of(std::span<const uint32_t> words) {
-        return {reinterpret_cast<const char*>(words.data()), strnlen(reinterpret_cast<const char*>(words.data()), 4 * words.size())};
+        return {reinterpret_cast<const char*>(words.data()),
+                strnlen(reinterpret_cast<const char*>(words.data()), 4 * words.size())};
     }
 
     std::map<Id, Instruction> definitions_;

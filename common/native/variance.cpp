@@ -1,6 +1,8 @@
 #ifndef _WIN32
 #include "native/variance.h"
 
+#include <spirv/unified1/GLSL.std.450.h>
+
 namespace lab::native {
 
 // Follows a program until it finds nothing new.
@@ -87,7 +89,8 @@ class Variance::Walk {
     void change(Id pointer, bool is_varying) {
         const Id root = root_of(pointer);
         if (is_shared(program_, root)) return;
-        const bool is_of_some = depth_ > variance_.depth_of(root, function_->id, program_) || (returns_ > 0 && is_parameter(root));
+        const bool is_of_some =
+            depth_ > variance_.depth_of(root, function_->id, program_) || (returns_ > 0 && is_parameter(root));
         if (is_varying || has_varying_index(pointer) || is_of_some) vary(root);
     }
     void call(const Instruction& instruction) {
@@ -104,6 +107,7 @@ class Variance::Walk {
     }
     void execute(const Instruction& instruction) {
         const auto& operands = instruction.operands;
+        if (instruction.op == spv::OpExtInst && operands[1] == GLSLstd450Modf) change(operands[3], varies(operands[2]));
         note_pointer(pointers_, program_, instruction);
         if (instruction.op == spv::OpStore) return change(operands[0], varies(operands[1]));
         if (instruction.op == spv::OpFunctionCall) return call(instruction);

@@ -4,12 +4,6 @@
 
 namespace lab::native {
 
-// A variable, a parameter or a part of it.
-struct Pointer {
-    Id root = 0, type = 0;  // of what it points to
-    std::vector<Id> indices = {};
-};
-
 class Variance {
   public:
     Variance() = default;  // nothing varies
@@ -42,12 +36,12 @@ inline bool is_native(const Program& program, Id function) { return program.name
 // Adds what an instruction points to, if it is an access chain.
 inline void note_pointer(std::map<Id, Pointer>& pointers, const Program& program, const Instruction& chain) {
     if (chain.op != spv::OpAccessChain) return;
-    Pointer pointer{.root = chain.operands[0], .type = program.pointee(chain.type)};
-    if (const auto base = pointers.find(pointer.root); base != pointers.end()) {
-        pointer.root = base->second.root;
-        pointer.indices = base->second.indices;
+    const auto base = pointers.find(chain.operands[0]);
+    Pointer pointer = base != pointers.end() ? base->second : program.pointer_to(chain.operands[0]);
+    for (size_t i = 1; i < chain.operands.size(); ++i) {
+        pointer.indices.push_back(chain.operands[i]);
+        pointer.types.push_back(program.element_type(pointer.types.back(), chain.operands[i]));
     }
-    pointer.indices.insert(pointer.indices.end(), chain.operands.begin() + 1, chain.operands.end());
     pointers[chain.id] = std::move(pointer);
 }
 

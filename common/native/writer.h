@@ -1,6 +1,6 @@
-// Writes a program as C++: a compute shader becomes a struct whose globals are members. Each value has a name of its own or, if it
-// is used once and at once, is a part of what uses it, so that the C++ resembles the GLSL. Names with two underscores, which GLSL
-// keeps for itself, belong to the translation.
+// Writes a program as C++: a compute shader becomes a struct whose globals are members. Each value has a name of its own or, if
+// it is used once and at once, is a part of what uses it, so that the C++ resembles the GLSL. Names with two underscores, which
+// GLSL keeps for itself, belong to the translation.
 #pragma once
 #include "native/variance.h"
 
@@ -19,7 +19,7 @@ class Writer {
     virtual std::string type_name(Id type, Id /*of*/) const { return plain_type(type); }
     virtual std::string operation(const Instruction& instruction);
     virtual std::string load(const Pointer& pointer);
-    virtual void store(const Pointer& pointer, Id value);
+    virtual void store(const Pointer& pointer, const std::string& value);
     virtual std::string atomic(const std::string& name, const Instruction& instruction);
     virtual std::string fetch(const Instruction& instruction);
     virtual std::string mask(bool /*has_more*/) const { return ""; }  // what functions get first
@@ -35,13 +35,12 @@ class Writer {
     Pointer pointer_to(Id id) const;
     // What a pointer leads to, up to an index.
     std::string place(const Pointer& pointer, size_t end = SIZE_MAX);
-    // An element of what `text` is, and its type.
-    std::string element(const std::string& text, Id& type, Id index);
+    // A pointer's next step, at an index, from what `text` is.
+    std::string step(const std::string& text, const Pointer& pointer, size_t index);
     std::string field(Id structure, uint32_t member) const;
     std::string constant(Id id) const;
-    Id element_type(Id type, uint32_t member = 0) const;
     Id type_of(Id id) const { return program_.type_of(id); }
-    spv::Op kind(Id type) const { return program_.definition(type).op; }
+    spv::Op kind(Id type) const { return program_.kind(type); }
     bool has_kind(Id type, spv::Op op) const;  // itself or a part of it
     void out(const std::string& text) { text_ += text; }
     void line(const Instruction& at);
@@ -85,14 +84,18 @@ class Writer {
     std::map<std::pair<Id, uint32_t>, std::string> block_names_;
     std::map<Id, Pointer> pointers_;
     std::map<Id, size_t> uses_;
-    std::set<Id> undeclared_;                          // variables that their first assignment declares
-    std::vector<std::set<std::string>> visible_{1};    // names in the blocks around
-    std::vector<Id> reached_;                          // functions
-    std::vector<int> labels_;                          // of the loops around
+    std::set<Id> undeclared_;                        // variables that their first assignment declares
+    std::vector<std::set<std::string>> visible_{1};  // names in the blocks around
+    std::vector<Id> reached_;                        // functions
+    std::vector<int> labels_;                        // of the loops around
     std::string file_;
     uint32_t line_ = 0;
     int label_count_ = 0, depth_ = 0;
     bool reads_ = false;
 };
+
+// As C++ spells a name of GLSL, which may be a word of C++ or a macro of its headers.
+std::string spelled(const std::string& name);
+bool is_atomic(spv::Op op);
 
 }  // namespace lab::native

@@ -236,7 +236,7 @@ void expect_equal_results(uint32_t first_seed, uint32_t shader_count) {
     const auto load_all = [&](native::Mode mode) {  // on all cores
         native::set_mode(mode);
         std::vector<native::Code> codes(shader_count);
-        in_parallel(shader_count, 1, [&](size_t i, size_t) { codes[i] = native::load(preprocess_shader(sources[i])); });
+        in_parallel(shader_count, 1, [&](size_t i, size_t) { codes[i] = native::load(compile_shader(sources[i], true)); });
         native::set_mode(native::Mode::fast);
         return codes;
     };

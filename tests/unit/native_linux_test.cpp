@@ -8,7 +8,7 @@
 #include "error.h"
 #include "native/module.h"
 #include "native/translator.h"
-#include "test_files.h"
+#include "native_shader.h"
 
 namespace lab {
 namespace {
@@ -16,14 +16,14 @@ namespace {
 // The numbers that a shader writes to results[]. `code` precedes main(), `body` is inside.
 std::vector<float> run_shader(const std::string& code, const std::string& body) {
     const std::string glsl =
-        "#line 1 \"test.glsl\"\n" + code +
+        code +
         "\nlayout(scalar, set = 0, binding = 1) buffer Results { float results[]; };\n"
         "layout(local_size_x = 1) in;\nint next = 0;\nvoid give(float x) { results[next++] = x; }\nvoid main() {\n" +
         body + "\n}\n";
     std::vector<float> results(16, -1000);
     native::Bindings bindings{};
     bindings.ranges[1] = {reinterpret_cast<std::byte*>(results.data()), results.size() * sizeof(float)};
-    native::run_groups(native::load(glsl).run, bindings, 0, 1);
+    native::run_groups(native::load(compile_glsl(glsl)).run, bindings, 0, 1);
     while (!results.empty() && results.back() == -1000) results.pop_back();
     return results;
 }
@@ -190,26 +190,32 @@ TEST(Native, BlocksMayHaveNamesAndHeaders) {
                    "give(7.0);"),
         Numbers{7});
     EXPECT_EQ(run_shader("layout(scalar, set = 0, binding = 1) buffer Block { float first; } block;\n"
-                         "float raise() { return block.first += 4.0; }\nfloat less(float a, float b) { return b - a; }",
-                         "block.first = 2.0; give(less(block.first, raise()));"),
+                         "float raise() { return block.first += 4.0; }", "block.first = 2.0; give(raise() - 2.0);"),
               Numbers{4});
 }
 
 TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
-    try {
-        run_shader("", "give(1.0);\ngive(unknown_function(1.0));");
-        FAIL();
-    } catch (const UserError& error) {
-        EXPECT_NE(std::string(error.what()).find("test.glsl:8: 'unknown_function' was not declared"), std::string::npos)
-            << error.what();
-        EXPECT_NE(std::string(error.what()).find("--backend compute"), std::string::npos) << error.what();
+    for (const auto& [glsl, message] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"layout(std140, binding = 1) buffer Block { float list[2]; };\nvoid main() { list[0] = 1.0; }",
+              "a layout of memory other than layout(scalar)"},
+             {"layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}", "workgroups of more than one dimension"},
+             {"shared float x;\nvoid main() { x = 1.0; }", "shared variables"},
+             {"void main() {\n\nbarrier(); }", "test.glsl:3: the backend native does not know a function of this line"},
+             {"layout(scalar, binding = 1) buffer Block { float x; };\nvoid main() { double y = x; x = float(y * y); }",
+              "numbers of other than 32 bits"}}) {
+        for (const auto translate : {native::translate, native::translate_for_lanes}) {
+            try {
+                translate(compile_glsl(glsl));
+                ADD_FAILURE() << glsl;
+            } catch (const UserError& error) {
+                EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+                EXPECT_NE(std::string(error.what()).find("--backend compute"), std::string::npos) << error.what();
+            }
+        }
     }
-    for (const char* glsl : {"void main() { goto x; }", "layout(std430, binding = 1) buffer Block { vec3 list[]; };",
-                             "layout(local_size_x = 8, local_size_y = 8) in;"})
-        EXPECT_THROW(native::translate(std::string("#line 1 \"test.glsl\"\n") + glsl), UserError) << glsl;
 }
 
-TEST(Native, DeepNestingIsOneClearMessage) {
+TEST(Native, DeepNestingIsNoCrash) {
     const auto repeat = [](const std::string& text, int count) {
         std::string all;
         while (count-- > 0) all += text;
@@ -218,24 +224,18 @@ TEST(Native, DeepNestingIsOneClearMessage) {
     const auto nested = [&](const std::string& open, const std::string& middle, const std::string& close, int depth) {
         return repeat(open, depth) + middle + repeat(close, depth);
     };
-    EXPECT_EQ(run_shader("", "give(" + nested("(", "7.0", ")", 200) + ");" + nested("{", "give(8.0);", "}", 200)),
-              (Numbers{7, 8}));
-    for (const std::string& statement :
-         {"float x = " + nested("(", "7.0", ")", 10000) + ";", "float x = " + nested("abs(", "7.0", ")", 10000) + ";",
-          "float x = " + nested("- ", "7.0", "", 10000) + ";", "float x = " + nested("true ? 1.0 : ", "7.0", "", 10000) + ";",
-          "float x; x = " + nested("x = ", "7.0", "", 10000) + ";", "float x[2] = " + nested("{", "7.0", "}", 10000) + ";",
-          "int x[1]; int y = " + nested("x[", "0", "]", 10000) + ";", nested("{", "", "}", 10000),
-          nested("if (true) ", ";", "", 10000), nested("if (true) ; else ", ";", "", 10000),
-          nested("for (;;) ", ";", "", 10000)}) {
-        for (const bool has_lanes : {false, true}) {
-            try {
-                std::string refusal;
-                const std::string glsl = "#line 1 \"test.glsl\"\nvoid main() {\n" + statement + "\n}\n";
-                has_lanes ? native::translate_for_lanes(glsl, refusal) : native::translate(glsl);
-                ADD_FAILURE() << statement.substr(0, 40);
-            } catch (const UserError& error) {
-                EXPECT_EQ(std::string(error.what()).find("test.glsl:2: more than 256 levels of"), 0u) << error.what();
-            }
+    EXPECT_EQ(run_shader("", "give(" + nested("(", "7.0", ")", 200) + ");" + nested("{", "give(8.0);", "}", 200) +
+                                 "float x = 2.0; give(" + nested("abs(", "x", ")", 200) + ");" +
+                                 nested("if (x > 1.0) {", "give(9.0);", "}", 200)),
+              (Numbers{7, 8, 2, 9}));
+    const std::vector<uint32_t> deep = compile_glsl("layout(scalar, binding = 1) buffer Block { float x; };\nvoid main() {\n" +
+                                                    nested("if (x > 1.0) {", "x = 2.0;", "}", 300) + "\n}");
+    for (const auto translate : {native::translate, native::translate_for_lanes}) {
+        try {
+            translate(deep);
+            ADD_FAILURE();
+        } catch (const UserError& error) {
+            EXPECT_EQ(std::string(error.what()).find("test.glsl:3: more than 256 levels of blocks"), 0u) << error.what();
         }
     }
 }
@@ -259,10 +259,12 @@ TEST(Native, CheckedShadersNameTheLineOfAWrongIndex) {
 }
 
 TEST(Native, CheckedShadersNameTheLineOfADivisionByZero) {
-    testing::internal::CaptureStderr();
-    const std::string failure = failure_of("int zero = next;\ngive(float(7 / zero));");
-    EXPECT_NE(testing::internal::GetCapturedStderr().find("test.glsl:8:"), std::string::npos);
-    EXPECT_NE(failure.find("the sanitizer's last line tells where"), std::string::npos) << failure;
+    EXPECT_EQ(failure_of("int zero = next;\ngive(float(7 / zero));"), "test.glsl:8: a division by 0");
+    EXPECT_EQ(failure_of("int zero = next;\ngive((ivec2(7) % zero).x);"), "test.glsl:8: a division by 0");
+}
+
+TEST(Native, DivisionsByZeroDoNotEndTheProgram) {
+    EXPECT_EQ(run_shader("", "int zero = next;\nint x = 7 / zero + (-7) % zero; give(float(x - x + 3));"), Numbers{3});
 }
 
 TEST(Native, ACrashIsAnErrorAndNotTheEndOfTheProgram) {
