@@ -4,14 +4,6 @@
 
 namespace lab::native::lanes {
 
-// Of the C library: libmvec.
-using Floats = Lanes<float>::Raw;
-extern "C" Floats _ZGVdN8v_sinf(Floats);
-extern "C" Floats _ZGVdN8v_cosf(Floats);
-extern "C" Floats _ZGVdN8v_expf(Floats);
-extern "C" Floats _ZGVdN8v_logf(Floats);
-extern "C" Floats _ZGVdN8vv_powf(Floats, Floats);
-
 // Of what is not below, only calls with uniform arguments are known.
 struct Builtins : native::Builtins {
     using Plain = native::Builtins;
@@ -43,9 +35,9 @@ struct Builtins : native::Builtins {
     LAB_ALONE(trunc) LAB_ALONE(round) LAB_ALONE(roundEven) LAB_ALONE(ceil) LAB_ALONE(smoothstep) LAB_ALONE(isnan)
     LAB_ALONE(isinf) LAB_ALONE(sign) LAB_ALONE(bitCount) LAB_ALONE(findLSB) LAB_ALONE(findMSB) LAB_ALONE(bitfieldExtract)
     LAB_ALONE(bitfieldInsert) LAB_ALONE(ldexp) LAB_ALONE(fma) LAB_ALONE(step) LAB_ALONE(mod)
-    LAB_VECTOR(sin, _ZGVdN8v_sinf(z...)) LAB_VECTOR(cos, _ZGVdN8v_cosf(z...)) LAB_VECTOR(exp, _ZGVdN8v_expf(z...))
-    LAB_VECTOR(log, _ZGVdN8v_logf(z...)) LAB_VECTOR(pow, _ZGVdN8vv_powf(z...)) LAB_VECTOR(sqrt, __builtin_ia32_sqrtps256(z...))
-    LAB_EACH(floor, each, [](Float a) { return by_vector([](Floats z) { return __builtin_ia32_roundps256(z, 1); }, a); })
+    LAB_VECTOR(sin, LAB_LIBMVEC(v_sinf)(z...)) LAB_VECTOR(cos, LAB_LIBMVEC(v_cosf)(z...)) LAB_VECTOR(exp, LAB_LIBMVEC(v_expf)(z...))
+    LAB_VECTOR(log, LAB_LIBMVEC(v_logf)(z...)) LAB_VECTOR(pow, LAB_LIBMVEC(vv_powf)(z...)) LAB_VECTOR(sqrt, square_root(z...))
+    LAB_EACH(floor, each, [](Float a) { return by_vector([](Floats z) { return round_down(z); }, a); })
     LAB_EACH(inversesqrt, each, [](Float a) { return 1.0f / sqrt(a); })
     LAB_EACH(fract, each, [](Float a) { return a - floor(a); })
     LAB_EACH(min, each, [](const auto& a, const auto& b) { return select(less(b, a), b, a); })
@@ -134,11 +126,13 @@ struct Builtins : native::Builtins {
 
     template <typename A, typename B, typename High, typename Low>
     LAB_INLINE static void umulExtended(const A& a, const B& b, High&& high, Low&& low) {
-        typedef uint64_t Wide __attribute__((vector_size(8 * lane_count)));
+        typedef uint64_t Wide __attribute__((vector_size(4 * lane_count)));
+        constexpr uint64_t low_half = 0xffffffffu;
         const auto top = each(
             [](const Lanes<uint>& x, const Lanes<uint>& y) {
-                const Wide product = __builtin_convertvector(x.raw, Wide) * __builtin_convertvector(y.raw, Wide);
-                return Lanes<uint>::of(__builtin_convertvector(product >> 32, Lanes<uint>::Raw));
+                const Wide p = reinterpret_cast<Wide>(x.raw), q = reinterpret_cast<Wide>(y.raw);
+                const Wide even = (p & low_half) * (q & low_half), odd = (p >> 32) * (q >> 32);
+                return Lanes<uint>::of(reinterpret_cast<Lanes<uint>::Raw>((even >> 32) | (odd & ~low_half)));
             },
             a, b);
         low = varying(a) * b;
@@ -229,8 +223,6 @@ struct ShaderBase : Builtins {
         write(packet.mask, Lanes<uint>(~0u));
         write(packet.flags, Lanes<uint>(0u));
         write(packet.is_active, active);
-        const int first = std::countr_zero(bits_of(active));
-        packet.is_coherent = !lanes::any(active & (origin != vec3(origin.x[first], origin.y[first], origin.z[first])));
         return packet;
     }
 };
@@ -240,7 +232,8 @@ template <typename Shader>
 Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) {
     return native::run_group(error, error_size, [&] {
         for (uint first = 0; first < Shader::local_size; first += lane_count) {
-            const Lanes<uint> index = Lanes<uint>::of(Lanes<uint>::Raw{0, 1, 2, 3, 4, 5, 6, 7} + first);
+            Lanes<uint> index;
+            for (uint lane = 0; lane < lane_count; ++lane) index.set(static_cast<int>(lane), first + lane);
             const V<uvec3> local = make<uvec3>(index, 0u, 0u), global = make<uvec3>(index + group * Shader::local_size, 0u, 0u);
             Shader shader{{{}, bindings, uvec3(group, 0, 0), local, global, index}};
             shader.main_(index < Shader::local_size);

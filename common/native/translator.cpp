@@ -27,6 +27,8 @@ class Translator : DeclarationReader {
                "namespace lab::native {\nstruct Shader : " + prefix + "ShaderBase {\n" + usings_ + text + R"(
 };
 }
+extern "C" __attribute__((visibility("default"))) const int lab_invocations_at_once = )" +
+               (has_lanes() ? "lab::native::lane_count" : "1") + R"(;
 extern "C" __attribute__((visibility("default"))) lab::native::Outcome lab_run_group(
     const lab::native::Bindings& bindings, uint32_t group, char* error, size_t size) {
     return lab::native::)" +

@@ -162,7 +162,7 @@ class ProgramWriter {
     int next_name_ = 0, loops_ = 0;
 };
 
-constexpr uint32_t invocations = 13;  // in the second packet some lanes are idle
+constexpr uint32_t invocations = 29;  // in the last packet some lanes are idle
 constexpr uint32_t group_count = 2;
 constexpr uint32_t program_count = 25;  // of a shader
 
