@@ -33,7 +33,7 @@ class EmbreeTracer final : public RayTracer {
         auto* corner = static_cast<float*>(buffer(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 3 * count));
         auto* index = static_cast<uint32_t*>(buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, count));
         if (count > 0 && (!corner || !index)) throw std::bad_alloc();
-        places_.resize(count + 1);  // the last is for rays that hit nothing
+        places_.resize(std::max<size_t>(count, 1));  // rays that hit nothing read the first
         for (size_t i = 0; i < count; ++i) {
             const auto& [x, y, z] = triangles[i];
             places_[i] = {x.id, y.id};
@@ -82,10 +82,10 @@ class EmbreeTracer final : public RayTracer {
         intersect(packet.is_active, *reinterpret_cast<RayHits*>(&packet));
         for (int i = 0; i < lane_count; ++i) {
             packet.is_active[i] &= packet.geometry[i] == RTC_INVALID_GEOMETRY_ID ? 0 : -1;
-            const Place& place = places_[packet.is_active[i] ? packet.primitive[i] : places_.size() - 1];
+            const Place& place = places_[packet.primitive[i] & static_cast<uint32_t>(packet.is_active[i])];
             packet.instance[i] = place.instance;
             packet.triangle[i] = place.triangle;
-            packet.t_max[i] /= unit_;
+            packet.t_max[i] *= 1 / unit_;
         }
     }
     void find_any_hits(RayPacket& packet) const override {

@@ -175,8 +175,7 @@ LAB_INLINE void load_words(const Mask& mask, const void* base, const Lanes<int>&
     if constexpr (count < 4) {
         // It takes signed numbers: those from the middle of the words.
         const int* const middle = static_cast<const int*>(base) + (size_t{1} << 31);
-        for (int word = 0; word < count; ++word)
-            words[word].raw = gather(mask.raw, middle + word, offset.raw ^ INT32_MIN);
+        for (int word = 0; word < count; ++word) words[word].raw = gather(mask.raw, middle + word, offset.raw ^ INT32_MIN);
         return;
     }
     uint32_t offsets[lane_count];

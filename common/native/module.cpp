@@ -90,7 +90,7 @@ std::vector<std::string> compiler_arguments() {
         arguments.insert(arguments.end(),
                          {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG", "-finline-limit=4000",
                           "--param=large-function-growth=2000", "--param=inline-unit-growth=1000"});
-    if (wished_lanes() == "8") arguments.emplace_back("-mno-avx512f");
+    if (wished_lanes() == "8" && why_no_lanes().empty()) arguments.emplace_back("-mno-avx512f");
     if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-g", "-DNDEBUG"});
     if (mode == Mode::checked) arguments.insert(arguments.end(), {"-O1", "-g", "-DLAB_CHECKED", "-fsanitize=undefined"});
     return arguments;
@@ -222,7 +222,8 @@ std::mutex& mutex_of(const std::string& name) {
 void* load_library(const std::string& text, const std::vector<std::string>& arguments, std::string& refusal) {
     std::string key = find_compiler().string() + processor() + text;
     for (const auto& argument : arguments) key += " " + argument;
-    for (const char* header : {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "vectors.h", "packet.h", "bindings.h", "embree.h"})
+    for (const char* header :
+         {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "vectors.h", "packet.h", "bindings.h", "embree.h"})
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = cache_name("native", key);
     const fs::path file = cache_file(name);

@@ -24,8 +24,8 @@ void set_mode(Mode mode);
 struct Code {
     RunGroup run;
     int invocations_at_once;
-    // Empty where several invocations run at once. They do on CPUs with AVX2, unless LAB_LANES=0 is in the environment or lanes lack
-    // something that the shader uses. With LAB_LANES=8 there, CPUs with AVX-512 take eight of sixteen lanes, as others do.
+    // Empty where several invocations run at once. They do on CPUs with AVX2, unless LAB_LANES=0 is in the environment or lanes
+    // lack something that the shader uses. With LAB_LANES=8 there, CPUs with AVX-512 take eight of sixteen lanes, as others do.
     std::string why_one_by_one;
 };
 // It comes from the cache if possible. Throws UserError if the compiler refuses what translate() makes of it.

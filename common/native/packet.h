@@ -1,5 +1,5 @@
-// How many invocations run at once where lanes run a shader, and the rays that they trace together. Only what is compiled for this
-// computer's CPU includes it: the lab's programs do not know the width of its vectors.
+// How many invocations run at once where lanes run a shader, and the rays that they trace together. Only what is compiled for
+// this computer's CPU includes it: the lab's programs do not know the width of its vectors.
 #pragma once
 #include <cstdint>
 

@@ -67,7 +67,8 @@ LAB_INLINE Integers shuffle_fours(Integers a, Integers b) {
     constexpr int chosen[]{which...};
     return [&]<size_t... i>(std::index_sequence<i...>) {
         return __builtin_shufflevector(a, b, (int(i) / 4 * 4 + chosen[i % 4] % 4 + chosen[i % 4] / 4 * lane_count)...);
-    }(std::make_index_sequence<lane_count>());
+    }
+    (std::make_index_sequence<lane_count>());
 }
 
 }  // namespace lab::native::lanes

@@ -94,8 +94,7 @@ void main() {
     elements[last].b = elements[last].a.y + elements[last].c.w + elements[last].e[3] + elements[last].d.x;
 })");
     EXPECT_EQ(code.why_one_by_one, "");
-    for (uint32_t i = 0; i < 16; ++i)
-        elements[count - 1 - i] = {{0, 10 + i, 0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 0, 2}};
+    for (uint32_t i = 0; i < 16; ++i) elements[count - 1 - i] = {{0, 10 + i, 0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 0, 2}};
     native::Bindings bindings{};
     bindings.ranges[1] = {reinterpret_cast<std::byte*>(memory), elements.size_bytes()};
     native::run_groups(code.run, bindings, 0, 1);
