@@ -115,7 +115,7 @@ class NativeTracer : public Tracer {
         return seconds_since(start);
     }
     std::optional<PathsAtOnce> paths_at_once() const override {
-        return PathsAtOnce{code_.why_one_by_one.empty() ? native::lane_count : 1, code_.why_one_by_one};
+        return PathsAtOnce{code_.invocations_at_once, code_.why_one_by_one};
     }
 
   private:

@@ -13,6 +13,8 @@ namespace lab::native {
 
 using namespace glm;  // for names of types alone: a shader's functions are those of `Builtins`
 
+inline constexpr int invocations_at_once = 1;
+
 // An index of an array. Where shaders are checked it knows the line that uses it.
 #ifdef LAB_CHECKED
 struct Index {

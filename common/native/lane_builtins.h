@@ -4,14 +4,6 @@
 
 namespace lab::native::lanes {
 
-// Of the C library: libmvec.
-using Floats = Lanes<float>::Raw;
-extern "C" Floats _ZGVdN8v_sinf(Floats);
-extern "C" Floats _ZGVdN8v_cosf(Floats);
-extern "C" Floats _ZGVdN8v_expf(Floats);
-extern "C" Floats _ZGVdN8v_logf(Floats);
-extern "C" Floats _ZGVdN8vv_powf(Floats, Floats);
-
 // What a function gives that is called for each lane by itself.
 template <typename T>
 LAB_INLINE auto lane_of(const T& x, int lane) {
@@ -45,9 +37,13 @@ LAB_INLINE auto by_lane(const F& f, const T&... x) {
 // The upper half of a product.
 template <typename T>
 LAB_INLINE Lanes<T> product_above(const Lanes<T>& a, const Lanes<T>& b) {
-    typedef decltype(wide(T())) Wide __attribute__((vector_size(8 * lane_count)));
-    const Wide product = __builtin_convertvector(a.raw, Wide) * __builtin_convertvector(b.raw, Wide);
-    return Lanes<T>::of(__builtin_convertvector(product >> 32, typename Lanes<T>::Raw));
+    typedef decltype(wide(T())) Wide __attribute__((vector_size(4 * lane_count)));
+    const Wide p = reinterpret_cast<Wide>(a.raw), q = reinterpret_cast<Wide>(b.raw);
+    const Wide even = (p << 32 >> 32) * (q << 32 >> 32), odd = (p >> 32) * (q >> 32);
+    constexpr auto high_half = static_cast<decltype(wide(T()))>(~uint64_t{0} << 32);
+    typedef uint64_t Unsigned __attribute__((vector_size(4 * lane_count)));
+    const Wide low = reinterpret_cast<Wide>(reinterpret_cast<Unsigned>(even) >> 32);
+    return Lanes<T>::of(reinterpret_cast<typename Lanes<T>::Raw>(low | (odd & high_half)));
 }
 
 struct Builtins : native::Builtins {
@@ -82,9 +78,9 @@ struct Builtins : native::Builtins {
     LAB_ALONE(unpackHalf2x16) LAB_ALONE(packUnorm4x8) LAB_ALONE(unpackUnorm4x8) LAB_ALONE(packUnorm2x16)
     LAB_ALONE(unpackUnorm2x16) LAB_ALONE(packSnorm4x8) LAB_ALONE(unpackSnorm4x8) LAB_ALONE(packSnorm2x16)
     LAB_ALONE(unpackSnorm2x16) LAB_ALONE(carry) LAB_ALONE(borrow) LAB_ALONE(fraction) LAB_ALONE(exponent)
-    LAB_VECTOR(sin, _ZGVdN8v_sinf(z...)) LAB_VECTOR(cos, _ZGVdN8v_cosf(z...)) LAB_VECTOR(exp, _ZGVdN8v_expf(z...))
-    LAB_VECTOR(log, _ZGVdN8v_logf(z...)) LAB_VECTOR(pow, _ZGVdN8vv_powf(z...)) LAB_VECTOR(sqrt, __builtin_ia32_sqrtps256(z...))
-    LAB_EACH(floor, [](Float a) { return by_vector([](Floats z) { return __builtin_ia32_roundps256(z, 1); }, a); })
+    LAB_VECTOR(sin, LAB_LIBMVEC(v_sinf)(z...)) LAB_VECTOR(cos, LAB_LIBMVEC(v_cosf)(z...)) LAB_VECTOR(exp, LAB_LIBMVEC(v_expf)(z...))
+    LAB_VECTOR(log, LAB_LIBMVEC(v_logf)(z...)) LAB_VECTOR(pow, LAB_LIBMVEC(vv_powf)(z...)) LAB_VECTOR(sqrt, square_root(z...))
+    LAB_EACH(floor, [](Float a) { return by_vector([](Floats z) { return round_down(z); }, a); })
     LAB_EACH(inversesqrt, [](Float a) { return 1.0f / sqrt(a); })
     LAB_EACH(fract, [](Float a) { return a - floor(a); })
     LAB_EACH(min, [](const auto& a, const auto& b) { return lanes::select(less(b, a), b, a); })
@@ -255,8 +251,6 @@ struct ShaderBase : Builtins {
         write(packet.mask, Lanes<uint>(~0u));
         write(packet.flags, Lanes<uint>(0u));
         write(packet.is_active, active);
-        const int first = std::countr_zero(bits_of(active));
-        packet.is_coherent = !lanes::any(active & (origin != vec3(origin.x[first], origin.y[first], origin.z[first])));
         return packet;
     }
 };
@@ -266,7 +260,8 @@ template <typename Shader>
 Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) {
     return native::run_group(error, error_size, [&] {
         for (uint first = 0; first < Shader::local_size__; first += lane_count) {
-            const Lanes<uint> index = Lanes<uint>::of(Lanes<uint>::Raw{0, 1, 2, 3, 4, 5, 6, 7} + first);
+            Lanes<uint> index;
+            for (uint lane = 0; lane < lane_count; ++lane) index.set(static_cast<int>(lane), first + lane);
             const V<uvec3> local = make<uvec3>(index, 0u, 0u), global = make<uvec3>(index + group * Shader::local_size__, 0u, 0u);
             Shader shader{{{}, bindings, uvec3(group, 0, 0), local, global, index}};
             shader.main__(index < Shader::local_size__);

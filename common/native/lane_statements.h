@@ -135,53 +135,31 @@ LAB_INLINE auto field(const Ref<T>& ref, const F& f) {
 // Loads `count` words in a row for each lane. Rows that are transposed are several times as fast as gathering words.
 template <int count>
 LAB_INLINE void load_words(const Mask& mask, const void* base, const Lanes<int>& offset, Lanes<int>* words) {
-    using Raw = Lanes<int>::Raw;
-    if constexpr (count == 1) {
+    if constexpr (count < 4) {
         // It takes signed numbers: those from the middle of the words.
         const int* const middle = static_cast<const int*>(base) + (size_t{1} << 31);
-        const Raw from_middle = offset.raw ^ INT32_MIN;
-#ifdef __clang__
-        words[0].raw = __builtin_ia32_gatherd_d256(Raw{}, middle, from_middle, mask.raw, 4);
-#else
-        words[0].raw = __builtin_ia32_gathersiv8si(Raw{}, middle, from_middle, mask.raw, 4);
-#endif
+        for (int word = 0; word < count; ++word) words[word].raw = gather(mask.raw, middle + word, offset.raw ^ INT32_MIN);
         return;
     }
     uint32_t offsets[lane_count];
     const auto first = offset.raw & mask.raw;  // idle lanes read the first element
     std::memcpy(offsets, &first, sizeof offsets);
-    const auto row = [&](int lane, int word) { return static_cast<const int*>(base) + offsets[lane] + word; };
-    for (int word = 0; count >= 4 && word < count; word += 4) {
+    for (int word = 0; word < count; word += 4) {
         const int begin = std::min(word, count - 4);
-        const auto both = [&](int lane) {
-            int low __attribute__((vector_size(16))), high __attribute__((vector_size(16)));
-            std::memcpy(&low, row(lane, begin), sizeof low);
-            std::memcpy(&high, row(lane + 4, begin), sizeof high);
-            return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+        const auto rows = [&](int lane) {
+            return every_fourth([&](int more) {
+                Four row;
+                std::memcpy(&row, static_cast<const int*>(base) + offsets[lane + more] + begin, sizeof row);
+                return row;
+            });
         };
-        const Raw a = both(0), b = both(1), c = both(2), d = both(3);
-        const Raw low_ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
-                  low_cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-        const Raw high_ab = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
-                  high_cd = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-        words[begin].raw = __builtin_shufflevector(low_ab, low_cd, 0, 1, 8, 9, 4, 5, 12, 13);
-        words[begin + 1].raw = __builtin_shufflevector(low_ab, low_cd, 2, 3, 10, 11, 6, 7, 14, 15);
-        words[begin + 2].raw = __builtin_shufflevector(high_ab, high_cd, 0, 1, 8, 9, 4, 5, 12, 13);
-        words[begin + 3].raw = __builtin_shufflevector(high_ab, high_cd, 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-    if constexpr (count < 4) {
-        typedef int64_t Pairs __attribute__((vector_size(32)));
-        const auto pair = [&](int lane) {
-            int64_t x;
-            std::memcpy(&x, row(lane, 0), sizeof x);
-            return x;
-        };
-        const Raw a = reinterpret_cast<Raw>(Pairs{pair(0), pair(1), pair(4), pair(5)});
-        const Raw b = reinterpret_cast<Raw>(Pairs{pair(2), pair(3), pair(6), pair(7)});
-        words[0].raw = __builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14);
-        words[1].raw = __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
-        if constexpr (count == 3)
-            for (int lane = 0; lane < lane_count; ++lane) words[2].raw[lane] = *row(lane, 2);
+        const Integers a = rows(0), b = rows(1), c = rows(2), d = rows(3);
+        const Integers low_ab = shuffle_fours<0, 4, 1, 5>(a, b), low_cd = shuffle_fours<0, 4, 1, 5>(c, d),
+                       high_ab = shuffle_fours<2, 6, 3, 7>(a, b), high_cd = shuffle_fours<2, 6, 3, 7>(c, d);
+        words[begin].raw = shuffle_fours<0, 1, 4, 5>(low_ab, low_cd);
+        words[begin + 1].raw = shuffle_fours<2, 3, 6, 7>(low_ab, low_cd);
+        words[begin + 2].raw = shuffle_fours<0, 1, 4, 5>(high_ab, high_cd);
+        words[begin + 3].raw = shuffle_fours<2, 3, 6, 7>(high_ab, high_cd);
     }
 }
 // Calls `f` for each number, in the order of memory.

@@ -1,14 +1,11 @@
-// Eight invocations of a translated shader at once. A number that differs between them is a `Lanes`, a mask says which ones
-// execute a statement, and each reads memory at an index of its own. translator.h says what uses this; it needs AVX2.
-// Instructions are GCC's builtins: it reads <immintrin.h> for longer than some chapters.
+// Eight or sixteen invocations of a translated shader at once. A number that differs between them is a `Lanes`, a mask says which
+// ones execute a statement, and each reads memory at an index of its own. translator.h says what uses this; it needs AVX2.
 #pragma once
 #include <algorithm>
 #include <cstring>
 
 #include "native/glsl.h"
-
-// In the code that calls them, vectors of such functions stay in registers.
-#define LAB_INLINE [[gnu::always_inline]] inline
+#include "native/vectors.h"
 
 namespace lab::native {
 // Outside of lanes, so that functions of structures are not looked up there.
@@ -19,6 +16,8 @@ using Uniform = T;
 namespace lab::native::lanes {
 
 using namespace native;
+
+inline constexpr int invocations_at_once = lane_count;
 
 // A float, int, uint or bool for each invocation; a bool is 0 or -1.
 template <typename T>
@@ -52,9 +51,7 @@ struct Lanes {
 };
 using Mask = Lanes<bool>;
 
-LAB_INLINE uint32_t bits_of(const Mask& mask) {
-    return static_cast<uint32_t>(__builtin_ia32_movmskps256(reinterpret_cast<Lanes<float>::Raw>(mask.raw)));
-}
+LAB_INLINE uint32_t bits_of(const Mask& mask) { return signs(mask.raw); }
 LAB_INLINE bool any(const Mask& mask) { return bits_of(mask) != 0; }
 template <typename F>
 LAB_INLINE void for_each_lane(const Mask& mask, const F& f) {

@@ -49,11 +49,16 @@ namespace fs = std::filesystem;
 
 Mode mode = Mode::fast;
 
+std::string wished_lanes() {
+    const char* wish = std::getenv("LAB_LANES");
+    return wish ? wish : "";
+}
+
 // Why no shader may run in lanes; empty if some may.
 std::string why_no_lanes() {
     if (mode == Mode::checked) return "--sanitize";
     if (mode == Mode::debug) return "a debugger sees no lanes";
-    if (const char* wish = std::getenv("LAB_LANES"); wish && std::string(wish) == "0") return "LAB_LANES=0";
+    if (wished_lanes() == "0") return "LAB_LANES=0";
 #if defined(__x86_64__) && defined(__GLIBC__)
     return __builtin_cpu_supports("avx2") ? "" : "the CPU lacks AVX2";
 #else
@@ -85,6 +90,7 @@ std::vector<std::string> compiler_arguments() {
         arguments.insert(arguments.end(),
                          {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG", "-finline-limit=4000",
                           "--param=large-function-growth=2000", "--param=inline-unit-growth=1000"});
+    if (wished_lanes() == "8" && why_no_lanes().empty()) arguments.emplace_back("-mno-avx512f");
     if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-g", "-DNDEBUG"});
     if (mode == Mode::checked) arguments.insert(arguments.end(), {"-O1", "-g", "-DLAB_CHECKED", "-fsanitize=undefined"});
     return arguments;
@@ -216,7 +222,8 @@ std::mutex& mutex_of(const std::string& name) {
 void* load_library(const std::string& text, const std::vector<std::string>& arguments, std::string& refusal) {
     std::string key = find_compiler().string() + processor() + text;
     for (const auto& argument : arguments) key += " " + argument;
-    for (const char* header : {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "bindings.h", "embree.h"})
+    for (const char* header :
+         {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "vectors.h", "packet.h", "bindings.h", "embree.h"})
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = cache_name("native", key);
     const fs::path file = cache_file(name);
@@ -304,7 +311,8 @@ void set_mode(Mode wanted) { mode = wanted; }
 
 Code load(const std::vector<uint32_t>& spirv) {
     const auto code_of = [](void* library, const std::string& why_one_by_one) {
-        return Code{reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group")), why_one_by_one};
+        return Code{reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group")),
+                    *static_cast<const int*>(dlsym(library, "lab_invocations_at_once")), why_one_by_one};
     };
     auto arguments = compiler_arguments();
     std::string refusal = why_no_lanes();

@@ -23,8 +23,9 @@ void set_mode(Mode mode);
 // A compute shader as code, which stays loaded.
 struct Code {
     RunGroup run;
-    // Empty where lane_count invocations run at once. They do on CPUs with AVX2, unless LAB_LANES=0 is in the environment or
-    // the compiler refuses what lanes are made of.
+    int invocations_at_once;
+    // Empty where several invocations run at once. They do on CPUs with AVX2, unless LAB_LANES=0 is in the environment or the
+    // compiler refuses what lanes are made of. With LAB_LANES=8 there, CPUs with AVX-512 take eight of sixteen lanes.
     std::string why_one_by_one;
 };
 // It comes from the cache if possible. Throws UserError if the compiler refuses what translate() makes of it.

@@ -298,7 +298,9 @@ std::string Writer::write() {
     return prologue() + macros +
            "namespace lab::native {\nstruct Shader : lab__::ShaderBase {\nstatic constexpr lab__::uint local_size__ = " +
            std::to_string(program_.local_size) + ";\n" + globals + code +
-           "\n};\n}\nextern \"C\" __attribute__((visibility(\"default\"))) lab::native::Outcome lab_run_group(\n"
+           "\n};\n}\nextern \"C\" __attribute__((visibility(\"default\"))) const int lab_invocations_at_once = "
+           "lab__::invocations_at_once;\n"
+           "extern \"C\" __attribute__((visibility(\"default\"))) lab::native::Outcome lab_run_group(\n"
            "    const lab::native::Bindings& bindings, uint32_t group, char* error, size_t size) {\n"
            "    return lab__::run_group<lab::native::Shader>(bindings, group, error, size);\n}\n";
 }

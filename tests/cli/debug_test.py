@@ -125,9 +125,11 @@ class LanesTest(CopiedLab, ProgramTest):
     """How many paths run at once is said, with the reason if it is one."""
 
     def test_one_variable_turns_lanes_off(self):
-        if " avx2 " not in Path("/proc/cpuinfo").read_text(encoding="utf-8"):
+        cpu = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+        if " avx2 " not in cpu:
             self.skipTest("the CPU lacks AVX2")
-        for how, arguments, environment in (("8 paths at a time", [], {}), ("1 path at a time: LAB_LANES=0", [], {"LAB_LANES": "0"}),
+        for how, arguments, environment in ((f"{16 if ' avx512dq ' in cpu else 8} paths at a time", [], {}),
+                                            ("8 paths at a time", [], {"LAB_LANES": "8"}), ("1 path at a time: LAB_LANES=0", [], {"LAB_LANES": "0"}),
                                             ("1 path at a time: --sanitize", ["--sanitize"], {})):
             self.assertIn(f"\neach core      traces {how}\n", self.render(*arguments, **environment).stdout)
 

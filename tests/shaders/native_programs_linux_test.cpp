@@ -162,7 +162,7 @@ class ProgramWriter {
     int next_name_ = 0, loops_ = 0;
 };
 
-constexpr uint32_t invocations = 13;  // in the second packet some lanes are idle
+constexpr uint32_t invocations = 29;  // in the last packet some lanes are idle
 constexpr uint32_t group_count = 2;
 constexpr uint32_t program_count = 25;  // of a shader
 
@@ -220,7 +220,8 @@ std::vector<uint32_t> run_on_device(const ShaderSource& source) {
     return results;
 }
 
-// Compares programs on the device with the same programs in lanes and one by one.
+// Compares programs on the device with the same programs in lanes, in eight lanes as CPUs without AVX-512 have them, and one by
+// one.
 void expect_equal_results(uint32_t first_seed, uint32_t shader_count) {
     const TemporaryFolder folder;
     const auto seed_of = [&](size_t shader, size_t program) {
@@ -241,11 +242,16 @@ void expect_equal_results(uint32_t first_seed, uint32_t shader_count) {
         return codes;
     };
     const std::vector<native::Code> lanes = load_all(native::Mode::fast), scalar = load_all(native::Mode::debug);
+    setenv("LAB_LANES", "8", 1);
+    const std::vector<native::Code> eight = load_all(native::Mode::fast);
+    unsetenv("LAB_LANES");
     for (size_t shader = 0; shader < shader_count; ++shader) {
         ASSERT_EQ(lanes[shader].why_one_by_one, "");
-        ASSERT_NE(scalar[shader].why_one_by_one, "");
+        ASSERT_EQ(eight[shader].invocations_at_once, 8);
+        ASSERT_EQ(scalar[shader].invocations_at_once, 1);
         const std::vector<uint32_t> expected = run_on_device(sources[shader]);
-        for (const auto& [code, how] : {std::pair(lanes[shader], "in lanes"), std::pair(scalar[shader], "one by one")}) {
+        for (const auto& [code, how] : {std::pair(lanes[shader], "in lanes"), std::pair(eight[shader], "in eight lanes"),
+                                        std::pair(scalar[shader], "one by one")}) {
             const std::vector<uint32_t> results = run_natively(code);
             const auto wrong = std::mismatch(results.begin(), results.end(), expected.begin());
             if (wrong.first == results.end()) continue;

@@ -1,0 +1,74 @@
+// Vectors of as many numbers as there are lanes, and what CPUs with AVX2 or AVX-512 do with them that C++ has no operators for.
+// Instructions are GCC's builtins: it reads <immintrin.h> for longer than some chapters.
+#pragma once
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "native/packet.h"
+
+// In the code that calls them, vectors of such functions stay in registers.
+#define LAB_INLINE [[gnu::always_inline]] inline
+
+namespace lab::native::lanes {
+
+typedef float Floats __attribute__((vector_size(4 * lane_count)));
+typedef int32_t Integers __attribute__((vector_size(4 * lane_count)));
+typedef int32_t Four __attribute__((vector_size(16)));
+
+#ifdef __AVX512DQ__
+#define LAB_LIBMVEC(name) _ZGVeN16##name
+LAB_INLINE uint32_t signs(Integers x) { return static_cast<uint16_t>(__builtin_ia32_cvtd2mask512(x)); }
+LAB_INLINE Floats round_down(Floats x) { return __builtin_ia32_rndscaleps_mask(x, 1, x, -1, 4); }
+#ifdef __clang__
+LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps512(x, 4); }
+#else
+LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps512_mask(x, x, -1, 4); }
+#endif
+LAB_INLINE Integers gather(Integers mask, const int32_t* base, Integers index) {
+    return __builtin_ia32_gathersiv16si(Integers{}, base, index, __builtin_ia32_cvtd2mask512(mask), 4);
+}
+// row(0), row(4), ... one behind the other.
+template <typename Row>
+LAB_INLINE Integers every_fourth(const Row& row) {
+    typedef int32_t Eight __attribute__((vector_size(32)));
+    const Eight low = __builtin_shufflevector(row(0), row(4), 0, 1, 2, 3, 4, 5, 6, 7),
+                high = __builtin_shufflevector(row(8), row(12), 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+#else
+#define LAB_LIBMVEC(name) _ZGVdN8##name
+LAB_INLINE uint32_t signs(Integers x) { return static_cast<uint32_t>(__builtin_ia32_movmskps256(reinterpret_cast<Floats>(x))); }
+LAB_INLINE Floats round_down(Floats x) { return __builtin_ia32_roundps256(x, 1); }
+LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps256(x); }
+LAB_INLINE Integers gather(Integers mask, const int32_t* base, Integers index) {
+#ifdef __clang__
+    return __builtin_ia32_gatherd_d256(Integers{}, base, index, mask, 4);
+#else
+    return __builtin_ia32_gathersiv8si(Integers{}, base, index, mask, 4);
+#endif
+}
+template <typename Row>
+LAB_INLINE Integers every_fourth(const Row& row) {
+    return __builtin_shufflevector(row(0), row(4), 0, 1, 2, 3, 4, 5, 6, 7);
+}
+#endif
+
+// Of the C library.
+extern "C" Floats LAB_LIBMVEC(v_sinf)(Floats);
+extern "C" Floats LAB_LIBMVEC(v_cosf)(Floats);
+extern "C" Floats LAB_LIBMVEC(v_expf)(Floats);
+extern "C" Floats LAB_LIBMVEC(v_logf)(Floats);
+extern "C" Floats LAB_LIBMVEC(vv_powf)(Floats, Floats);
+
+// Takes elements of each four of `a` and of `b`, where 0 to 3 count those of `a` and 4 to 7 those of `b`.
+template <int... which>
+LAB_INLINE Integers shuffle_fours(Integers a, Integers b) {
+    constexpr int chosen[]{which...};
+    return [&]<size_t... i>(std::index_sequence<i...>) {
+        return __builtin_shufflevector(a, b, (int(i) / 4 * 4 + chosen[i % 4] % 4 + chosen[i % 4] / 4 * lane_count)...);
+    }
+    (std::make_index_sequence<lane_count>());
+}
+
+}  // namespace lab::native::lanes
