@@ -4,6 +4,159 @@
 #include <cstring>
 
 namespace lab::native {
+namespace {
+
+using Blocks = std::map<Id, std::vector<Instruction>>;
+
+// Makes a tree of a function's blocks. glslang writes them in the shape of GLSL's statements: a selection and a loop name the
+// block that follows them.
+class TreeBuilder {
+  public:
+    TreeBuilder(Program& program, const Blocks& blocks) : program_(program), blocks_(blocks) {}
+
+    struct Targets {  // of jumps
+        Id leave_loop = 0, next_turn = 0, leave_cases = 0, next_case = 0;
+    };
+    // Blocks from `first` up to `end`, which the caller goes on with.
+    Sequence sequence(Id first, Id end, const Targets& targets) {
+        Sequence all;
+        ++depth_;
+        for (Id label = first; label != 0;) {
+            Id merge = 0, next_turn = 0, target = 0;  // what follows
+            for (const Instruction& instruction : blocks_.at(label)) {
+                check_depth(instruction);
+                const auto& operands = instruction.operands;
+                switch (instruction.op) {
+                    case spv::OpPhi:
+                        all.variables.push_back(instruction.id);
+                        break;
+                    case spv::OpVariable:
+                        if (operands.size() > 1)
+                            program_.tables[instruction.id] = operands[1];
+                        else
+                            all.variables.push_back(instruction.id);
+                        break;
+                    case spv::OpSelectionMerge:
+                        merge = operands[0];
+                        break;
+                    case spv::OpLoopMerge:
+                        merge = operands[0];
+                        next_turn = operands[1];
+                        break;
+                    case spv::OpBranch:
+                        target = operands[0];
+                        if (!next_turn) break;
+                        all.statements.push_back(loop(instruction, label, merge, next_turn));
+                        target = std::exchange(merge, 0);
+                        break;
+                    case spv::OpBranchConditional:
+                        all.statements.push_back(branch(instruction, label, merge, end, targets, target));
+                        break;
+                    case spv::OpSwitch:
+                        all.statements.push_back(cases(instruction, label, merge, targets));
+                        target = merge;
+                        break;
+                    case spv::OpReturn:
+                    case spv::OpReturnValue:
+                        all.statements.push_back(statement(Kind::give_back, instruction, operands.empty() ? 0 : operands[0]));
+                        break;
+                    case spv::OpUnreachable:
+                        break;
+                    default:
+                        all.statements.push_back({.instruction = instruction});
+                }
+            }
+            if (target != 0 && (merge == 0 || target != merge)) set_merged(all, label, target);
+            const bool ends = target == 0 || target == end || jump(all, blocks_.at(label).back(), target, targets);
+            label = ends ? 0 : target;
+        }
+        --depth_;
+        return all;
+    }
+
+  private:
+    using Kind = Statement::Kind;
+
+    static Statement statement(Kind kind, const Instruction& at, Id value = 0) {
+        return {.kind = kind, .instruction = {.file = at.file, .line = at.line}, .value = value};
+    }
+    void check_depth(const Instruction& at) const {
+        constexpr int deepest = 256;
+        if (depth_ > deepest && at.line)
+            throw UserError(program_.place(at) + ": more than " + std::to_string(deepest) +
+                            " levels of blocks are too many for the backend native: use another one, --backend compute");
+    }
+    // What an OpPhi gets on the way from one block to another.
+    void set_merged(Sequence& sequence, Id source, Id target) const {
+        for (const Instruction& phi : blocks_.at(target)) {
+            if (phi.op != spv::OpPhi) continue;
+            for (size_t i = 0; i < phi.operands.size(); i += 2) {
+                if (phi.operands[i + 1] != source) continue;
+                sequence.statements.push_back(statement(Kind::merge, phi, phi.operands[i]));
+                sequence.statements.back().variable = phi.id;
+            }
+        }
+    }
+    // Adds a jump if `target` is where one leads. True if the sequence ends there.
+    static bool jump(Sequence& sequence, const Instruction& at, Id target, const Targets& targets) {
+        const Kind kind = target == targets.leave_loop    ? Kind::leave_loop
+                          : target == targets.next_turn   ? Kind::next_turn
+                          : target == targets.leave_cases ? Kind::leave_cases
+                                                          : Kind::instruction;
+        if (kind == Kind::instruction) return target == targets.next_case;
+        sequence.statements.push_back(statement(kind, at));
+        return true;
+    }
+    // What begins at `target`, which the block `source` goes to.
+    Sequence part(const Instruction& at, Id source, Id target, Id end, const Targets& targets) {
+        Sequence all;
+        set_merged(all, source, target);
+        if (target == end || jump(all, at, target, targets)) return all;
+        Sequence rest = sequence(target, end, targets);
+        std::move(rest.statements.begin(), rest.statements.end(), std::back_inserter(all.statements));
+        all.variables = std::move(rest.variables);
+        return all;
+    }
+    Statement loop(const Instruction& at, Id label, Id merge, Id next_turn) {
+        Statement all = statement(Kind::loop, at);
+        all.parts.push_back(part(at, label, at.operands[0], next_turn, {.leave_loop = merge, .next_turn = next_turn}));
+        all.parts.push_back(sequence(next_turn, label, {.leave_loop = merge}));
+        return all;
+    }
+    Statement branch(const Instruction& at, Id label, Id merge, Id end, const Targets& targets, Id& target) {
+        Statement all = statement(Kind::branch, at, at.operands[0]);
+        const Id first = at.operands[1], second = at.operands[2];
+        Sequence nothing;
+        if (merge)
+            target = merge;
+        else  // a loop's condition: one side jumps
+            target = second == end || (first != end && jump(nothing, at, first, targets)) ? second : first;
+        for (const Id to : {first, second})
+            all.parts.push_back(!merge && to == target ? Sequence{} : part(at, label, to, merge ? merge : end, targets));
+        return all;
+    }
+    Statement cases(const Instruction& at, Id label, Id merge, const Targets& targets) {
+        Statement all = statement(Kind::cases, at, at.operands[0]);
+        const Id otherwise = at.operands[1];
+        std::map<Id, std::vector<uint32_t>> literals{{otherwise, {}}};  // by their blocks, in the order of the text
+        for (size_t i = 2; i < at.operands.size(); i += 2) literals[at.operands[i + 1]].push_back(at.operands[i]);
+        literals.erase(merge);  // nothing to do
+        Targets inside = targets;
+        inside.leave_cases = merge;
+        for (auto i = literals.begin(); i != literals.end(); ++i) {
+            inside.next_case = std::next(i) == literals.end() ? 0 : std::next(i)->first;
+            all.parts.push_back(part(at, label, i->first, 0, inside));
+            all.literals.push_back(i->first == otherwise ? std::vector<uint32_t>{} : i->second);
+        }
+        return all;
+    }
+
+    Program& program_;
+    const Blocks& blocks_;
+    int depth_ = 0;
+};
+
+}  // namespace
 
 Program::Program(const std::vector<uint32_t>& words) {
     Function* function = nullptr;
@@ -73,7 +226,7 @@ void Program::read(Instruction& instruction, Function*& function, Blocks& blocks
             blocks[block];
             break;
         case spv::OpFunctionEnd:
-            function->body = sequence(blocks, blocks.at(0).front().operands[0], 0, {}, 0);
+            function->body = TreeBuilder(*this, blocks).sequence(blocks.at(0).front().operands[0], 0, {});
             move_inwards(function->body);
             blocks.clear();
             function = nullptr;
@@ -85,135 +238,6 @@ void Program::read(Instruction& instruction, Function*& function, Blocks& blocks
                 globals.push_back(instruction.id);
                 definitions_[instruction.id] = std::move(instruction);
             }
-    }
-}
-
-// Blocks from `first`, which `from` jumps to, up to `end`. glslang writes them in the shape of GLSL's statements: a selection
-// and a loop name the block that follows them.
-Sequence Program::sequence(const Blocks& blocks, Id first, Id end, const Targets& targets, int depth) {
-    using Kind = Statement::Kind;
-    constexpr int deepest = 256;
-    Sequence all;
-    for (Id label = first;;) {
-        const std::vector<Instruction>& block = blocks.at(label);
-        const auto merges = [&](Sequence& sequence, Id source, Id target) {  // on the way from one block to another
-            for (const Instruction& phi : blocks.at(target)) {
-                if (phi.op != spv::OpPhi) continue;
-                for (size_t i = 0; i < phi.operands.size(); i += 2)
-                    if (phi.operands[i + 1] == source)
-                        sequence.statements.push_back({.kind = Kind::merge,
-                                                       .instruction = {.file = phi.file, .line = phi.line},
-                                                       .variable = phi.id,
-                                                       .value = phi.operands[i]});
-            }
-        };
-        const auto jump = [&](Sequence& sequence, Id target, const Targets& open) {  // whether it is one
-            const Kind kind = target == open.leave_loop    ? Kind::leave_loop
-                              : target == open.next_turn   ? Kind::next_turn
-                              : target == open.leave_cases ? Kind::leave_cases
-                                                           : Kind::instruction;
-            if (kind == Kind::instruction) return target == open.next_case;
-            sequence.statements.push_back({.kind = kind, .instruction = {.file = block.back().file, .line = block.back().line}});
-            return true;
-        };
-        const auto part = [&](Id target, Id stop, const Targets& open) {
-            Sequence inner;
-            merges(inner, label, target);
-            if (target == stop || jump(inner, target, open)) return inner;
-            Sequence rest = sequence(blocks, target, stop, open, depth + 1);
-            std::move(rest.statements.begin(), rest.statements.end(), std::back_inserter(inner.statements));
-            inner.variables = std::move(rest.variables);
-            return inner;
-        };
-        Id merge = 0, next_turn = 0;
-        Id target = 0;
-        for (const Instruction& instruction : block) {
-            if (depth > deepest && instruction.line)
-                throw UserError(place(instruction) + ": more than " + std::to_string(deepest) +
-                                " levels of blocks are too many for the backend native: use another one, --backend compute");
-            const auto& operands = instruction.operands;
-            Statement statement{.instruction = {.file = instruction.file, .line = instruction.line}};
-            switch (instruction.op) {
-                case spv::OpPhi:
-                    all.variables.push_back(instruction.id);
-                    break;
-                case spv::OpVariable:
-                    if (operands.size() > 1)
-                        tables[instruction.id] = operands[1];
-                    else
-                        all.variables.push_back(instruction.id);
-                    break;
-                case spv::OpSelectionMerge:
-                    merge = operands[0];
-                    break;
-                case spv::OpLoopMerge:
-                    merge = operands[0];
-                    next_turn = operands[1];
-                    break;
-                case spv::OpBranch:
-                    target = operands[0];
-                    if (!next_turn) break;
-                    {
-                        const Targets inside{.leave_loop = merge, .next_turn = next_turn};
-                        statement.kind = Kind::loop;
-                        statement.parts.push_back(part(target, next_turn, inside));
-                        Targets at_end = inside;
-                        at_end.next_turn = 0;
-                        statement.parts.push_back(sequence(blocks, next_turn, label, at_end, depth + 1));
-                        all.statements.push_back(std::move(statement));
-                        target = merge;
-                        merge = 0;
-                    }
-                    break;
-                case spv::OpBranchConditional: {
-                    statement.kind = Kind::branch;
-                    statement.value = operands[0];
-                    if (merge) {
-                        for (const Id to : {operands[1], operands[2]}) statement.parts.push_back(part(to, merge, targets));
-                        target = merge;
-                    } else {  // a loop's condition: one side jumps
-                        Sequence nothing;
-                        const bool is_second = operands[2] == end || (operands[1] != end && jump(nothing, operands[1], targets));
-                        target = operands[is_second ? 2 : 1];
-                        for (const Id to : {operands[1], operands[2]})
-                            statement.parts.push_back(to == target ? Sequence{} : part(to, end, targets));
-                    }
-                    all.statements.push_back(std::move(statement));
-                    break;
-                }
-                case spv::OpSwitch: {
-                    statement.kind = Kind::cases;
-                    statement.value = operands[0];
-                    std::map<Id, std::vector<uint32_t>> cases{{operands[1], {}}};
-                    for (size_t i = 2; i < operands.size(); i += 2) cases[operands[i + 1]].push_back(operands[i]);
-                    cases.erase(merge);  // nothing to do
-                    Targets inside = targets;
-                    inside.leave_cases = merge;
-                    for (auto i = cases.begin(); i != cases.end(); ++i) {
-                        inside.next_case = std::next(i) == cases.end() ? 0 : std::next(i)->first;
-                        statement.parts.push_back(part(i->first, 0, inside));
-                        statement.literals.push_back(i->first == operands[1] ? std::vector<uint32_t>{} : i->second);
-                    }
-                    all.statements.push_back(std::move(statement));
-                    target = merge;
-                    break;
-                }
-                case spv::OpReturn:
-                case spv::OpReturnValue:
-                    statement.kind = Kind::give_back;
-                    if (!operands.empty()) statement.value = operands[0];
-                    all.statements.push_back(std::move(statement));
-                    return all;
-                case spv::OpUnreachable:
-                    return all;
-                default:
-                    statement.instruction = instruction;
-                    all.statements.push_back(std::move(statement));
-            }
-        }
-        if (merge == 0 || target != merge) merges(all, label, target);
-        if (target == end || jump(all, target, targets)) return all;
-        label = target;
     }
 }
 

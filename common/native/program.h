@@ -123,11 +123,7 @@ class Program {
 
   private:
     using Blocks = std::map<Id, std::vector<Instruction>>;
-    struct Targets {  // of jumps
-        Id leave_loop = 0, next_turn = 0, leave_cases = 0, next_case = 0;
-    };
     void read(Instruction& instruction, Function*& function, Blocks& blocks, Id& block);
-    Sequence sequence(const Blocks& blocks, Id first, Id end, const Targets& targets, int depth);
     enum class Access { none, set, read };
     Access first_access(const Sequence& sequence, Id variable) const;
     void move_inwards(Sequence& sequence) const;
