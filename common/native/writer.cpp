@@ -89,11 +89,11 @@ void Writer::flush(bool only_reads) {
     }
     order_ = std::move(rest);
 }
-void Writer::give(const Instruction& instruction, const std::string& text, bool reads) {
+void Writer::give(const Instruction& instruction, const std::string& text, bool reads, Id root) {
     constexpr int deepest = 30;  // parentheses, which compilers do not like deep
     names_[instruction.id] = "value__" + std::to_string(instruction.id);
     const bool is_short = uses_[instruction.id] == 1 && depth_ < deepest;
-    pending_[instruction.id] = {text, reads || reads_, depth_ + 1};
+    pending_[instruction.id] = {text, reads || reads_, depth_ + 1, root};
     order_.push_back(instruction.id);
     if (!is_short) flush();
 }
@@ -143,7 +143,14 @@ void Writer::execute(const Instruction& instruction) {
     line(instruction);
     if (instruction.op == spv::OpStore) {
         const Pointer target = pointer_to(operands[0]);
+        const auto pending = pending_.find(operands[1]);
+        const Id root = pending == pending_.end() ? 0 : pending->second.root;
         const std::string text = value(operands[1]);
+        if (root && passed_only_.contains(target.root) &&
+            type_name(target.types[0], root) == type_name(target.types[0], target.root)) {
+            names_[target.root] = text;
+            return;
+        }
         if (undeclared_.erase(operands[0]) == 0) return store(target, text);
         flush(true);
         names_[target.root] = fresh_name(program_.name(target.root), target.root);
@@ -158,10 +165,13 @@ void Writer::execute(const Instruction& instruction) {
     }
     if (instruction.op == spv::OpLoad) {
         const Pointer source = pointer_to(operands[0]);
+        const bool is_fixed =
+            !program_.is_global(source.root) && !program_.tables.contains(source.root) &&
+            std::all_of(source.indices.begin(), source.indices.end(), [&](Id index) { return program_.is_constant(index); });
         if (kind(source.types.back()) == spv::OpTypeImage)
             pointers_[instruction.id] = source;
         else
-            give(instruction, load(source), true);
+            give(instruction, load(source), true, is_fixed ? source.root : 0);
         return;
     }
     if (!instruction.id) program_.fail(instruction, "a function of this line");
@@ -177,6 +187,31 @@ void Writer::execute(const Instruction& instruction) {
     give(instruction, text, changes_memory || instruction.op == spv::OpImageFetch);
     if (changes_memory) flush();
 }
+// Whether glslang has made a variable for an argument that the function only reads: it need not be a copy of what it gets.
+bool Writer::is_passed_only(Id variable, const Sequence& sequence) const {
+    bool is_set = false, is_passed = false;
+    for (const Statement& statement : sequence.statements) {
+        const Instruction& instruction = statement.instruction;
+        size_t uses = 0;
+        for_each_use(statement, [&](Id id) { uses += id == variable ? 1 : 0; });
+        const bool is_call = instruction.op == spv::OpFunctionCall;
+        if (!is_set) {
+            is_set = uses > 0;
+        } else if (is_passed || (uses > 0 && !is_call)) {
+            if (uses > 0) return false;
+        } else if (uses > 0) {
+            is_passed = true;
+            const auto& parameters = program_.functions.at(instruction.operands[0]).parameters;
+            for (size_t i = 0; i < parameters.size(); ++i)
+                if (instruction.operands[i + 1] == variable && (uses > 1 || written_.contains(parameters[i].id))) return false;
+        } else {  // nothing in between may change what it gets
+            const bool is_store = instruction.op == spv::OpStore && program_.name(instruction.operands[0]) == "param";
+            const bool has_effects = !instruction.id || is_call || instruction.op == spv::OpExtInst;
+            if (statement.kind != Statement::Kind::instruction || (has_effects && !is_store)) return false;
+        }
+    }
+    return is_passed && program_.name(variable) == "param";
+}
 // Declares a block's variables, but not those that its own assignments set first.
 void Writer::declare_all(const Sequence& sequence) {
     for (const Id variable : sequence.variables) {
@@ -189,6 +224,7 @@ void Writer::declare_all(const Sequence& sequence) {
         const bool is_pointer = program_.is_pointer(type_of(variable));
         if (first->instruction.op == spv::OpStore && first->instruction.operands[0] == variable) {
             undeclared_.insert(variable);
+            if (is_passed_only(variable, sequence)) passed_only_.insert(variable);
             continue;
         }
         names_[variable] = fresh_name(program_.name(variable), variable);
@@ -277,7 +313,14 @@ void Writer::reach(Id id) {
     names_[id] = fresh_name(program_.name(id), id);
     const auto visit = [&](const auto& self, const Statement& statement) -> void {
         if (statement.value) ++uses_[statement.value];
-        for (const Id used : ids_in(statement.instruction)) ++uses_[used];
+        const Instruction& instruction = statement.instruction;
+        for (const Id used : ids_in(instruction)) ++uses_[used];
+        note_pointer(pointers_, program_, instruction);
+        const bool is_call = instruction.op == spv::OpFunctionCall;
+        if (is_call || instruction.op == spv::OpStore || instruction.op == spv::OpExtInst || is_atomic(instruction.op))
+            for (const Id used : ids_in(instruction))
+                if (used != instruction.operands.back() || instruction.op != spv::OpStore)
+                    written_.insert(pointers_.contains(used) ? pointers_.at(used).root : used);
         if (statement.instruction.op == spv::OpFunctionCall) reach(statement.instruction.operands[0]);
         for (const Sequence& part : statement.parts)
             for (const Statement& inner : part.statements) self(self, inner);

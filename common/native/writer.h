@@ -63,11 +63,13 @@ class Writer {
   private:
     struct Pending {  // a value that is not written yet
         std::string text;
-        bool reads;  // variables or memory
-        int depth;   // of parentheses
+        bool reads;   // variables or memory
+        int depth;    // of parentheses
+        Id root = 0;  // the function's variable that it is, or is a member of
     };
     void execute(const Instruction& instruction);
-    void give(const Instruction& instruction, const std::string& text, bool reads);
+    void give(const Instruction& instruction, const std::string& text, bool reads, Id root = 0);
+    bool is_passed_only(Id variable, const Sequence& sequence) const;
     std::string call(const Instruction& instruction);
     std::string global(Id id);
     std::string resources(Id variable);
@@ -84,6 +86,8 @@ class Writer {
     std::map<std::pair<Id, uint32_t>, std::string> block_names_;
     std::map<Id, Pointer> pointers_;
     std::map<Id, size_t> uses_;
+    std::set<Id> written_;  // parameters
+    std::set<Id> passed_only_;
     std::set<Id> undeclared_;                        // variables that their first assignment declares
     std::vector<std::set<std::string>> visible_{1};  // names in the blocks around
     std::vector<Id> reached_;                        // functions
