@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, show_progress, text_of
+from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, shaders_of, show_progress, text_of
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
 from report.measurement import new_case, relative, run_case
@@ -68,25 +68,46 @@ def functions_in(shader):
 
 
 def graded_together(chapter, file):
-    """The shaders that are graded as one, the file last. Those beside a file belong to it if their folder is a chapter or a copy of
-    one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone."""
-    if not (file.parent / "chapter.json").exists() and not (ROOT / "chapters" / chapter / file.name).exists():
+    """The shaders that are graded as one, the file last. Those beside a file belong to it if their folder is this chapter, a copy of it
+    or a new one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone."""
+    title = description(file.parent.resolve())["title"] if (file.parent / "chapter.json").exists() else None
+    others = {says["title"] for number, says in DESCRIPTIONS.items() if expected_file(number).exists()} - {description(chapter)["title"]}
+    if title in others or not (title or (ROOT / "chapters" / chapter / file.name).exists()):
         return [file]
     return [*(other for other in sorted(file.parent.glob("*.glsl")) if other.is_file() and other.name != file.name), file]
 
 
+def with_most_functions_of(file, shaders):
+    """Number of functions that the file has in common with one of these, and that shader: the first one of several."""
+    return max(((len(functions_in(file) & functions_in(shader)), shader) for shader in shaders), key=lambda pair: pair[0], default=(0, None))
+
+
+def shader_named(chapter, file):
+    """The chapter's shader with the file's name, or None. Some only include one with the same name of another chapter: then the one whose
+    functions the file has."""
+    return with_most_functions_of(file, [shader for shader in shaders_of(int(chapter[:2])) if shader.name == file.name])[1]
+
+
 def shader_like(chapter, file):
-    """The shader in a chapter's folder that a file is graded as: one whose functions it all defines, preferably the estimator; or
-    else the one with its name, which may be a new one beside an estimator; the one with most of its functions; or the estimator."""
+    """The shader that a file is graded as, in a chapter's folder or included from that of another chapter. It is one of the folder whose
+    functions the file all defines, preferably the estimator; or else the one with its name; a new one beside an estimator; or the one with
+    most of its functions. Other estimators than the chapter's may have a function or two in common with any."""
     estimator, functions = ROOT / "chapters" / chapter / "path_trace.glsl", functions_in(file)
-    shaders = [estimator, *sorted(set(estimator.parent.glob("*.glsl")) - {estimator})]
-    for shader in shaders:
+    folder = [estimator, *sorted(set(estimator.parent.glob("*.glsl")) - {estimator})]
+    for shader in folder:
         if functions_in(shader) and functions >= functions_in(shader):
             return shader
-    most = max(shaders, key=lambda shader: len(functions & functions_in(shader)))  # the first one of several
-    is_one_of_several = estimator.name in {other.name for other in graded_together(chapter, file)}
-    is_named_so = is_one_of_several or estimator.with_name(file.name).exists()
-    return estimator.with_name(file.name) if is_named_so else estimator if "path_trace" in functions else most
+    if named := shader_named(chapter, file):
+        return named
+    if estimator.name in {other.name for other in graded_together(chapter, file)}:
+        return estimator.with_name(file.name)
+    count, shader = with_most_functions_of(file, [*folder, *shaders_of(int(chapter[:2]))])
+    if "path_trace" in functions and count < 2:
+        return estimator
+    if not count:
+        raise UserError(f"{printable(relative(file))}: defines no function of chapter {int(chapter[:2])}'s shaders. It is graded as the shader "
+                        f"whose name it has: {', '.join(shader.name for shader in folder)}")
+    return shader
 
 
 def replacement(shader, file):
@@ -97,7 +118,8 @@ def replacement(shader, file):
 def replacements(chapter, file, shader=None):
     """Options with which a chapter's program reads `file`, and what belongs to it, instead of its own shaders."""
     *others, _ = graded_together(chapter, file)
-    places = {ROOT / "chapters" / chapter / other.name: other for other in others} | {shader or shader_like(chapter, file): file}
+    own = {shader_named(chapter, other) or ROOT / "chapters" / chapter / other.name: other for other in others}
+    places = own | {shader or shader_like(chapter, file): file}
     # What neither the chapter nor the framework has is included by these files only, and found beside them.
     return [word for place, source in places.items() if place.exists() or any(ROOT.glob(f"shaders/*/{place.name}"))
             for word in replacement(place, source)]
