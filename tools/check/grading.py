@@ -34,6 +34,8 @@ TOO_MUCH = 1.5  # times the error of a sample or its rays
 # that is never too much.
 LOST_PART, LITTLE = 0.25, 1.1
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
+NEAR = 1.5  # times the half width of its interval: a mean farther from the reference than this is rendered again, one of 150 right ones
+SECOND_LOOK = 2  # times the runs of the first one
 EARLY_RUNS = 4  # after these a first verdict is worth reporting
 PATIENCE = 10  # a check of RUNS runs may take this many times the limit of a single render
 VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first one that any scene has wins
@@ -47,7 +49,7 @@ def stay_in_the_driver(backend):
 
 def first_seed(seed):
     """The seed of the first run of a check with this --seed. Checks with different ones share no render. None uses the seeds from
-    2 * MOST_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the seeds of --seed
+    (1 + SECOND_LOOK) * MOST_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the seeds of --seed
     0, so that a shader which draws random numbers in the same order as the chapter's own is compared render by render."""
     return seed * SEED_STEP + 1
 
@@ -271,15 +273,21 @@ def is_sure(results):
     return any(result["invalid_samples"] or any(test["is_biased"] for test in result["image"]) for result in results)
 
 
-def is_doubtful(results):
-    """Whether one bright path, or its absence, may have decided: no picture is off as a whole, but tiles are, or there is noise."""
-    return not is_sure(results) and any(result["verdict"] in ("biased", "noisy") for result in results)
+def doubtful(results):
+    """The scenes in which one bright path, or its absence, may have decided, if no picture is off as a whole: tiles are off, there is noise,
+    or the mean is far outside of its interval, but not far enough to be sure."""
+    def is_near(test):
+        return test["half_width"] is not None and abs(test["value"]) > NEAR * test["half_width"]
+
+    return [] if is_sure(results) else [result["scene"] for result in results
+                                        if result["verdict"] in ("biased", "noisy") or any(map(is_near, result["image"]))]
 
 
 def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None, ends_early=False):
-    """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. If it is
-    in doubt, other seeds decide: few correct shaders fail twice, and a mistake remains. With `ends_early` it takes EARLY_RUNS alone if
-    a picture is off as a whole in them: experiments should confirm that, for all of so few runs may lack the same bright paths."""
+    """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. What is in doubt
+    is rendered again, with other seeds and SECOND_LOOK times the runs, which decide alone: so a correct shader that was doubted is
+    refused no more often than any other, and what a mistake changes shows better. With `ends_early` it takes EARLY_RUNS alone if a
+    picture is off as a whole in them: experiments should confirm that, for all of so few runs may lack the same bright paths."""
     levels = levels or read_levels(chapter)
 
     def graded(cases):
@@ -289,12 +297,14 @@ def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases:
         watch(cases)
         return ends_early and is_sure(graded(cases))
 
-    for first_seed in (settings["first_seed"], settings["first_seed"] + settings["runs"]):
-        cases = render(chapter, file, settings | {"first_seed": first_seed}, scenes, is_enough, shader)
-        results = graded(cases)
-        if not is_doubtful(results):
-            break
+    first_seed, runs = settings["first_seed"], settings["runs"]
+    cases = render(chapter, file, settings, scenes, is_enough, shader)
+    seen = {case["scene"]: (case, result) for case, result in zip(cases, graded(cases))}
+    if again := doubtful([result for _, result in seen.values()]):
+        cases = render(chapter, file, settings | {"first_seed": first_seed + runs, "runs": SECOND_LOOK * runs}, again, shader=shader)
+        seen |= {case["scene"]: (case, result) for case, result in zip(cases, graded(cases))}
+    cases, results = zip(*seen.values())
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
-    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": len(cases[0]["runs"]),
+    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": min(len(case["runs"]) for case in cases),
             "samples": settings["samples"] or SCENES[chapter][0], "first_seed": first_seed, "false_alarms": FALSE_ALARMS,
-            "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": results}, [case["picture"] for case in cases]
+            "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": list(results)}, [case["picture"] for case in cases]
