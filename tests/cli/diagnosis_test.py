@@ -161,17 +161,18 @@ class SecondLookTest(unittest.TestCase):
     LEVELS = {name: {"rel_mse": {"1": 1.0, "2": 1.0}, "rays": 1.0} for name in ("check_room_2", "textured_4")}
 
     def judge(self, *looks):
-        """The verdict, and (scenes, first seed, runs) of each look, if these are what grade() says one after the other: a verdict, and by how
+        """The verdict, and (scenes, first seed) of each further look, if these are what grade() says one after the other: a verdict, and by how
         many half widths the picture is off, of which 9 are beyond doubt."""
         results = iter(looks)
 
-        def grade(case, *_):
+        def grade(case, level, scenes, is_second_look):
+            self.assertEqual((scenes, is_second_look), (len(made[-1][0] or self.LEVELS), len(made) > 1))
             verdict, off = next(results)
             return {"scene": case["scene"], "verdict": verdict, "invalid_samples": 0,
                     "image": [{"is_biased": off >= 9, "value": -0.01 * off, "half_width": 0.01}]}
 
         def render(chapter, file, settings, scenes=None, *_, **__):
-            made.append((scenes, settings["first_seed"], settings["runs"]))
+            made.append((scenes, settings["first_seed"]))
             return [{"scene": scene, "picture": None, "runs": [{}] * settings["runs"]} for scene in scenes or self.LEVELS]
 
         made, plan = [], {"first_seed": 1, "runs": RUNS, "samples": None}
@@ -179,13 +180,13 @@ class SecondLookTest(unittest.TestCase):
             result = grading.judge(3, Path("mine.glsl"), plan, self.LEVELS)[0]
         self.assertIsNone(next(results, None))
         self.assertEqual((result["runs"], [scene["scene"] for scene in result["scenes"]]), (RUNS, list(self.LEVELS)))
-        self.assertEqual(made[0], (None, 1, RUNS))
+        self.assertEqual(made[0], (None, 1))
         return result["verdict"], made[1:]
 
-    def test_doubt_needs_other_seeds_and_more_runs_of_these_scenes_alone(self):
+    def test_doubt_needs_other_seeds_of_these_scenes_alone(self):
         for first in (("noisy", 0), ("biased", 0), ("correct", 2)):
             for second in (("correct", 2), ("biased", 0), ("noisy", 0)):
-                again = [(["textured_4"], 1 + RUNS, grading.SECOND_LOOK * RUNS)]
+                again = [(["textured_4"], 1 + RUNS)]
                 self.assertEqual(self.judge(("correct", 1), first, second), (second[0], again))
 
     def test_the_other_scenes_count_as_they_were_seen_first(self):

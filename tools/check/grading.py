@@ -35,7 +35,6 @@ TOO_MUCH = 1.5  # times the error of a sample or its rays
 LOST_PART, LITTLE = 0.25, 1.1
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
 NEAR = 1.5  # times the half width of its interval: a mean farther from the reference than this is rendered again, one of 150 right ones
-SECOND_LOOK = 2  # times the runs of the first one
 EARLY_RUNS = 4  # after these a first verdict is worth reporting
 PATIENCE = 10  # a check of RUNS runs may take this many times the limit of a single render
 VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first one that any scene has wins
@@ -49,7 +48,7 @@ def stay_in_the_driver(backend):
 
 def first_seed(seed):
     """The seed of the first run of a check with this --seed. Checks with different ones share no render. None uses the seeds from
-    (1 + SECOND_LOOK) * MOST_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the seeds of --seed
+    2 * MOST_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the seeds of --seed
     0, so that a shader which draws random numbers in the same order as the chapter's own is compared render by render."""
     return seed * SEED_STEP + 1
 
@@ -225,25 +224,30 @@ def most_noise(recorded):
     return min(TOO_MUCH, max(recorded["gain"]**LOST_PART, LITTLE)) if "gain" in recorded else TOO_MUCH
 
 
-def grade(case, recorded, comparisons):
-    """The verdict on a scene, with the numbers it is based on."""
+def grade(case, recorded, scenes, is_second_look=False):
+    """The verdict on one of so many scenes, with the numbers it is based on. In a second look, the three means of a picture get as large
+    a share of the false alarms as all of its tiles, so that a small bias shows."""
     reference, now = reference_regions(ROOT / case["reference_file"]), level(case)
-    comparisons *= len(reference["mean"]) * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS
-    tests = biases(case["runs"], reference, comparisons)
+
+    def tests(count):
+        return biases(case["runs"], reference, scenes * count * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS)
+
+    every = len(reference["mean"])
+    image, tiles = (tests(2 * 3)[:3], tests(2 * every)[3:]) if is_second_look else (tests(every)[:3], tests(every)[3:])
     errors = [Series(level["rel_mse"]) for level in (now, recorded)]
     is_paired = len(now["rel_mse"]) > 1 and now["rel_mse"].keys() <= recorded["rel_mse"].keys()
     noise = paired_ratio(*errors) if is_paired else ratio(*errors)
     rays = now["rays"] / recorded["rays"]
     # Noise compensated by fewer rays is not a fault, and neither are rays compensated by less noise.
-    if case["invalid_samples"] or any(test["is_biased"] for test in tests):
+    if case["invalid_samples"] or any(test["is_biased"] for test in [*image, *tiles]):
         verdict = "biased"
     elif noise[1] is not None and noise[1] * min(rays, 1) > most_noise(recorded):
         verdict = "noisy"
     else:
         verdict = "expensive" if rays * min(noise[1] or noise[0] or 1, 1) > TOO_MUCH else "correct"
     columns = case["width"] // TILE
-    tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tests[3:])]
-    return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": tests[:3],
+    tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tiles)]
+    return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": image,
             "tiles": tiles, "noise": noise, "most_noise": most_noise(recorded), "rays": rays}
 
 
@@ -285,24 +289,24 @@ def doubtful(results):
 
 def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None, ends_early=False):
     """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. What is in doubt
-    is rendered again, with other seeds and SECOND_LOOK times the runs, which decide alone: so a correct shader that was doubted is
-    refused no more often than any other, and what a mistake changes shows better. With `ends_early` it takes EARLY_RUNS alone if a
-    picture is off as a whole in them: experiments should confirm that, for all of so few runs may lack the same bright paths."""
+    is rendered again, with other seeds, which decide alone: so a correct shader that was doubted is refused no more often than any other.
+    With `ends_early` it takes EARLY_RUNS alone if a picture is off as a whole in them: experiments should confirm that, for all of so few
+    runs may lack the same bright paths."""
     levels = levels or read_levels(chapter)
 
-    def graded(cases):
-        return [grade(case, levels[case["scene"]], len(cases)) for case in cases]
+    def graded(cases, is_second_look=False):
+        return [grade(case, levels[case["scene"]], len(cases), is_second_look) for case in cases]
 
     def is_enough(cases):
         watch(cases)
         return ends_early and is_sure(graded(cases))
 
-    first_seed, runs = settings["first_seed"], settings["runs"]
+    first_seed = settings["first_seed"]
     cases = render(chapter, file, settings, scenes, is_enough, shader)
     seen = {case["scene"]: (case, result) for case, result in zip(cases, graded(cases))}
     if again := doubtful([result for _, result in seen.values()]):
-        cases = render(chapter, file, settings | {"first_seed": first_seed + runs, "runs": SECOND_LOOK * runs}, again, shader=shader)
-        seen |= {case["scene"]: (case, result) for case, result in zip(cases, graded(cases))}
+        cases = render(chapter, file, settings | {"first_seed": first_seed + settings["runs"]}, again, shader=shader)
+        seen |= {case["scene"]: (case, result) for case, result in zip(cases, graded(cases, is_second_look=True))}
     cases, results = zip(*seen.values())
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
     return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": min(len(case["runs"]) for case in cases),
