@@ -283,7 +283,8 @@ class SimilarNamesTest(unittest.TestCase):
         def told(**least):
             return smallest_bias([{"scene": name, "image": [{"detectable": value}]} for name, value in least.items()])
 
-        self.assertEqual(told(plates_3=0.33, check_room_6=0.006, check_glass_8=0.013), "; a bias from 1.3 % would have shown, or 33 % in plates_3")
+        self.assertEqual(told(plates_3=0.33, check_room_6=0.006, check_glass_8=0.013),
+                         "; a bias from 1.3 % would have shown, or 33 % in plates_3")
         self.assertEqual(told(check_room_6=0.006, check_glass_8=0.013), ", and a bias from 1.3 % would have shown")
         self.assertEqual(told(fog_5=0.02), ", and a bias from 2 % would have shown")
 

@@ -91,7 +91,8 @@ class GradedTogether(Submissions, ProgramTest):
             original, alone = chapter_folder(place[0]) / place[1], Path(f"alone_as_{chapter}_{place[1]}")
             copy = self.copy_chapter(place[0], f"{place[0]}_as_{chapter}")
             text = original.read_text(encoding="utf-8")
-            mine = [original, copy / original.name, self.write(alone / original.name, text), self.write("anna.glsl", text.replace("add_light", "my_add"))]
+            mine = [original, copy / original.name, self.write(alone / original.name, text),
+                    self.write("anna.glsl", text.replace("add_light", "my_add"))]
             for file in mine:
                 with self.subTest(chapter=chapter, file=file):
                     given = grading.replacements(CHAPTERS[chapter], file)

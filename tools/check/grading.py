@@ -80,7 +80,8 @@ def graded_together(chapter, file):
 
 def with_most_functions_of(file, shaders):
     """Number of functions that the file has in common with one of these, and that shader: the first one of several."""
-    return max(((len(functions_in(file) & functions_in(shader)), shader) for shader in shaders), key=lambda pair: pair[0], default=(0, None))
+    counted = [(len(functions_in(file) & functions_in(shader)), shader) for shader in shaders]
+    return max(counted, key=lambda pair: pair[0], default=(0, None))
 
 
 def shader_named(chapter, file):
@@ -106,8 +107,9 @@ def shader_like(chapter, file):
     if "path_trace" in functions and count < 2:
         return estimator
     if not count:
-        raise UserError(f"{printable(relative(file))}: defines no function of chapter {int(chapter[:2])}'s shaders. It is graded as the shader "
-                        f"whose name it has: {', '.join(shader.name for shader in folder)}")
+        names = ", ".join(shader.name for shader in folder)
+        raise UserError(f"{printable(relative(file))}: defines no function of chapter {int(chapter[:2])}'s shaders; name it like the one that it "
+                        f"replaces: {names}")
     return shader
 
 
