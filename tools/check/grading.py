@@ -34,7 +34,7 @@ TOO_MUCH = 1.5  # times the error of a sample or its rays
 # that is never too much.
 LOST_PART, LITTLE = 0.25, 1.1
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
-NEAR = 1.5  # times the half width of its interval: a mean farther from the reference than this is rendered again, one of 150 right ones
+NEAR = 1.5  # times the half width of its interval: a mean farther from the reference is rendered again, by chance one of 150
 EARLY_RUNS = 4  # after these a first verdict is worth reporting
 PATIENCE = 10  # a check of RUNS runs may take this many times the limit of a single render
 VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first one that any scene has wins
