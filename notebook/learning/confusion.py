@@ -46,7 +46,7 @@ def confusion(workshop, chapters, is_anew, jobs):
 
     def try_naming(item):
         key, (trial, measured) = item
-        plan = workshop.settings(TRYING, TRYING["runs"] * trial.seed)
+        plan = workshop.settings(TRYING, 2 * TRYING["runs"] * trial.seed)
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "path_trace.glsl"
             file.write_text(trial.text, encoding="utf-8")

@@ -38,14 +38,13 @@ def untrue(chapter, file, found, those):
     """Numbers of wrong experiments that a second measurement contradicts: (experiment, point, number, second number)."""
     known, contradicted = read_json(grading.expected_file(chapter))["experiments"], []
     those = those | {"shaders": grading.replacements(CHAPTERS[chapter], file)}
+    wrong = {name: experiments_of(chapter)[name].points for name, seen in found["readings"].items()
+             if any(abs(value - 1) >= ROUNDING and value != 0 for _, value, _ in seen)}
     with Batch() as batch:
-        for name, seen in found["readings"].items():
-            experiment = experiments_of(chapter)[name]
-            if all(abs(value - 1) < ROUNDING or value == 0 for _, value, _ in seen):
-                continue
-            sights = [together(seen) for seen in pictures(CHAPTERS[chapter], experiment.points, those, SEED, batch, repeats=PICTURES)]
-            anew = readings(experiment.points, sights, known_sights(known[name]))
-            contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(seen, anew)
+        sights = batch.map(lambda name: pictures(CHAPTERS[chapter], wrong[name], those, SEED, batch, repeats=PICTURES), wrong)
+        for (name, points), seen in zip(wrong.items(), sights):
+            anew = readings(points, list(map(together, seen)), known_sights(known[name]))
+            contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(found["readings"][name], anew)
                              if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
     return contradicted
 

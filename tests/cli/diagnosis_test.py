@@ -17,7 +17,7 @@ from check.facts import DARK, fact
 from check.findings import LONGEST, findings
 from check.grading import RUNS, expected_file, first_seed
 from check.names import names_of, similar_to
-from check.words import MARGIN, MOST_FACTS, headline, hint_lines, laid_out
+from check.words import MARGIN, MOST_FACTS, headline, hint_lines, laid_out, smallest_bias
 from course.mistakes import catalogue
 from project import chapter_named, course, read_json
 
@@ -111,6 +111,8 @@ class FindingsTest(unittest.TestCase):
         self.assertRegex(told["text"], "0.50 ± 0.01 times as bright with each bounce .*factor 1/2.*: light")
         self.assertEqual(len(told["evidence"]), 3)
         self.assertEqual(len(self.told(bounces, seen([0.4] * 3, subject="light of a wall"))), 2, "no power")
+        told, = self.told(seen([0.97] * 2, {"per": "with each bounce"}, (2, 3)))
+        self.assertRegex(told["text"], "0.97 ± 0.01 times as bright as it should be: ", "the same, however many bounces")
 
     def test_a_law_comes_first_and_what_has_nothing_in_common_is_told_by_its_side(self):
         law = seen([1.064, 1.305, 2.0, 3.864], {"cos": "the cosine of this angle"})
@@ -158,26 +160,43 @@ class FindingsTest(unittest.TestCase):
 
 class SecondLookTest(unittest.TestCase):
     """One bright path in a few runs, or its absence, is no mistake; whatever is off as a whole is one at once."""
-    LEVEL = {"check_room_2": {"rel_mse": {"1": 1.0, "2": 1.0}, "rays": 1.0}}
+    LEVELS = {name: {"rel_mse": {"1": 1.0, "2": 1.0}, "rays": 1.0} for name in ("check_room_2", "textured_4")}
 
     def judge(self, *looks):
-        """Verdict and number of looks, if these are what grade() says one after the other: verdict, and whether the picture is off."""
-        results = [{"verdict": verdict, "invalid_samples": 0, "image": [{"is_biased": is_off}]} for verdict, is_off in looks]
-        plan = {"first_seed": 1, "runs": RUNS, "samples": None}
-        with mock.patch.object(grading, "render", return_value=[{"scene": "check_room_2", "picture": None, "runs": [{}] * RUNS}]) as render, \
-                mock.patch.object(grading, "grade", side_effect=results):
-            result = grading.judge(3, Path("mine.glsl"), plan, self.LEVEL)[0]
-        self.assertEqual([call.args[2]["first_seed"] for call in render.mock_calls], [1, 1 + RUNS][:render.call_count])
-        return result["verdict"], render.call_count
+        """The verdict, and (scenes, first seed) of each further look, if these are what grade() says one after the other: a verdict, and by how
+        many half widths the picture is off, of which 9 are beyond doubt."""
+        results = iter(looks)
 
-    def test_doubt_needs_other_seeds(self):
-        for verdict in ("noisy", "biased"):
-            self.assertEqual(self.judge((verdict, False), ("correct", False)), ("correct", 2))
-            self.assertEqual(self.judge((verdict, False), (verdict, False)), (verdict, 2))
+        def grade(case, level, scenes, is_second_look):
+            self.assertEqual((scenes, is_second_look), (len(made[-1][0] or self.LEVELS), len(made) > 1))
+            verdict, off = next(results)
+            return {"scene": case["scene"], "verdict": verdict, "invalid_samples": 0,
+                    "image": [{"is_biased": off >= 9, "value": -0.01 * off, "half_width": 0.01}]}
+
+        def render(chapter, file, settings, scenes=None, *_, **__):
+            made.append((scenes, settings["first_seed"]))
+            return [{"scene": scene, "picture": None, "runs": [{}] * settings["runs"]} for scene in scenes or self.LEVELS]
+
+        made, plan = [], {"first_seed": 1, "runs": RUNS, "samples": None}
+        with mock.patch.object(grading, "render", render), mock.patch.object(grading, "grade", grade):
+            result = grading.judge(3, Path("mine.glsl"), plan, self.LEVELS)[0]
+        self.assertIsNone(next(results, None))
+        self.assertEqual((result["runs"], [scene["scene"] for scene in result["scenes"]]), (RUNS, list(self.LEVELS)))
+        self.assertEqual(made[0], (None, 1))
+        return result["verdict"], made[1:]
+
+    def test_doubt_needs_other_seeds_of_these_scenes_alone(self):
+        for first in (("noisy", 0), ("biased", 0), ("correct", 2)):
+            for second in (("correct", 2), ("biased", 0), ("noisy", 0)):
+                again = [(["textured_4"], 1 + RUNS)]
+                self.assertEqual(self.judge(("correct", 1), first, second), (second[0], again))
+
+    def test_the_other_scenes_count_as_they_were_seen_first(self):
+        self.assertEqual(self.judge(("expensive", 0), ("biased", 0), ("correct", 0))[0], "expensive")
 
     def test_what_is_sure_needs_none(self):
-        for verdict, is_off in (("biased", True), ("correct", False), ("expensive", False)):
-            self.assertEqual(self.judge((verdict, is_off)), (verdict, 1))
+        for verdict, off in (("biased", 9), ("correct", 1), ("expensive", 0)):
+            self.assertEqual(self.judge((verdict, off), ("noisy" if off == 9 else "correct", 0)), (verdict, []))
 
 
 class NamesTest(unittest.TestCase):
@@ -259,6 +278,15 @@ class SimilarNamesTest(unittest.TestCase):
             result = {"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found | {"fits": fits}, "scenes": [scene]}
             self.assertEqual([head for head, _ in hint_lines(result)], heads)
             self.assertEqual(headline(result)[1] == "1?", fits)
+
+    def test_one_noisy_scene_does_not_speak_for_the_others(self):
+        def told(**least):
+            return smallest_bias([{"scene": name, "image": [{"detectable": value}]} for name, value in least.items()])
+
+        self.assertEqual(told(plates_3=0.33, check_room_6=0.006, check_glass_8=0.013),
+                         "; a bias from 1.3 % would have shown, or 33 % in plates_3")
+        self.assertEqual(told(check_room_6=0.006, check_glass_8=0.013), ", and a bias from 1.3 % would have shown")
+        self.assertEqual(told(fog_5=0.02), ", and a bias from 2 % would have shown")
 
     def test_a_few_facts_are_enough(self):
         facts = [{"text": f"fact {i}", "evidence": []} for i in range(MOST_FACTS + 3)]

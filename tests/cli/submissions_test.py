@@ -84,6 +84,33 @@ class GradedTogether(Submissions, ProgramTest):
         for chapter in course():
             self.assertEqual(grading.shader_like(CHAPTERS[chapter], estimator).name, "path_trace.glsl")
 
+    def test_a_shader_that_a_chapter_includes_from_another_is_known_by_name_or_functions(self):
+        """The others in its folder belong to that chapter. Chapter 13 has a file of the same name in its own folder, with one function more."""
+        for chapter, place in ((10, (7, "extend_path.glsl")), (8, (2, "sample_hemisphere.glsl")), (12, (10, "sample_loop.glsl")),
+                               (12, (11, "brdf.glsl")), (14, (13, "scatter.glsl")), (13, (13, "extend_path.glsl"))):
+            original, alone = chapter_folder(place[0]) / place[1], Path(f"alone_as_{chapter}_{place[1]}")
+            copy = self.copy_chapter(place[0], f"{place[0]}_as_{chapter}")
+            text = original.read_text(encoding="utf-8")
+            mine = [original, copy / original.name, self.write(alone / original.name, text),
+                    self.write("anna.glsl", text.replace("add_light", "my_add"))]
+            for file in mine:
+                with self.subTest(chapter=chapter, file=file):
+                    given = grading.replacements(CHAPTERS[chapter], file)
+                    self.assertEqual(given[-2:], grading.replacement(original, file))
+                    self.assertTrue(len(given) == 2 or chapter == place[0], given)
+
+    def test_a_new_file_beside_an_estimator_replaces_what_it_has_the_name_of(self):
+        copy = self.copy_chapter(10, "10_mine")
+        shutil.copy(chapter_folder(7) / "extend_path.glsl", copy)
+        for file in ("path_trace.glsl", "extend_path.glsl"):
+            self.assertIn(f"{CHAPTERS[7]}/extend_path.glsl={copy / 'extend_path.glsl'}", grading.replacements(CHAPTERS[10], copy / file))
+
+    def test_a_file_with_no_function_of_the_chapter_is_refused_with_the_names_that_are_known(self):
+        for file in (chapter_folder(6) / "dielectric.glsl", self.write("anna.glsl", "float half_of(float x) {\n    return 0.5 * x;\n}\n")):
+            code, out, err = self.run_tool("check", 3, file)
+            self.assertEqual((code, out), (2, ""))
+            self.assertRegex(err, rf"\Aerror: .*{file.name}: defines no function of chapter 3's shaders.*path_trace.glsl, {TECHNIQUE}\n\Z")
+
     def check(self, *arguments):
         code, out, err = self.run_tool("check", *arguments, "--json")
         self.assertIn(code, (0, 1), err)

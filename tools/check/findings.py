@@ -43,7 +43,7 @@ def factor_of_bounces(facts):
     for seen in facts:
         counts = {point.at: point.x for point in seen.experiment.points}
         those = [reading for reading in seen.readings if reading.value > 0]
-        if "bounce" in seen.experiment.quantity.get("per", "") and len(those) == len(counts):
+        if "bounce" in seen.experiment.quantity.get("per", "") and len(those) == len(counts) and not common_value(those):
             roots = [(reading.value**(1 / counts[reading.at]), reading.error / reading.value / counts[reading.at]) for reading in those]
             factor, error = roots[0][0], roots[0][0] * roots[0][1]
             if all(abs(root / factor - 1) <= TOLERANCE + 3 * math.hypot(part, error / factor) for root, part in roots):

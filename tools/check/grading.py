@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, show_progress, text_of
+from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, shaders_of, show_progress, text_of
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
 from report.measurement import new_case, relative, run_case
@@ -34,6 +34,7 @@ TOO_MUCH = 1.5  # times the error of a sample or its rays
 # that is never too much.
 LOST_PART, LITTLE = 0.25, 1.1
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
+NEAR = 1.5  # times the half width of its interval: a mean farther from the reference is rendered again, by chance one of 150
 EARLY_RUNS = 4  # after these a first verdict is worth reporting
 PATIENCE = 10  # a check of RUNS runs may take this many times the limit of a single render
 VERDICTS = ("biased", "noisy", "expensive", "correct")  # the first one that any scene has wins
@@ -68,25 +69,48 @@ def functions_in(shader):
 
 
 def graded_together(chapter, file):
-    """The shaders that are graded as one, the file last. Those beside a file belong to it if their folder is a chapter or a copy of
-    one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone."""
-    if not (file.parent / "chapter.json").exists() and not (ROOT / "chapters" / chapter / file.name).exists():
+    """The shaders that are graded as one, the file last. Those beside a file belong to it if their folder is this chapter, a copy of it
+    or a new one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone."""
+    title = description(file.parent.resolve())["title"] if (file.parent / "chapter.json").exists() else None
+    others = {says["title"] for number, says in DESCRIPTIONS.items() if expected_file(number).exists()} - {description(chapter)["title"]}
+    if title in others or not (title or (ROOT / "chapters" / chapter / file.name).exists()):
         return [file]
     return [*(other for other in sorted(file.parent.glob("*.glsl")) if other.is_file() and other.name != file.name), file]
 
 
+def with_most_functions_of(file, shaders):
+    """Number of functions that the file has in common with one of these, and that shader: the first one of several."""
+    counted = [(len(functions_in(file) & functions_in(shader)), shader) for shader in shaders]
+    return max(counted, key=lambda pair: pair[0], default=(0, None))
+
+
+def shader_named(chapter, file):
+    """The chapter's shader with the file's name, or None. Some only include one with the same name of another chapter: then the one whose
+    functions the file has."""
+    return with_most_functions_of(file, [shader for shader in shaders_of(int(chapter[:2])) if shader.name == file.name])[1]
+
+
 def shader_like(chapter, file):
-    """The shader in a chapter's folder that a file is graded as: one whose functions it all defines, preferably the estimator; or
-    else the one with its name, which may be a new one beside an estimator; the one with most of its functions; or the estimator."""
+    """The shader that a file is graded as, in a chapter's folder or included from that of another chapter. It is one of the folder whose
+    functions the file all defines, preferably the estimator; or else the one with its name; a new one beside an estimator; or the one with
+    most of its functions. Other estimators than the chapter's may have a function or two in common with any."""
     estimator, functions = ROOT / "chapters" / chapter / "path_trace.glsl", functions_in(file)
-    shaders = [estimator, *sorted(set(estimator.parent.glob("*.glsl")) - {estimator})]
-    for shader in shaders:
+    folder = [estimator, *sorted(set(estimator.parent.glob("*.glsl")) - {estimator})]
+    for shader in folder:
         if functions_in(shader) and functions >= functions_in(shader):
             return shader
-    most = max(shaders, key=lambda shader: len(functions & functions_in(shader)))  # the first one of several
-    is_one_of_several = estimator.name in {other.name for other in graded_together(chapter, file)}
-    is_named_so = is_one_of_several or estimator.with_name(file.name).exists()
-    return estimator.with_name(file.name) if is_named_so else estimator if "path_trace" in functions else most
+    if named := shader_named(chapter, file):
+        return named
+    if estimator.name in {other.name for other in graded_together(chapter, file)}:
+        return estimator.with_name(file.name)
+    count, shader = with_most_functions_of(file, [*folder, *shaders_of(int(chapter[:2]))])
+    if "path_trace" in functions and count < 2:
+        return estimator
+    if not count:
+        names = ", ".join(shader.name for shader in folder)
+        raise UserError(f"{printable(relative(file))}: defines no function of chapter {int(chapter[:2])}'s shaders; name it like the one that it "
+                        f"replaces: {names}")
+    return shader
 
 
 def replacement(shader, file):
@@ -97,7 +121,8 @@ def replacement(shader, file):
 def replacements(chapter, file, shader=None):
     """Options with which a chapter's program reads `file`, and what belongs to it, instead of its own shaders."""
     *others, _ = graded_together(chapter, file)
-    places = {ROOT / "chapters" / chapter / other.name: other for other in others} | {shader or shader_like(chapter, file): file}
+    own = {shader_named(chapter, other) or ROOT / "chapters" / chapter / other.name: other for other in others}
+    places = own | {shader or shader_like(chapter, file): file}
     # What neither the chapter nor the framework has is included by these files only, and found beside them.
     return [word for place, source in places.items() if place.exists() or any(ROOT.glob(f"shaders/*/{place.name}"))
             for word in replacement(place, source)]
@@ -201,25 +226,30 @@ def most_noise(recorded):
     return min(TOO_MUCH, max(recorded["gain"]**LOST_PART, LITTLE)) if "gain" in recorded else TOO_MUCH
 
 
-def grade(case, recorded, comparisons):
-    """The verdict on a scene, with the numbers it is based on."""
+def grade(case, recorded, scenes, is_second_look=False):
+    """The verdict on one of so many scenes, with the numbers it is based on. In a second look, the three means of a picture get as large
+    a share of the false alarms as all of its tiles, so that a small bias shows."""
     reference, now = reference_regions(ROOT / case["reference_file"]), level(case)
-    comparisons *= len(reference["mean"]) * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS
-    tests = biases(case["runs"], reference, comparisons)
+
+    def tests(count):
+        return biases(case["runs"], reference, scenes * count * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS)
+
+    every = len(reference["mean"])
+    image, tiles = (tests(2 * 3)[:3], tests(2 * every)[3:]) if is_second_look else (tests(every)[:3], tests(every)[3:])
     errors = [Series(level["rel_mse"]) for level in (now, recorded)]
     is_paired = len(now["rel_mse"]) > 1 and now["rel_mse"].keys() <= recorded["rel_mse"].keys()
     noise = paired_ratio(*errors) if is_paired else ratio(*errors)
     rays = now["rays"] / recorded["rays"]
     # Noise compensated by fewer rays is not a fault, and neither are rays compensated by less noise.
-    if case["invalid_samples"] or any(test["is_biased"] for test in tests):
+    if case["invalid_samples"] or any(test["is_biased"] for test in [*image, *tiles]):
         verdict = "biased"
     elif noise[1] is not None and noise[1] * min(rays, 1) > most_noise(recorded):
         verdict = "noisy"
     else:
         verdict = "expensive" if rays * min(noise[1] or noise[0] or 1, 1) > TOO_MUCH else "correct"
     columns = case["width"] // TILE
-    tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tests[3:])]
-    return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": tests[:3],
+    tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tiles)]
+    return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": image,
             "tiles": tiles, "noise": noise, "most_noise": most_noise(recorded), "rays": rays}
 
 
@@ -249,30 +279,38 @@ def is_sure(results):
     return any(result["invalid_samples"] or any(test["is_biased"] for test in result["image"]) for result in results)
 
 
-def is_doubtful(results):
-    """Whether one bright path, or its absence, may have decided: no picture is off as a whole, but tiles are, or there is noise."""
-    return not is_sure(results) and any(result["verdict"] in ("biased", "noisy") for result in results)
+def doubtful(results):
+    """The scenes in which one bright path, or its absence, may have decided, if no picture is off as a whole: tiles are off, there is noise,
+    or the mean is far outside of its interval, but not far enough to be sure."""
+    def is_near(test):
+        return test["half_width"] is not None and abs(test["value"]) > NEAR * test["half_width"]
+
+    return [] if is_sure(results) else [result["scene"] for result in results
+                                        if result["verdict"] in ("biased", "noisy") or any(map(is_near, result["image"]))]
 
 
 def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None, ends_early=False):
-    """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. If it is
-    in doubt, other seeds decide: few correct shaders fail twice, and a mistake remains. With `ends_early` it takes EARLY_RUNS alone if
-    a picture is off as a whole in them: experiments should confirm that, for all of so few runs may lack the same bright paths."""
+    """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. What is in doubt
+    is rendered again, with other seeds, which decide alone: so a correct shader that was doubted is refused no more often than any other.
+    With `ends_early` it takes EARLY_RUNS alone if a picture is off as a whole in them: experiments should confirm that, for all of so few
+    runs may lack the same bright paths."""
     levels = levels or read_levels(chapter)
 
-    def graded(cases):
-        return [grade(case, levels[case["scene"]], len(cases)) for case in cases]
+    def graded(cases, is_second_look=False):
+        return [grade(case, levels[case["scene"]], len(cases), is_second_look) for case in cases]
 
     def is_enough(cases):
         watch(cases)
         return ends_early and is_sure(graded(cases))
 
-    for first_seed in (settings["first_seed"], settings["first_seed"] + settings["runs"]):
-        cases = render(chapter, file, settings | {"first_seed": first_seed}, scenes, is_enough, shader)
-        results = graded(cases)
-        if not is_doubtful(results):
-            break
+    first_seed = settings["first_seed"]
+    cases = render(chapter, file, settings, scenes, is_enough, shader)
+    seen = {case["scene"]: (case, result) for case, result in zip(cases, graded(cases))}
+    if again := doubtful([result for _, result in seen.values()]):
+        cases = render(chapter, file, settings | {"first_seed": first_seed + settings["runs"]}, again, shader=shader)
+        seen |= {case["scene"]: (case, result) for case, result in zip(cases, graded(cases, is_second_look=True))}
+    cases, results = zip(*seen.values())
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
-    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": len(cases[0]["runs"]),
+    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": min(len(case["runs"]) for case in cases),
             "samples": settings["samples"] or SCENES[chapter][0], "first_seed": first_seed, "false_alarms": FALSE_ALARMS,
-            "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": results}, [case["picture"] for case in cases]
+            "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": list(results)}, [case["picture"] for case in cases]

@@ -8,6 +8,7 @@ from check.grading import early_bias
 from project import CHAPTERS
 
 MOST_QUESTIONS, MOST_FACTS = 2, 5
+FAR_NOISIER = 3  # times the smallest bias that shows elsewhere: a scene that is told by its name
 MARGIN = 15  # columns of the heads
 COLOURS = {"correct": 32, "biased": 31, "unfinished": 33, "noisy": 33, "expensive": 33}  # of a terminal
 SIMILAR = "no common mistake fits all facts; what follows is similar, but may be wrong"
@@ -67,8 +68,18 @@ def worst_scene(result):
         return f"{scene['scene']} has {scene['noise'][0]:.2f} times the noise of the chapter's own shader"
     if result["verdict"] == "expensive":
         return f"{scene['scene']} takes {scene['rays']:.2f} times the rays of the chapter's own shader"
-    least = max((test["detectable"] for scene in result["scenes"] for test in scene["image"]), default=0)
-    return f"nothing differs, and a bias from {100 * least:.2g} % would have shown"
+    return f"nothing differs{smallest_bias(result['scenes'])}"
+
+
+def smallest_bias(scenes):
+    """What would have shown, in words: in the noisiest scene it may be far more than elsewhere."""
+    least = sorted((max(test["detectable"] for test in scene["image"]), scene["scene"]) for scene in scenes if scene["image"])
+    if not least:
+        return ""
+    *others, (worst, name) = least
+    if others and worst > FAR_NOISIER * others[-1][0]:
+        return f"; a bias from {100 * others[-1][0]:.2g} % would have shown, or {100 * worst:.2g} % in {name}"
+    return f", and a bias from {100 * worst:.2g} % would have shown"
 
 
 def questions(result):

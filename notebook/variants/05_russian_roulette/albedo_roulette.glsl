@@ -16,7 +16,7 @@ const uint FIRST_ROULETTE = 2u;
 
 // The factor of a bounce with roulette: factor / q with probability q, else 0, so that its mean is the factor.
 vec3 play_roulette(vec3 factor, inout uvec2 seed) {
-    float q = min(max_component(factor), parameters.survival_cap);
+    float q = min(max_component(factor) / parameters.survival_weight, parameters.survival_cap);
     float number = get_random_numbers(seed).x;
     return number < q ? factor / q : vec3(0.0);
 }

@@ -1,7 +1,7 @@
 // Russian roulette with a single random number for the whole path. It is alive after k bounces while this number is
 // below S_k, the probability to live that long, and then counts 1/S_k. S never grows, so a dead path stays dead.
 //
-// S_k = min(max β_k, cap · S_{k-1}) with the plain product β_k of all factors π ρ: as if at every bounce a new number
+// S_k = min(max β_k / β_s, cap · S_{k-1}) with the plain product β_k of all factors π ρ: as if at every bounce a new number
 // were compared with S_k / S_{k-1}.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "03_next_event_estimation/direct_light.glsl"
@@ -29,7 +29,8 @@ vec3 trace_branch(ShadingData s, vec3 out_direction, inout uvec2 seed) {
         vec3 omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
         if (!is_above_surface(s, omega)) break;
         product *= PI * get_brdf(s, omega);
-        if (k >= parameters.roulette_start) alive = min(max_component(product), parameters.survival_cap * alive);
+        if (k >= parameters.roulette_start)
+            alive = min(max_component(product) / parameters.survival_weight, parameters.survival_cap * alive);
         if (fate >= alive) break;
 
         Hit hit;

@@ -57,7 +57,7 @@ vec3 trace_branch(Branch b, uint choice, inout uvec2 seed) {
             b.throughput *= PI * get_brdf(b.s, omega);
         }
         if (k >= parameters.roulette_start) {
-            float q = min(max_component(b.throughput), parameters.survival_cap);
+            float q = min(max_component(b.throughput) / parameters.survival_weight, parameters.survival_cap);
             if (get_random_numbers(seed).x >= q) break;
             b.throughput /= q;
         }

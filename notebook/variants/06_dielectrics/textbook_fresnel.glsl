@@ -50,7 +50,7 @@ vec3 trace_branch(ShadingData s, vec3 incident, inout uvec2 seed) {
         }
 
         if (k >= parameters.roulette_start) {
-            float q = min(max(throughput.r, max(throughput.g, throughput.b)), parameters.survival_cap);
+            float q = min(max(throughput.r, max(throughput.g, throughput.b)) / parameters.survival_weight, parameters.survival_cap);
             if (get_random_numbers(seed).x >= q) break;
             throughput /= q;
         }

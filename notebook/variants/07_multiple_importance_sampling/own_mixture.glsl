@@ -86,7 +86,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
             throughput *= get_brdf(s, omega) * dot(s.normal, omega) / p_bounce;
         }
         if (k >= parameters.roulette_start) {
-            float q = min(max_component(throughput), parameters.survival_cap);
+            float q = min(max_component(throughput) / parameters.survival_weight, parameters.survival_cap);
             if (!happens(q, seed)) break;
             throughput /= q;
         }

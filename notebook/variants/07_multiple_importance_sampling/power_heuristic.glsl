@@ -65,7 +65,7 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
         scale *= next.radiance_scale;
         p_bounce = STRATEGY != STRATEGY_LIGHT ? next.density : 0.0;
         if (bounces + 1u >= parameters.roulette_start) {
-            float q = min(max_component(beta), parameters.survival_cap);
+            float q = min(max_component(beta) / parameters.survival_weight, parameters.survival_cap);
             if (!happens(q, seed)) return sum;
             beta /= q;
         }

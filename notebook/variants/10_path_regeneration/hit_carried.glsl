@@ -61,7 +61,7 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     float bounce_density = STRATEGY == STRATEGY_LIGHT ? 0.0 : next.density;
     ++path.path_length;
     if (path.path_length >= parameters.roulette_start) {
-        float survival_probability = min(max_component(path.throughput), parameters.survival_cap);
+        float survival_probability = min(max_component(path.throughput) / parameters.survival_weight, parameters.survival_cap);
         if (!happens(survival_probability, seed)) return false;
         path.throughput /= survival_probability;
     }

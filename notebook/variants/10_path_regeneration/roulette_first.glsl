@@ -35,7 +35,7 @@ void find(inout Path path, vec3 emission, float p_light) {
 bool survives(inout Path path, inout uvec2 seed) {
     uint length = parameters.max_path_length - path.bounces_left;
     if (length == 0u || length < parameters.roulette_start) return true;
-    float q = min(max(path.beta.r, max(path.beta.g, path.beta.b)), parameters.survival_cap);
+    float q = min(max(path.beta.r, max(path.beta.g, path.beta.b)) / parameters.survival_weight, parameters.survival_cap);
     path.beta /= q;
     return happens(q, seed);
 }
