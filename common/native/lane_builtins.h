@@ -215,8 +215,8 @@ struct ShaderBase : Builtins {
         bindings.rays->find_closest_hits(packet);
         read(instance, packet.instance);
         read(triangle, packet.triangle);
-        read(barycentrics.x, packet.barycentrics[0]);
-        read(barycentrics.y, packet.barycentrics[1]);
+        read(barycentrics[0], packet.barycentrics[0]);
+        read(barycentrics[1], packet.barycentrics[1]);
         read(distance, packet.t_max);
         return hits_of(packet);
     }

@@ -79,28 +79,18 @@ inline constexpr bool is_number = std::is_arithmetic_v<T> || size_of<T> != 1 || 
 template <typename... T>
 concept Varying = (is_number<T> && ...) && (is_lanes<T> || ...);
 
-#define LAB_COMPONENT(a, b, c) \
-    union {                    \
-        T a, b, c;             \
-    };
-#define LAB_VECTOR(n, components)                                       \
-    template <typename T>                                               \
-    struct Vec<n, T> {                                                  \
-        components static constexpr int length() { return n; }          \
-        LAB_INLINE T& operator[](int i) { return (&x)[i]; }             \
-        LAB_INLINE const T& operator[](int i) const { return (&x)[i]; } \
-        Vec() = default;                                                \
-        template <typename U>                                           \
-        requires(size_of<U> == n) LAB_INLINE Vec(const U& u) {          \
-            for (int i = 0; i < n; ++i) (*this)[i] = T(u[i]);           \
-        }                                                               \
-    };
-LAB_VECTOR(2, LAB_COMPONENT(x, r, s) LAB_COMPONENT(y, g, t))
-LAB_VECTOR(3, LAB_COMPONENT(x, r, s) LAB_COMPONENT(y, g, t) LAB_COMPONENT(z, b, p))
-LAB_VECTOR(4, LAB_COMPONENT(x, r, s) LAB_COMPONENT(y, g, t) LAB_COMPONENT(z, b, p) LAB_COMPONENT(w, a, q))
-#undef LAB_VECTOR
-#undef LAB_COMPONENT
-
+template <int n, typename T>
+struct Vec {
+    T components[n];
+    static constexpr int length() { return n; }
+    LAB_INLINE T& operator[](int i) { return components[i]; }
+    LAB_INLINE const T& operator[](int i) const { return components[i]; }
+    Vec() = default;
+    template <typename U>
+    requires(size_of<U> == n) LAB_INLINE Vec(const U& u) {
+        for (int i = 0; i < n; ++i) components[i] = T(u[i]);
+    }
+};
 template <int columns, int rows>
 struct Mat {
     using Column = Vec<rows, Lanes<float>>;
@@ -109,11 +99,7 @@ struct Mat {
     template <typename M>
     requires requires(const M& m) { m[0][0]; }
     LAB_INLINE Mat(const M& m) {
-        constexpr int known_rows = std::remove_cvref_t<decltype(m[0])>::length();
-        for (int i = 0; i < columns; ++i)
-            for (int j = 0; j < rows; ++j) column[i][j] = i == j ? 1.0f : 0.0f;
-        for (int i = 0; i < std::min(columns, M::length()); ++i)
-            for (int j = 0; j < std::min(rows, known_rows); ++j) column[i][j] = m[i][j];
+        for (int i = 0; i < columns; ++i) column[i] = Column(m[i]);
     }
     static constexpr int length() { return columns; }
     LAB_INLINE Column& operator[](int i) { return column[i]; }
