@@ -112,8 +112,7 @@ std::string LaneWriter::part(const Sequence& part, int depth) {
 }
 std::string LaneWriter::function(const Function& function) {
     depth_ = returns_ = jumps_ = 0;
-    const std::string text = Writer::function(function);
-    return text;
+    return Writer::function(function);
 }
 std::string LaneWriter::returned(const Function& function, const std::string& body) {
     if (kind(function.type) == spv::OpTypeVoid) return body;

@@ -29,7 +29,6 @@ class Writer {
 
     std::string sequence(const Sequence& sequence);
 
-    using Texts = std::vector<std::string>;
     std::string plain_type(Id type) const;
     std::string value(Id id);
     Pointer pointer_to(Id id) const;
