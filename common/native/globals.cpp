@@ -96,9 +96,13 @@ size_t Writer::size_in_memory(Id type) const {
             for (uint32_t i = 0; i < definition.operands.size(); ++i) {
                 if (program_.decoration(type, spv::DecorationOffset, i) != static_cast<int64_t>(size)) refuse();
                 const Id member = definition.operands[i];
-                if (kind(member) == spv::OpTypeMatrix &&
-                    program_.decoration(type, spv::DecorationMatrixStride, i) !=
-                        static_cast<int64_t>(size_in_memory(program_.definition(member).operands[0])))
+                Id matrix = member;
+                while (kind(matrix) == spv::OpTypeArray || kind(matrix) == spv::OpTypeRuntimeArray)
+                    matrix = program_.definition(matrix).operands[0];
+                if (program_.decoration(type, spv::DecorationRowMajor, i) >= 0 ||
+                    (kind(matrix) == spv::OpTypeMatrix &&
+                     program_.decoration(type, spv::DecorationMatrixStride, i) !=
+                         static_cast<int64_t>(size_in_memory(program_.definition(matrix).operands[0]))))
                     refuse();
                 size += size_in_memory(member);
             }
@@ -113,8 +117,8 @@ size_t Writer::size_in_memory(Id type) const {
 std::string Writer::constant(Id id) const {
     const Instruction& definition = program_.definition(id);
     const Id type = definition.type;
-    if (definition.op == spv::OpConstantTrue) return "true";
-    if (definition.op == spv::OpConstantFalse) return "false";
+    if (definition.op == spv::OpConstantTrue || definition.op == spv::OpSpecConstantTrue) return "true";
+    if (definition.op == spv::OpConstantFalse || definition.op == spv::OpSpecConstantFalse) return "false";
     if (definition.op == spv::OpConstantNull || definition.op == spv::OpUndef) return plain_type(type) + "{}";
     if (definition.op == spv::OpConstantComposite) {
         if (kind(type) == spv::OpTypeArray || kind(type) == spv::OpTypeStruct) return "constant__" + std::to_string(id);
@@ -122,6 +126,8 @@ std::string Writer::constant(Id id) const {
         for (const Id part : definition.operands) parts += (parts.empty() ? "" : ", ") + constant(part);
         return plain_type(type) + "(" + parts + ")";
     }
+    if (definition.op != spv::OpConstant && definition.op != spv::OpSpecConstant)
+        program_.fail(definition, "constants that are computed from specialisation constants");
     const uint32_t word = definition.operands.at(0);
     if (kind(type) == spv::OpTypeInt) {
         if (program_.definition(type).operands[1] == 0) return std::to_string(word) + "u";

@@ -7,7 +7,7 @@ namespace lab::native::lanes {
 // What a function gives that is called for each lane by itself.
 template <typename T>
 LAB_INLINE auto lane_of(const T& x, int lane) {
-    if constexpr (requires { x.column; }) {
+    if constexpr (is_varying<T> && is_matrix<T>) {
         mat<T::length(), T::Column::length(), float> result;
         for (int i = 0; i < T::length(); ++i) result[i] = lane_of(x[i], lane);
         return result;
@@ -115,14 +115,6 @@ struct Builtins : native::Builtins {
         using Number = Lanes<Element<A, B>>;
         return product_above(Number(a), Number(b));
     })
-    LAB_WHOLE(select, []<typename C>(const C& condition, const auto& a, const auto& b) {
-        if constexpr (std::is_same_v<C, bool>)
-            return condition ? varying(a) : varying(b);
-        else if constexpr (size_of<C> == 1)
-            return lanes::select(condition, a, b);
-        else
-            return each([](const Mask& c, const auto& y, const auto& z) { return lanes::select(c, y, z); }, condition, a, b);
-    })
     LAB_WHOLE(multiply, [](const auto& a, const auto& b) { return lanes::multiply(a, b); })
     LAB_WHOLE(all, [](const auto& a) { return lanes::all(a); })
     LAB_WHOLE(any, [](const auto& a) { return !lanes::all(each([](const Mask& b) { return !b; }, a)); })
@@ -160,9 +152,18 @@ struct Builtins : native::Builtins {
 #undef LAB_FUNCTION
         // clang-format on
 
-        LAB_INLINE static ivec2 textureSize(const Texture& texture) {
-        return Plain::textureSize(texture);
+        template <typename C, typename A, typename B>
+        LAB_INLINE static auto select(const C& condition, const A& a, const B& b) {
+        if constexpr (is_varying<C> && size_of<C> == 1)
+            return lanes::select(condition, a, b);
+        else if constexpr (is_varying<C> || size_of<C> > 1)
+            return each([](const Mask& c, const auto& y, const auto& z) { return lanes::select(c, y, z); }, condition, a, b);
+        else if constexpr (std::is_same_v<A, B>)
+            return condition ? a : b;
+        else
+            return condition ? varying(a) : varying(b);
     }
+    LAB_INLINE static ivec2 textureSize(const Texture& texture) { return Plain::textureSize(texture); }
 
     // These ask which lanes are active.
 #define LAB_ATOMIC(name)                                                                                         \

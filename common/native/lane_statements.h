@@ -31,8 +31,8 @@ template <typename T, typename U>
 LAB_INLINE void assign(const Mask& mask, T& target, const U& value) {
     if constexpr (is_number<T>)
         target = select(mask, T(value), target);
-    else if constexpr (requires { typename T::VaryingStruct; })
-        T::fields([&](auto& x, const auto& y) { assign(mask, x, y); }, target, T(value));
+    else if constexpr (requires { typename T::VaryingStruct__; })
+        T::fields__([&](auto& x, const auto& y) { assign(mask, x, y); }, target, T(value));
     else
         for (int i = 0; i < T::length(); ++i) assign(mask, target[i], value[i]);
 }
@@ -168,8 +168,8 @@ LAB_INLINE void for_each_part(T& target, const F& f) {
     static_assert(!std::is_same_v<T, Mask>, "bools have one byte in memory");
     if constexpr (is_number<T> && size_of<T> == 1)
         f(target);
-    else if constexpr (requires { typename T::VaryingStruct; })
-        T::fields([&](auto& x) { for_each_part(x, f); }, target);
+    else if constexpr (requires { typename T::VaryingStruct__; })
+        T::fields__([&](auto& x) { for_each_part(x, f); }, target);
     else
         for (int i = 0; i < T::length(); ++i) for_each_part(target[i], f);
 }

@@ -18,14 +18,14 @@ std::string LaneWriter::structure(Id type) const {
     const std::string name = program_.name(type) + "__" + std::to_string(type);
     std::string declared, names, visits;
     for (uint32_t i = 0; i < members.size(); ++i) {
-        declared += " W<" + plain_type(members[i]) + "> " + field(type, i) + ";";
+        declared += " W__<" + plain_type(members[i]) + "> " + field(type, i) + ";";
         names += (i > 0 ? ", " : "") + field(type, i);
-        visits += " f(x__." + field(type, i) + "...);";
+        visits += " f__(x__." + field(type, i) + "...);";
     }
-    return "template <template <typename> class W> struct " + name + "_of {" + declared + " using VaryingStruct = " + name +
-           "_of<lab__::V>; template <template <typename> class X> operator " + name + "_of<X>() const { return {" + names +
-           "}; } template <typename F, typename... T> static void fields(const F& f, T&&... x__) {" + visits + " } }; using " +
-           name + " = " + name + "_of<lab__::Uniform>;\n";
+    return "template <template <typename> class W__> struct " + name + "_of {" + declared + " using VaryingStruct__ = " + name +
+           "_of<lab__::V>; template <template <typename> class X__> operator " + name + "_of<X__>() const { return {" + names +
+           "}; } template <typename F__, typename... T__> static void fields__(const F__& f__, T__&&... x__) {" + visits +
+           " } }; using " + name + " = " + name + "_of<lab__::Uniform>;\n";
 }
 
 // Variables and memory.
@@ -129,6 +129,7 @@ void LaneWriter::branch(const Statement& statement) {
         ((leaves(first) && second.statements.empty()) || (leaves(second) && first.statements.empty()))) {
         out("if (loop__.goes_on(" + std::string(leaves(first) ? "!" : "") + "lab__::Mask(" + condition + "))) { ");
         ends_ += "} ";
+        ++jumps_;  // for the blocks around, if there are some
         return;
     }
     if (!variance_.varies(statement.value)) {

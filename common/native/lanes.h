@@ -113,17 +113,17 @@ template <length_t n, length_t m, typename T, qualifier q>
 inline constexpr bool is_matrix<mat<n, m, T, q>> = true;
 
 template <typename T>
-inline constexpr bool is_varying = is_lanes<T> || requires(const T& x) {
-    x.column;
-};
+inline constexpr bool is_varying = is_lanes<T>;
+template <int n, int m>
+inline constexpr bool is_varying<Mat<n, m>> = true;
 
 // V<T> is the type of a T that differs between lanes.
 template <typename T>
 struct VaryingOf {};
 template <typename T>
-requires requires { typename T::VaryingStruct; }
+requires requires { typename T::VaryingStruct__; }
 struct VaryingOf<T> {
-    using type = typename T::VaryingStruct;
+    using type = typename T::VaryingStruct__;
 };
 template <typename T>
 requires(std::is_arithmetic_v<T> && sizeof(T) <= 4) struct VaryingOf<T> {

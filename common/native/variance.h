@@ -32,7 +32,11 @@ inline bool is_shared(const Program& program, Id root) {
     const spv::StorageClass storage = program.storage(root);
     return storage != spv::StorageClassPrivate && storage != spv::StorageClassInput;
 }
-inline bool is_native(const Program& program, Id function) { return program.name(function).starts_with("native_"); }
+// Functions that ShaderBase has, see shaders/engine/trace_ray/embree.glsl.
+inline bool is_native(const Program& program, Id function) {
+    const std::string name = program.name(function);
+    return name.starts_with("native_closest_hit(") || name.starts_with("native_any_hit(");
+}
 // Adds what an instruction points to, if it is an access chain.
 inline void note_pointer(std::map<Id, Pointer>& pointers, const Program& program, const Instruction& chain) {
     if (chain.op != spv::OpAccessChain) return;

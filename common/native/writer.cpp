@@ -18,14 +18,14 @@ std::string joined(const std::vector<std::string>& parts) {
 std::string spelled(const std::string& name) {
     // clang-format off
     static const std::set<std::string> words{
-        "alignas", "alignof", "and", "and_eq", "asm", "assert", "auto", "bitand", "bitor", "catch", "char", "char16_t",
-        "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl", "concept", "const_cast", "consteval",
-        "constexpr", "constinit", "decltype", "delete", "dynamic_cast", "enum", "errno", "explicit", "export", "extern",
-        "friend", "goto", "inline", "long", "main", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr",
-        "operator", "or", "or_eq", "private", "protected", "public", "register", "reinterpret_cast", "requires", "short",
-        "signed", "sizeof", "static", "static_assert", "static_cast", "stderr", "stdin", "stdout", "template", "this",
-        "thread_local", "throw", "try", "typedef", "typeid", "typename", "union", "unsigned", "using", "virtual", "volatile",
-        "wchar_t", "xor", "xor_eq"};
+        "_Complex", "alignas", "alignof", "alloca", "and", "and_eq", "asm", "assert", "auto", "bitand", "bitor", "catch", "char",
+        "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl", "concept", "const_cast",
+        "consteval", "constexpr", "constinit", "decltype", "delete", "dynamic_cast", "enum", "errno", "explicit", "export",
+        "extern", "friend", "goto", "inline", "long", "main", "mutable", "namespace", "new", "noexcept", "not", "not_eq",
+        "nullptr", "offsetof", "operator", "or", "or_eq", "private", "protected", "public", "register", "reinterpret_cast",
+        "requires", "Shader", "short", "signed", "sizeof", "static", "static_assert", "static_cast", "stderr", "stdin", "stdout",
+        "template", "this", "thread_local", "throw", "try", "typedef", "typeid", "typename", "union", "unsigned", "using",
+        "va_arg", "va_copy", "va_end", "va_start", "virtual", "volatile", "wchar_t", "xor", "xor_eq"};
     // clang-format on
     return words.contains(name) ? name + "__" : name;
 }

@@ -32,16 +32,17 @@ std::vector<uint32_t> run(const native::Code& code, size_t program_count) {
 }
 
 native::Code load_main(const std::string& body) {
-    return native::load(compile_glsl(
-        "layout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };"
-        "layout(scalar, set = 0, binding = 3) readonly buffer Numbers { uvec4 numbers[]; };\n"
-        "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
-        "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
-        "uint count = 1u; uint count_up() { return ++count; } const uint two = 2u, five = 10u / two;"
-        "uint late(uint a) { count = 7u; return a; } uint ahead(); uint call_ahead() { return ahead(); } "
-        "uint ahead() { return count *= 2u; } uint a_switch(int i) { switch (i) { case 0: return 5u; case 1: default: break; } return "
-        "7u; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
-        body + "\n}\n"));
+    return native::load(
+        compile_glsl("layout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };"
+                     "layout(scalar, set = 0, binding = 3) readonly buffer Numbers { uvec4 numbers[]; };\n"
+                     "layout(local_size_x = 1) in;\nstruct Named { uint offset, raw; };"
+                     "bool set(inout bool b) { b = true; return b; } uint add(uint a, inout uint b) { b += a; return b + 3u; }"
+                     "uint count = 1u; uint count_up() { return ++count; } const uint two = 2u, five = 10u / two;"
+                     "uint late(uint a) { count = 7u; return a; } uint ahead(); uint call_ahead() { return ahead(); } "
+                     "uint ahead() { return count *= 2u; } uint a_switch(int i) { switch (i) { case 0: return 5u; case 1: "
+                     "default: break; } return "
+                     "7u; }\nvoid main() {\nuint i = gl_GlobalInvocationID.x;\n" +
+                     body + "\n}\n"));
 }
 
 // The number that a shader writes, and why it runs one by one.
@@ -143,17 +144,29 @@ TEST(NativeLanes, KnowCasesStructuresAndArrays) {
     const std::string bodies[] = {
         "r = 2u;\nswitch (x) { case 0u: r = 5u; }",
         "r = 2u;\nswitch (x) { case 3u: r = 7u; default: r = 4u; case 4u: r += 1u; break; case 5u: r = 7u; }",
-        "r = 0u;\nfor (uint k = 0u; k < 6u; ++k) { switch (k + x) { case 2u: continue; case 4u: break; default: ++r; } r += k / 4u; } r -= 1u;",
+        "r = 0u;\nfor (uint k = 0u; k < 6u; ++k) { switch (k + x) { case 2u: continue; case 4u: break; default: ++r; } r += k / "
+        "4u; } r -= 1u;",
         "uint a[2];\na[0] = 3u;\na[x] = 5u;\nr = a[0];",
         "uint a[2], k = 0u;\na[0] = x;\na[1] = 0u;\na[k++] += 5u;\nr = a[0] + k - 1u;",
-        "struct S { uint x, y[2]; };\nS s[2];\ns[1] = S(1u, uint[2](2u, 3u));\ns[x] = S(4u, uint[2](x, 7u));\ns[x].y[x] += 5u;\nr = s[0].y[0];",
+        "struct S { uint x, y[2]; };\nS s[2];\ns[1] = S(1u, uint[2](2u, 3u));\ns[x] = S(4u, uint[2](x, 7u));\ns[x].y[x] += "
+        "5u;\nr = s[0].y[0];",
         "const bool table[2] = bool[2](true, false);\nr = table[x] ? 5u : 7u;",
         "vec3 v = vec3(1);\nv[x] = 5.0;\nr = uint(v[x] * v.y);",
         "mat3 m = mat3(2.0);\nm[x][x + 1u] = 3.0;\nr = uint((m * 0.5 * vec3(4, 0, 0)).x + (m * m)[x].y - 11.0);",
         "Named a = Named(2u, 3u), b;\nif (x < 5u) b = a;\nr = b.offset + b.raw;",
         "r = x < 5u && a_switch(int(x)) == 5u ? 5u : 7u;",
+        "struct S { float W, X, F, T, f, V, fields, column; };\nS s[2];\ns[x].V = 5.0;\nr = uint(s[x].V);",
+        "int v[2] = int[2](int(x) + 5, 3), u[2] = int[2](1, 2), w[2] = gl_WorkGroupID.x < 3u ? v : u;\nr = uint(w[0]);",
     };
     expect_fives(bodies);
+}
+
+// A loop that all lanes leave from inside of a branch that all take: nothing may be read there.
+TEST(NativeLanes, WhoLeavesALoopReadsNothingMore) {
+    EXPECT_EQ(result_and_reason("bool flag = numbers[0].x < 7u;\nuint s = 5u, k = flag ? 0x3fffffffu : 0u;\n"
+                                "for (uint j = 0u; j < 5u; ++j) {\nif (flag) { if (i < 20u) break; }\ns += numbers[k].x;\n}\n"
+                                "results[i] = s;"),
+              std::pair(5u, std::string()));
 }
 
 TEST(NativeLanes, KnowWhatHasTwoNamesOrSharesOne) {

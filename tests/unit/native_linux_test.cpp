@@ -69,6 +69,13 @@ TEST(Native, NamesMayBeThoseThatTheTranslationUses) {
         (Numbers{15, 6, 8, 9, 7, 17, 5, 3, 2, 4}));
 }
 
+TEST(Native, FunctionsMayHaveAnyName) {
+    EXPECT_EQ(run_shader("float Shader(float x) { return x; } float native_scale(float x) { return 2.0 * x; }\n"
+                         "float offsetof(float x) { return 3.0 * x; } float Builtins(float x) { return 4.0 * x; }",
+                         "give(Shader(1.0)); give(native_scale(1.0)); give(offsetof(1.0)); give(Builtins(1.0));"),
+              (Numbers{1, 2, 3, 4}));
+}
+
 TEST(Native, BitsOfNegativeNumbersAreThoseOfTheirWords) {
     EXPECT_EQ(run_shader("",
                          "int x = -2; give(float(bitfieldReverse(x))); ivec2 v = bitfieldReverse(ivec2(-1, 1));"
@@ -190,7 +197,8 @@ TEST(Native, BlocksMayHaveNamesAndHeaders) {
                    "give(7.0);"),
         Numbers{7});
     EXPECT_EQ(run_shader("layout(scalar, set = 0, binding = 1) buffer Block { float first; } block;\n"
-                         "float raise() { return block.first += 4.0; }", "block.first = 2.0; give(raise() - 2.0);"),
+                         "float raise() { return block.first += 4.0; }",
+                         "block.first = 2.0; give(raise() - 2.0);"),
               Numbers{4});
 }
 
@@ -198,6 +206,12 @@ TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
     for (const auto& [glsl, message] : std::initializer_list<std::pair<const char*, const char*>>{
              {"layout(std140, binding = 1) buffer Block { float list[2]; };\nvoid main() { list[0] = 1.0; }",
               "a layout of memory other than layout(scalar)"},
+             {"layout(scalar, binding = 1, row_major) buffer Block { mat3 m; };\nvoid main() { m[0] = vec3(1.0); }",
+              "a layout of memory other than layout(scalar)"},
+             {"layout(constant_id = 3) const int N = 4;\nconst int M = N * 2;\nlayout(scalar, binding = 1) buffer Block { int x; "
+              "};\n"
+              "void main() { x = M; }",
+              "constants that are computed from specialisation constants"},
              {"layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}", "workgroups of more than one dimension"},
              {"shared float x;\nvoid main() { x = 1.0; }", "shared variables"},
              {"void main() {\n\nbarrier(); }", "test.glsl:3: the backend native does not know a function of this line"},
