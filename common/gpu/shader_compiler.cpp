@@ -258,9 +258,9 @@ std::map<fs::path, fs::path> shader_files(const ShaderSource& source) {
 std::vector<uint32_t> compile_shader(const ShaderSource& source, bool has_lines) {
     const ExpandedShader expanded(source);
     const auto version = glslang::GetVersion();
-    const std::string key = expanded.preamble + expanded.text + source.file.extension().string() + (has_lines ? " with lines" : "") + "/" +
-                            std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
-                            std::to_string(version.patch);
+    const std::string key = expanded.preamble + expanded.text + source.file.extension().string() +
+                            (has_lines ? " with lines" : "") + "/" + std::to_string(version.major) + "." +
+                            std::to_string(version.minor) + "." + std::to_string(version.patch);
     const std::string name = cache_name("shader", key);
     std::vector<uint32_t> words;
     if (const auto cached = read_cache(name)) {

@@ -30,8 +30,8 @@ struct ShaderSource {
 // UserError if one is missing or refused.
 std::map<std::filesystem::path, std::filesystem::path> shader_files(const ShaderSource& source);
 
-// Returns SPIR-V 1.5, from the cache if possible; it says the line of each instruction if `has_lines`. Throws UserError with lines
-// "file:line: message".
+// Returns SPIR-V 1.5, from the cache if possible; it says the line of each instruction if `has_lines`. Throws UserError with
+// lines "file:line: message".
 std::vector<uint32_t> compile_shader(const ShaderSource& source, bool has_lines = false);
 
 }  // namespace lab
