@@ -9,8 +9,6 @@ template <typename T>
 LAB_INLINE Lanes<T> select(const Mask& mask, const Lanes<T>& a, const Lanes<T>& b) {
     return Lanes<T>::of(mask.raw ? a.raw : b.raw);
 }
-template <typename T, typename F>
-LAB_INLINE void for_each_part(T& target, const F& f);
 template <typename A, typename B>
 LAB_INLINE auto select(const Mask& mask, const A& a, const B& b);
 

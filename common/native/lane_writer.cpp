@@ -65,13 +65,9 @@ std::string LaneWriter::change(const std::string& container, const Pointer& poin
     return "lab__::put(active__, " + container + ", " + value(pointer.indices[next]) +
            ", [&](auto& x__, lab__::Mask active__) { " + change("x__", pointer, next + 1, text) + " });";
 }
-bool LaneWriter::is_parameter(Id id) const {
-    const auto& parameters = program_.functions.at(function_).parameters;
-    return std::any_of(parameters.begin(), parameters.end(), [&](const Instruction& parameter) { return parameter.id == id; });
-}
 void LaneWriter::assign(const std::string& target, Id variable, const std::string& text) {
-    const bool is_of_some = variance_.varies(variable) && (depth_ > variance_.depth_of(variable, function_, program_) ||
-                                                           (returns_ > 0 && is_parameter(variable)));
+    const bool is_of_some = variance_.varies(variable) &&
+                            variance_.is_of_some_lanes(variable, program_.functions.at(function_), program_, depth_, returns_);
     flush(true);
     out(is_of_some ? "lab__::assign(active__, " + target + ", " + text + "); " : target + " = " + text + "; ");
 }
@@ -119,22 +115,20 @@ std::string LaneWriter::returned(const Function& function, const std::string& bo
     return "{ " + type_name(function.type, function.id) + " result__; " + body + " return result__; }";
 }
 void LaneWriter::branch(const Statement& statement) {
-    const std::string condition = value(statement.value);
-    flush();
     const auto& [first, second] = std::tie(statement.parts[0], statement.parts[1]);
     const auto leaves = [](const Sequence& sequence) {
         return sequence.statements.size() == 1 && sequence.statements[0].kind == Statement::Kind::leave_loop;
     };
-    if (!open_.empty() && open_.back().is_varying && open_.back().depth == depth_ &&
-        ((leaves(first) && second.statements.empty()) || (leaves(second) && first.statements.empty()))) {
+    const bool is_exit = !open_.empty() && open_.back().is_varying && open_.back().depth == depth_ &&
+                         ((leaves(first) && second.statements.empty()) || (leaves(second) && first.statements.empty()));
+    if (!is_exit && !variance_.varies(statement.value)) return Writer::statement(statement);
+    const std::string condition = value(statement.value);
+    flush();
+    if (is_exit) {
         out("if (loop__.goes_on(" + std::string(leaves(first) ? "!" : "") + "lab__::Mask(" + condition + "))) { ");
         ends_ += "} ";
         ++jumps_;  // for the blocks around, if there are some
         return;
-    }
-    if (!variance_.varies(statement.value)) {
-        out("if (" + condition + ") " + sequence(first));
-        return out((second.statements.empty() ? "" : " else " + sequence(second)) + " ");
     }
     out("{ lab__::Branch branch__(active__, " + condition + "); ");
     if (!first.statements.empty()) out("if (branch__.begins()) " + part(first, 1));

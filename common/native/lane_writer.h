@@ -34,7 +34,6 @@ class LaneWriter : public Writer {
     void cases(const Statement& statement);
     void give_back(const Statement& statement);
     std::string part(const Sequence& sequence, int depth);
-    bool is_parameter(Id id) const;
 
     const Variance variance_;
     int depth_ = 0;    // of branches around that only some lanes may take

@@ -6,13 +6,11 @@
 namespace lab::native {
 namespace {
 
-using Blocks = std::map<Id, std::vector<Instruction>>;
-
 // Makes a tree of a function's blocks. glslang writes them in the shape of GLSL's statements: a selection and a loop name the
 // block that follows them.
 class TreeBuilder {
   public:
-    TreeBuilder(Program& program, const Blocks& blocks) : program_(program), blocks_(blocks) {}
+    TreeBuilder(Program& program, const Program::Blocks& blocks) : program_(program), blocks_(blocks) {}
 
     struct Targets {  // of jumps
         Id leave_loop = 0, next_turn = 0, leave_cases = 0, next_case = 0;
@@ -152,7 +150,7 @@ class TreeBuilder {
     }
 
     Program& program_;
-    const Blocks& blocks_;
+    const Program::Blocks& blocks_;
     int depth_ = 0;
 };
 
@@ -202,8 +200,7 @@ void Program::read(Instruction& instruction, Function*& function, Blocks& blocks
             break;
         case spv::OpNoLine:
             break;
-        case spv::OpExtInstImport:
-            extended_instructions = instruction.id;
+        case spv::OpExtInstImport:  // of GLSL.std.450: there is no other
             break;
         case spv::OpEntryPoint:
             main = operands[1];

@@ -2,7 +2,6 @@
 #pragma once
 #define SPV_ENABLE_UTILITY_CODE
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 #include <span>
@@ -56,6 +55,11 @@ struct Function {
     Id file = 0;
     std::vector<Instruction> parameters = {};
     Sequence body = {};
+
+    bool has_parameter(Id id) const {
+        return std::any_of(parameters.begin(), parameters.end(),
+                           [&](const Instruction& parameter) { return parameter.id == id; });
+    }
 };
 
 // A variable, a parameter or a part of it. The types are those before each index, and of what it leads to.
@@ -66,11 +70,13 @@ struct Pointer {
 
 class Program {
   public:
+    using Blocks = std::map<Id, std::vector<Instruction>>;  // of a function, by their labels
+
     // `words` come from glslang, not optimised and with lines.
     explicit Program(const std::vector<uint32_t>& words);
 
     uint32_t local_size = 1;
-    Id main = 0, extended_instructions = 0;
+    Id main = 0;
     std::map<Id, Function> functions;
     std::map<Id, Id> tables;  // variables of functions that are another name for a constant
     std::vector<Id> globals;  // constants and variables, each after those that it uses
@@ -122,7 +128,6 @@ class Program {
     }
 
   private:
-    using Blocks = std::map<Id, std::vector<Instruction>>;
     void read(Instruction& instruction, Function*& function, Blocks& blocks, Id& block);
     enum class Access { none, set, read };
     Access first_access(const Sequence& sequence, Id variable) const;

@@ -39,10 +39,6 @@ class Variance::Walk {
         return found != pointers_.end() &&
                std::any_of(found->second.indices.begin(), found->second.indices.end(), [&](Id index) { return varies(index); });
     }
-    bool is_parameter(Id id) const {
-        return std::any_of(function_->parameters.begin(), function_->parameters.end(),
-                           [&](const Instruction& parameter) { return parameter.id == id; });
-    }
 
     void sequence(const Sequence& sequence) {
         for (const Id variable : sequence.variables) variance_.depths_[variable] = depth_;
@@ -89,8 +85,7 @@ class Variance::Walk {
     void change(Id pointer, bool is_varying) {
         const Id root = root_of(pointer);
         if (is_shared(program_, root)) return;
-        const bool is_of_some =
-            depth_ > variance_.depth_of(root, function_->id, program_) || (returns_ > 0 && is_parameter(root));
+        const bool is_of_some = variance_.is_of_some_lanes(root, *function_, program_, depth_, returns_);
         if (is_varying || has_varying_index(pointer) || is_of_some) vary(root);
     }
     void call(const Instruction& instruction) {

@@ -12,11 +12,10 @@ class Variance {
     bool varies(Id id) const { return ids_.contains(id); }
     // Whether lanes leave it one by one.
     bool varies(const Statement& loop) const { return loops_.contains(&loop); }
-    // How many branches that only some lanes take are around a variable's declaration; `-1` for a global one.
-    int depth_of(Id variable, Id function, const Program& program) const {
-        if (program.is_global(variable)) return function == program.main ? 0 : -1;
-        const auto found = depths_.find(variable);
-        return found == depths_.end() ? 0 : found->second;
+    // Whether a variable may change for some of the lanes alone that have it, where a function is at a depth of branches that
+    // only some take, after so many returns of that kind.
+    bool is_of_some_lanes(Id variable, const Function& function, const Program& program, int depth, int returns) const {
+        return depth > depth_of(variable, function.id, program) || (returns > 0 && function.has_parameter(variable));
     }
 
   private:
@@ -24,6 +23,13 @@ class Variance {
     std::set<Id> ids_;
     std::set<const Statement*> loops_;
     std::map<Id, int> depths_;
+
+    // How many branches that only some lanes take are around a variable's declaration; `-1` for a global one.
+    int depth_of(Id variable, Id function, const Program& program) const {
+        if (program.is_global(variable)) return function == program.main ? 0 : -1;
+        const auto found = depths_.find(variable);
+        return found == depths_.end() ? 0 : found->second;
+    }
 };
 
 // Variables in buffers and textures, which all invocations share.

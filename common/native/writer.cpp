@@ -66,7 +66,7 @@ std::string Writer::value(Id id) {
     if (program_.is_constant(id)) return constant(id);
     if (const auto found = pending_.find(id); found != pending_.end()) {
         reads_ |= found->second.reads;
-        depth_ = std::max(depth_, found->second.depth);
+        parentheses_ = std::max(parentheses_, found->second.depth);
         std::string text = std::move(found->second.text);
         pending_.erase(found);
         return text;
@@ -92,8 +92,8 @@ void Writer::flush(bool only_reads) {
 void Writer::give(const Instruction& instruction, const std::string& text, bool reads, Id root) {
     constexpr int deepest = 30;  // parentheses, which compilers do not like deep
     names_[instruction.id] = "value__" + std::to_string(instruction.id);
-    const bool is_short = uses_[instruction.id] == 1 && depth_ < deepest;
-    pending_[instruction.id] = {text, reads || reads_, depth_ + 1, root};
+    const bool is_short = uses_[instruction.id] == 1 && parentheses_ < deepest;
+    pending_[instruction.id] = {text, reads || reads_, parentheses_ + 1, root};
     order_.push_back(instruction.id);
     if (!is_short) flush();
 }
@@ -134,7 +134,7 @@ std::string Writer::fetch(const Instruction& instruction) {
 void Writer::execute(const Instruction& instruction) {
     const auto& operands = instruction.operands;
     reads_ = false;
-    depth_ = 0;
+    parentheses_ = 0;
     if (instruction.op == spv::OpAccessChain) {
         note_pointer(pointers_, program_, instruction);
         if (uses_[instruction.id] > 1) flush();  // its indices are read once

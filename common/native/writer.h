@@ -93,7 +93,7 @@ class Writer {
     std::vector<int> labels_;                        // of the loops around
     std::string file_;
     uint32_t line_ = 0;
-    int label_count_ = 0, depth_ = 0;
+    int label_count_ = 0, parentheses_ = 0;
     bool reads_ = false;
 };
 
