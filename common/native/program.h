@@ -56,9 +56,9 @@ struct Function {
     std::vector<Instruction> parameters = {};
     Sequence body = {};
 
-    bool has_parameter(Id id) const {
+    bool has_parameter(Id parameter_id) const {
         return std::any_of(parameters.begin(), parameters.end(),
-                           [&](const Instruction& parameter) { return parameter.id == id; });
+                           [&](const Instruction& parameter) { return parameter.id == parameter_id; });
     }
 };
 
