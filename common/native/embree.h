@@ -13,7 +13,7 @@
 
 namespace lab::native {
 
-class EmbreeTracer final : public RayTracer {
+class EmbreeTracer : public RayTracer {
   public:
     EmbreeTracer(const Triangle* triangles, size_t count) : unit_(unit_for(triangles, count)) {
         device_.reset(rtcNewDevice(nullptr));
@@ -77,23 +77,34 @@ class EmbreeTracer final : public RayTracer {
     void find_closest_hits(RayPacket& packet) const override {
         static_assert(sizeof(RayHits) <= offsetof(RayPacket, instance));
         static_assert(offsetof(RayHits, hit.primID) == offsetof(RayPacket, primitive));
-        std::fill_n(packet.geometry, lane_count, RTC_INVALID_GEOMETRY_ID);
+        packet.geometry = Words{} + RTC_INVALID_GEOMETRY_ID;
         to_units(packet);
-        intersect(packet.is_active, *reinterpret_cast<RayHits*>(&packet));
-        for (int i = 0; i < lane_count; ++i) {
-            packet.is_active[i] &= packet.geometry[i] == RTC_INVALID_GEOMETRY_ID ? 0 : -1;
-            const Place& place = places_[packet.primitive[i] & static_cast<uint32_t>(packet.is_active[i])];
-            packet.instance[i] = place.instance;
-            packet.triangle[i] = place.triangle;
-            packet.t_max[i] *= 1 / unit_;
-        }
+        intersect(reinterpret_cast<const int*>(&packet.is_active), *reinterpret_cast<RayHits*>(&packet));
+        packet.is_active &= packet.geometry != RTC_INVALID_GEOMETRY_ID;
+        to_scene(packet);
     }
     void find_any_hits(RayPacket& packet) const override {
         to_units(packet);
-        occluded(packet.is_active, *reinterpret_cast<Rays*>(&packet));
-        for (int i = 0; i < lane_count; ++i) packet.is_active[i] &= packet.t_max[i] < 0 ? -1 : 0;
+        occluded(reinterpret_cast<const int*>(&packet.is_active), *reinterpret_cast<Rays*>(&packet));
+        packet.is_active &= packet.t_max < 0;
     }
     size_t bytes() const override { return bytes_ + places_.size() * sizeof(Place); }
+
+  protected:
+    // From the scene to what Embree knows, and back.
+    void to_units(RayPacket& packet) const {
+        for (Floats& coordinates : packet.origin) coordinates *= unit_;
+        packet.t_max *= unit_;
+    }
+    void to_scene(RayPacket& packet) const {
+        for (int i = 0; i < lane_count; ++i) {
+            const Place& place = places_[packet.primitive[i] & static_cast<uint32_t>(packet.is_active[i])];
+            packet.instance[i] = place.instance;
+            packet.triangle[i] = place.triangle;
+        }
+        packet.t_max *= 1 / unit_;
+    }
+    float unit() const { return unit_; }
 
   private:
     // Embree multiplies three lengths, which must neither overflow nor underflow: it gets a scene whose coordinates are up to
@@ -107,11 +118,6 @@ class EmbreeTracer final : public RayTracer {
         int exponent = 0;
         std::frexp(largest, &exponent);
         return std::ldexp(1.0f, std::clamp(36 - exponent, -126, 126));
-    }
-    void to_units(RayPacket& packet) const {
-        for (auto& coordinates : packet.origin)
-            for (float& coordinate : coordinates) coordinate *= unit_;
-        for (float& distance : packet.t_max) distance *= unit_;
     }
 
 #ifdef __AVX512DQ__
@@ -168,8 +174,3 @@ class EmbreeTracer final : public RayTracer {
 };
 
 }  // namespace lab::native
-
-extern "C" __attribute__((visibility("default"))) lab::native::RayTracer* lab_make_ray_tracer(
-    const lab::native::RayTracer::Triangle* triangles, size_t count) {
-    return new lab::native::EmbreeTracer(triangles, count);
-}

@@ -214,44 +214,32 @@ struct ShaderBase : Builtins {
                                        V<uint>& instance, V<uint>& triangle, V<vec2>& barycentrics, V<float>& distance) const {
         RayPacket packet = packet_of(active, origin, direction, t_max);
         bindings.rays->find_closest_hits(packet);
-        read(instance, packet.instance);
-        read(triangle, packet.triangle);
-        read(barycentrics[0], packet.barycentrics[0]);
-        read(barycentrics[1], packet.barycentrics[1]);
-        read(distance, packet.t_max);
-        return hits_of(packet);
+        instance.raw = packet.instance;
+        triangle.raw = packet.triangle;
+        for (int i = 0; i < 2; ++i) barycentrics[i].raw = packet.barycentrics[i];
+        distance.raw = packet.t_max;
+        return Mask::of(packet.is_active);
     }
     LAB_INLINE Mask native_any_hit(const Mask& active, const V<vec3>& origin, const V<vec3>& direction,
                                    const V<float>& t_max) const {
         RayPacket packet = packet_of(active, origin, direction, t_max);
         bindings.rays->find_any_hits(packet);
-        return hits_of(packet);
+        return Mask::of(packet.is_active);
     }
 
   private:
-    template <typename T, typename Word>
-    LAB_INLINE static void read(Lanes<T>& target, const Word* words) {
-        std::memcpy(&target.raw, words, sizeof target.raw);
-    }
-    LAB_INLINE static Mask hits_of(const RayPacket& packet) {
-        Mask hits;
-        read(hits, packet.is_active);
-        return hits;
-    }
     LAB_INLINE static RayPacket packet_of(const Mask& active, const V<vec3>& origin, const V<vec3>& direction,
                                           const V<float>& t_max) {
         RayPacket packet;
-        const auto write = [](auto* words, const auto& x) { std::memcpy(words, &x.raw, sizeof x.raw); };
         for (int i = 0; i < 3; ++i) {
-            write(packet.origin[i], origin[i]);
-            write(packet.direction[i], direction[i]);
+            packet.origin[i] = origin[i].raw;
+            packet.direction[i] = direction[i].raw;
         }
-        write(packet.t_min, Lanes<float>(0.0f));
-        write(packet.time, Lanes<float>(0.0f));
-        write(packet.t_max, t_max);
-        write(packet.mask, Lanes<uint>(~0u));
-        write(packet.flags, Lanes<uint>(0u));
-        write(packet.is_active, active);
+        packet.t_min = packet.time = Floats{};
+        packet.t_max = t_max.raw;
+        packet.mask = ~Words{};
+        packet.flags = Words{};
+        packet.is_active = active.raw;
         return packet;
     }
 };

@@ -11,15 +11,19 @@ inline constexpr int lane_count = 16;
 inline constexpr int lane_count = 8;
 #endif
 
+typedef float Floats __attribute__((vector_size(4 * lane_count)));
+typedef int32_t Integers __attribute__((vector_size(4 * lane_count)));
+typedef uint32_t Words __attribute__((vector_size(4 * lane_count)));
+
 // A ray for each lane. The first numbers are those of Embree's RTCRayHit8 or RTCRayHit16.
-struct alignas(64) RayPacket {
-    float origin[3][lane_count], t_min[lane_count], direction[3][lane_count], time[lane_count];
-    float t_max[lane_count];  // then the distance of the hit
-    uint32_t mask[lane_count], id[lane_count], flags[lane_count];
-    float normal[3][lane_count], barycentrics[2][lane_count];
-    uint32_t primitive[lane_count], geometry[lane_count], unused[4][lane_count];
-    uint32_t instance[lane_count], triangle[lane_count];
-    int32_t is_active[lane_count];  // 0 or -1; then whether it hits something
+struct RayPacket {
+    Floats origin[3], t_min, direction[3], time;
+    Floats t_max;  // then the distance of the hit
+    Words mask, id, flags;
+    Floats normal[3], barycentrics[2];
+    Words primitive, geometry, unused[4];
+    Words instance, triangle;
+    Integers is_active;  // 0 or -1; then whether it hits something
 };
 
 }  // namespace lab::native

@@ -12,8 +12,6 @@
 
 namespace lab::native::lanes {
 
-typedef float Floats __attribute__((vector_size(4 * lane_count)));
-typedef int32_t Integers __attribute__((vector_size(4 * lane_count)));
 typedef int32_t Four __attribute__((vector_size(16)));
 
 #ifdef __AVX512DQ__
@@ -25,6 +23,7 @@ LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps512(x, 4);
 #else
 LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps512_mask(x, x, -1, 4); }
 #endif
+LAB_INLINE Floats multiply_add(Floats a, Floats b, Floats c) { return __builtin_ia32_vfmaddps512_mask(a, b, c, -1, 4); }
 LAB_INLINE Integers gather(Integers mask, const int32_t* base, Integers index) {
     return __builtin_ia32_gathersiv16si(Integers{}, base, index, __builtin_ia32_cvtd2mask512(mask), 4);
 }
@@ -41,6 +40,7 @@ LAB_INLINE Integers every_fourth(const Row& row) {
 LAB_INLINE uint32_t signs(Integers x) { return static_cast<uint32_t>(__builtin_ia32_movmskps256(reinterpret_cast<Floats>(x))); }
 LAB_INLINE Floats round_down(Floats x) { return __builtin_ia32_roundps256(x, 1); }
 LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps256(x); }
+LAB_INLINE Floats multiply_add(Floats a, Floats b, Floats c) { return __builtin_ia32_vfmaddps256(a, b, c); }
 LAB_INLINE Integers gather(Integers mask, const int32_t* base, Integers index) {
 #ifdef __clang__
     return __builtin_ia32_gatherd_d256(Integers{}, base, index, mask, 4);
