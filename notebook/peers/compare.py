@@ -18,7 +18,8 @@ from tables.ages import stamped
 GOES_ON = True
 COUNTS = [16, 64, 256, 1024]  # samples of a pixel
 # Scene: (the chapter that is the best there, numbers of samples). A sample of fog takes others the longest.
-SCENES = {**dict.fromkeys(("cornell_box", "heart_light", "clear_glass"), ("path_regeneration", COUNTS)), "fog": ("media", COUNTS[:-1])}
+SCENES = {**dict.fromkeys(("cornell_box", "heart_light", "clear_glass"), ("path_regeneration", COUNTS)), "fog": ("media", COUNTS[:-1]),
+          "microfacets": ("microfacets", COUNTS), "lamps": ("many_lights", COUNTS)}
 PEERS = {  # case: (--variant, --sampler)
     "Mitsuba LLVM": ("llvm_ad_rgb", "independent"), "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
     "Cycles, light tree": ("cycles", "light_tree"), "Cycles, no light tree": ("cycles", "no_light_tree"),

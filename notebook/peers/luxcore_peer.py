@@ -28,7 +28,8 @@ def material_properties(name, material):
     else:
         values = {"type": "matte", "kd": floats(material.diffuse)}
     if material.emission.any():
-        values["emission"] = floats(material.emission)
+        # By itself LuxCore leaves lamps of more than 24 triangles to chance.
+        values |= {"emission": floats(material.emission), "emission.directlightsampling.type": "ENABLED"}
     return {f"scene.materials.{name}.{key}": value for key, value in values.items()}
 
 
@@ -69,6 +70,8 @@ class Renderer:
             "renderengine.type": "PATHCPU", "sampler.type": sampler, f"sampler.{options.sampler}.adaptive.strength": 0.0,
             "native.threads.count": len(os.sched_getaffinity(0)), "path.clamping.variance.maxvalue": 0.0,
             **{f"path.pathdepth.{kind}": depth for kind in ("total", "diffuse", "glossy", "specular")},
+            # No roulette: its probabilities in LuxCore's two MIS weights differ, so that their sum is not 1.
+            "path.russianroulette.depth": depth + 1,
             "film.width": options.width, "film.height": options.height, "film.filter.type": "NONE",
             "film.outputs.0.type": "RGB", "film.outputs.0.filename": "unused.exr"}
 

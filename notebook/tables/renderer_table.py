@@ -46,6 +46,12 @@ def gain_texts(gains, case, is_ours):
     return ["" if samples not in counts else "1" if is_ours else with_interval(gains[case["case"]][samples]) for samples in COUNTS]
 
 
+def left_out(record):
+    """A sentence for each renderer and scene that it cannot render."""
+    refusals = dict.fromkeys((scene_of(case["scene"]), case["refused"]) for case in record["cases"] if case["refused"])
+    return "".join(f"\nNot in `{scene}`: {refused}.\n" for scene, refused in refusals)
+
+
 def renderer_table(record):
     """The Markdown tables of one CPU, the first with what differs between renderers, and one for each clock."""
     scenes, environment = by_scene(record), record["environment"]
@@ -67,4 +73,4 @@ def renderer_table(record):
         gains = renderer_gains(record, key)
         head = ["scene", f"ours faster in {clock}", *(f"{samples} samples" for samples in COUNTS)]
         text += "\n" + table(head, rows(lambda scene, case, is_ours, of=gains: gain_texts(of[scene], case, is_ours)), left=2)
-    return text
+    return text + left_out(record)

@@ -38,7 +38,7 @@ class SimpleScenesTest(unittest.TestCase):
                             ("glass", "glass that absorbs"), ("textured", "textures"), ("focus", "a lens")):
             with self.assertRaisesRegex(UserError, f"^A is not compared on scenes with.*{words}"):
                 simple_scenes.refuse_what_peers_lack(scene_named(name), "A")
-        for name in ("cornell_box", "heart_light", "clear_glass", "fog"):
+        for name in ("cornell_box", "heart_light", "clear_glass", "fog", "lamps"):
             simple_scenes.refuse_what_peers_lack(scene_named(name), "A")
 
     def test_corners(self):

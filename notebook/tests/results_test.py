@@ -107,7 +107,7 @@ class RendererTableTest(unittest.TestCase):
         rows = [[{"samples": samples, "rel_mse": error, "seconds": 1 + cpu_seconds, "cpu_seconds": cpu_seconds, "mean": [mean] * 3,
                   "difference": [0.01] * 3} for samples, error in zip(renderer_table.COUNTS, errors)] for mean in (0.99, 1.01)]
         reference = {"mean": [1.0] * 3, "variance": [0.0] * 3, "freedom": 10, "rel_mse_deviation": 0.0}
-        return {"case": name, "is_peer": is_peer, "scene": "box_6", "width": 100, "height": 100,
+        return {"case": name, "is_peer": is_peer, "scene": "box_6", "width": 100, "height": 100, "refused": None,
                 "program": "another" if is_peer else "10_path_regeneration", "reference": reference,
                 "runs": [{"seed": seed + 1, "rows": part} for seed, part in enumerate(rows)]}
 
@@ -137,6 +137,13 @@ class RendererTableTest(unittest.TestCase):
             del run["rows"][-1]
         self.assertEqual([*renderer_table.renderer_gains(record, "seconds")["box"]["LuxCore, Sobol"]], [16, 64, 256])
         self.assertEqual(rows_of(renderer_table.renderer_table(record))[7][-2:], ["4.0 (4.0 – 4.0)", ""])
+
+    def test_what_is_left_out_is_said(self):
+        record, refused = self.record(), {"scene": "glass_8", "refused": "LuxCore is not compared on glass", "runs": []}
+        record["cases"] += [refused, refused]
+        text = renderer_table.renderer_table(record)
+        self.assertEqual(text.count("\nNot in `glass`: LuxCore is not compared on glass.\n"), 1)
+        self.assertNotIn("`box`: ", text)
 
     def test_what_is_biased_is_said(self):
         record = self.record()
