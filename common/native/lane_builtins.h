@@ -105,11 +105,7 @@ struct Builtins : native::Builtins {
     })
     LAB_EACH(mix, [](const auto& a, const auto& b, const auto& weight) { return a * (1.0f - weight) + b * weight; })
     LAB_EACH(bitfieldReverse, []<typename U>(const Lanes<U>& a) {
-        const auto swap = [](const Lanes<uint>& bits, uint mask, uint shift) {
-            return ((bits >> shift) & mask) | ((bits & mask) << shift);
-        };
-        const Lanes<uint> bits = swap(swap(swap(a, 0x55555555u, 1u), 0x33333333u, 2u), 0x0f0f0f0fu, 4u);
-        return Lanes<U>(swap(swap(bits, 0x00ff00ffu, 8u), 0x0000ffffu, 16u));
+        return Lanes<U>::of(reinterpret_cast<typename Lanes<U>::Raw>(reverse_bits(reinterpret_cast<Integers>(a.raw))));
     })
     LAB_EACH(upper_half, []<typename A, typename B>(const A& a, const B& b) {
         using Number = Lanes<Element<A, B>>;
