@@ -60,6 +60,9 @@ LAB_INLINE Integers every_fourth(const Row& row) {
 // Of the C library.
 extern "C" Floats LAB_LIBMVEC(v_sinf)(Floats);
 extern "C" Floats LAB_LIBMVEC(v_cosf)(Floats);
+extern "C" Floats LAB_LIBMVEC(v_tanf)(Floats);
+extern "C" Floats LAB_LIBMVEC(v_atanf)(Floats);
+extern "C" Floats LAB_LIBMVEC(vv_atan2f)(Floats, Floats);
 extern "C" Floats LAB_LIBMVEC(v_expf)(Floats);
 extern "C" Floats LAB_LIBMVEC(v_logf)(Floats);
 extern "C" Floats LAB_LIBMVEC(vv_powf)(Floats, Floats);
