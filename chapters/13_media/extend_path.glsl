@@ -33,11 +33,11 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     Hit hit;
     bool is_hit = trace_ray(path.ray, NO_LIMIT, hit);
     float t_max = is_hit ? (1.0 - 64.0 * ROUNDING) * hit.distance : NO_LIMIT;
-    float flight = sample_flight(media[path.medium], path.ray, t_max, seed);
+    float flight = sample_flight(get_medium(path.medium), path.ray, t_max, seed);
     bool is_collision = flight < t_max;
     if (!is_hit && path.medium != 0u) return false;  // its mesh is not closed
     Segment segment = Segment(path.ray, is_hit ? hit.distance : FARTHEST, path.medium);
-    bool has_angles = STRATEGY != STRATEGY_BOUNCES && samples_angles(media[path.medium]);
+    bool has_angles = STRATEGY != STRATEGY_BOUNCES && samples_angles(get_medium(path.medium));
     if (has_angles && path.path_length < parameters.max_path_length) add_light(path, 1u, sample_segment(segment, seed));
 
     if (!is_hit && !is_collision) {
@@ -64,7 +64,7 @@ bool extend_path(inout Path path, inout uvec2 seed) {
         float cos_light = dot(s.geometric_normal, s.out_direction);
         float light_density = path.is_light_sampled ? to_solid_angle(s.light_density, path.distance, cos_light) : 0.0;
         if (DISTANCE_SAMPLING == SAMPLES_ANGLES && path.segment.t_max > 0.0)
-            light_density *= get_distance_ratio(get_angles(path.segment, s.position), media[path.segment.medium].extinction,
+            light_density *= get_distance_ratio(get_angles(path.segment, s.position), get_medium(path.segment.medium).extinction,
                                                 path.flight);
         add_light(path, 0u, get_bounce_part(light_density, path.bounce_density) * s.emission);
         if (!is_above_surface(s, s.out_direction)) return false;
@@ -76,7 +76,7 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     if (path.is_light_sampled) add_light(path, 1u, sample_scattered_light(s, sides, seed));
 
     // Sample ω_k.
-    BsdfSample bounce = sample_scattering(s, media[sides.here], seed);
+    BsdfSample bounce = sample_scattering(s, get_medium(sides.here), seed);
     if (bounce.weight == vec3(0.0)) return false;
     path.throughput *= bounce.weight;
     path.radiance_scale *= bounce.radiance_scale;

@@ -87,9 +87,9 @@ float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
     vec3 end = ray.origin + ray.direction;
     for (uint i = 0u; i < MAX_CROSSED_BOUNDARIES; ++i) {
         Hit hit;
-        if (!trace_ray(ray, t_max, hit)) return transmittance * get_transmittance_of(media[medium], ray, t_max, seed);
+        if (!trace_ray(ray, t_max, hit)) return transmittance * get_transmittance_of(get_medium(medium), ray, t_max, seed);
         if (!is_open_boundary(hit)) return 0.0;
-        transmittance *= get_transmittance_of(media[medium], ray, hit.distance, seed);
+        transmittance *= get_transmittance_of(get_medium(medium), ray, hit.distance, seed);
         medium = get_sides(hit, ray.direction, medium).beyond;
         ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
         // A ray that ends at a point still ends there.
@@ -97,6 +97,6 @@ float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
     }
     return 0.0;
 #else
-    return is_occluded(ray, t_max) ? 0.0 : get_transmittance_of(media[medium], ray, t_max, seed);
+    return is_occluded(ray, t_max) ? 0.0 : get_transmittance_of(get_medium(medium), ray, t_max, seed);
 #endif
 }

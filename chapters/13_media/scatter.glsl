@@ -22,7 +22,7 @@ BsdfSample sample_scattering(ShadingData s, Medium medium, inout uvec2 seed) {
 // it; it has the weight of chapter 7 against bounces, with their densities with respect to solid angle.
 vec3 scatter_light(ShadingData s, Sides sides, vec3 omega, vec3 radiance, float light_density, Ray shadow_ray, float t_max,
                    inout uvec2 seed) {
-    Medium medium = media[sides.here];
+    Medium medium = get_medium(sides.here);
     vec3 scattering = get_scattering(s, medium, omega);
     if (scattering == vec3(0.0)) return vec3(0.0);
     float bounce_density = STRATEGY == STRATEGY_LIGHT ? 0.0 : get_scattering_density(s, medium, omega);
@@ -65,7 +65,7 @@ vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
         return scatter_light(s, sides, omega, get_background_radiance(omega) * (light_density / sampled_density), light_density,
                              get_ray_from_surface(s, omega), NO_LIMIT, seed);
     }
-    if (samples_angles(media[sides.here]) && is_in_medium(s)) return vec3(0.0);
+    if (samples_angles(get_medium(sides.here)) && is_in_medium(s)) return vec3(0.0);
     LightTriangle light;
     LightPoint y = sample_lamp(light, seed);
     return scatter_lamp(s, sides, light, y, 1.0, seed);
@@ -73,7 +73,7 @@ vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
 
 // Estimates the light of lamps that is scattered once along a segment.
 vec3 sample_segment(Segment segment, inout uvec2 seed) {
-    float extinction = media[segment.medium].extinction;
+    float extinction = get_medium(segment.medium).extinction;
     if (extinction == 0.0 || !HAS_LIGHT_TRIANGLES || chooses_probe(seed)) return vec3(0.0);
     LightTriangle light;
     LightPoint y = sample_lamp(light, seed);

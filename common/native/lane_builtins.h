@@ -46,6 +46,9 @@ LAB_INLINE Lanes<T> product_above(const Lanes<T>& a, const Lanes<T>& b) {
     return Lanes<T>::of(reinterpret_cast<typename Lanes<T>::Raw>(low | (odd & high_half)));
 }
 
+LAB_INLINE Floats arc_tangent(Floats x) { return LAB_LIBMVEC(v_atanf)(x); }
+LAB_INLINE Floats arc_tangent(Floats y, Floats x) { return LAB_LIBMVEC(vv_atan2f)(y, x); }
+
 struct Builtins : native::Builtins {
     using Plain = native::Builtins;
     using Float = const Lanes<float>&;
@@ -69,7 +72,7 @@ struct Builtins : native::Builtins {
 #define LAB_VECTOR(name, function) \
     LAB_EACH(name, [](const auto&... y) { return by_vector([](auto... z) { return function; }, y...); })
     // clang-format off
-    LAB_ALONE(radians) LAB_ALONE(degrees) LAB_ALONE(tan) LAB_ALONE(asin) LAB_ALONE(acos) LAB_ALONE(atan) LAB_ALONE(sinh)
+    LAB_ALONE(radians) LAB_ALONE(degrees) LAB_ALONE(asin) LAB_ALONE(acos) LAB_ALONE(sinh)
     LAB_ALONE(cosh) LAB_ALONE(tanh) LAB_ALONE(asinh) LAB_ALONE(acosh) LAB_ALONE(atanh) LAB_ALONE(exp2) LAB_ALONE(log2)
     LAB_ALONE(trunc) LAB_ALONE(round) LAB_ALONE(roundEven) LAB_ALONE(ceil) LAB_ALONE(smoothstep) LAB_ALONE(isnan)
     LAB_ALONE(isinf) LAB_ALONE(sign) LAB_ALONE(bitCount) LAB_ALONE(findLSB) LAB_ALONE(findMSB) LAB_ALONE(bitfieldExtract)
@@ -79,6 +82,7 @@ struct Builtins : native::Builtins {
     LAB_ALONE(unpackUnorm2x16) LAB_ALONE(packSnorm4x8) LAB_ALONE(unpackSnorm4x8) LAB_ALONE(packSnorm2x16)
     LAB_ALONE(unpackSnorm2x16) LAB_ALONE(carry) LAB_ALONE(borrow) LAB_ALONE(fraction) LAB_ALONE(exponent)
     LAB_VECTOR(sin, LAB_LIBMVEC(v_sinf)(z...)) LAB_VECTOR(cos, LAB_LIBMVEC(v_cosf)(z...)) LAB_VECTOR(exp, LAB_LIBMVEC(v_expf)(z...))
+    LAB_VECTOR(tan, LAB_LIBMVEC(v_tanf)(z...)) LAB_VECTOR(atan, arc_tangent(z...))
     LAB_VECTOR(log, LAB_LIBMVEC(v_logf)(z...)) LAB_VECTOR(pow, LAB_LIBMVEC(vv_powf)(z...)) LAB_VECTOR(sqrt, square_root(z...))
     LAB_EACH(floor, [](Float a) { return by_vector([](Floats z) { return round_down(z); }, a); })
     LAB_EACH(inversesqrt, [](Float a) { return 1.0f / sqrt(a); })
@@ -105,11 +109,7 @@ struct Builtins : native::Builtins {
     })
     LAB_EACH(mix, [](const auto& a, const auto& b, const auto& weight) { return a * (1.0f - weight) + b * weight; })
     LAB_EACH(bitfieldReverse, []<typename U>(const Lanes<U>& a) {
-        const auto swap = [](const Lanes<uint>& bits, uint mask, uint shift) {
-            return ((bits >> shift) & mask) | ((bits & mask) << shift);
-        };
-        const Lanes<uint> bits = swap(swap(swap(a, 0x55555555u, 1u), 0x33333333u, 2u), 0x0f0f0f0fu, 4u);
-        return Lanes<U>(swap(swap(bits, 0x00ff00ffu, 8u), 0x0000ffffu, 16u));
+        return Lanes<U>::of(reinterpret_cast<typename Lanes<U>::Raw>(reverse_bits(reinterpret_cast<Integers>(a.raw))));
     })
     LAB_EACH(upper_half, []<typename A, typename B>(const A& a, const B& b) {
         using Number = Lanes<Element<A, B>>;

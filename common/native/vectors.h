@@ -12,6 +12,7 @@
 
 namespace lab::native::lanes {
 
+typedef char Bytes __attribute__((vector_size(4 * lane_count)));
 typedef int32_t Four __attribute__((vector_size(16)));
 
 #ifdef __AVX512DQ__
@@ -23,6 +24,7 @@ LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps512(x, 4);
 #else
 LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps512_mask(x, x, -1, 4); }
 #endif
+#define LAB_MULTIPLY_BITS __builtin_ia32_vgf2p8affineqb_v64qi
 LAB_INLINE Floats multiply_add(Floats a, Floats b, Floats c) { return __builtin_ia32_vfmaddps512_mask(a, b, c, -1, 4); }
 LAB_INLINE Integers gather(Integers mask, const int32_t* base, Integers index) {
     return __builtin_ia32_gathersiv16si(Integers{}, base, index, __builtin_ia32_cvtd2mask512(mask), 4);
@@ -37,6 +39,7 @@ LAB_INLINE Integers every_fourth(const Row& row) {
 }
 #else
 #define LAB_LIBMVEC(name) _ZGVdN8##name
+#define LAB_MULTIPLY_BITS __builtin_ia32_vgf2p8affineqb_v32qi
 LAB_INLINE uint32_t signs(Integers x) { return static_cast<uint32_t>(__builtin_ia32_movmskps256(reinterpret_cast<Floats>(x))); }
 LAB_INLINE Floats round_down(Floats x) { return __builtin_ia32_roundps256(x, 1); }
 LAB_INLINE Floats square_root(Floats x) { return __builtin_ia32_sqrtps256(x); }
@@ -57,9 +60,33 @@ LAB_INLINE Integers every_fourth(const Row& row) {
 // Of the C library.
 extern "C" Floats LAB_LIBMVEC(v_sinf)(Floats);
 extern "C" Floats LAB_LIBMVEC(v_cosf)(Floats);
+extern "C" Floats LAB_LIBMVEC(v_tanf)(Floats);
+extern "C" Floats LAB_LIBMVEC(v_atanf)(Floats);
+extern "C" Floats LAB_LIBMVEC(vv_atan2f)(Floats, Floats);
 extern "C" Floats LAB_LIBMVEC(v_expf)(Floats);
 extern "C" Floats LAB_LIBMVEC(v_logf)(Floats);
 extern "C" Floats LAB_LIBMVEC(vv_powf)(Floats, Floats);
+
+LAB_INLINE Integers reverse_bytes(Integers x) {  // of each number
+    return [&]<int... i>(std::integer_sequence<int, i...>) {
+        return reinterpret_cast<Integers>(
+            __builtin_shufflevector(reinterpret_cast<Bytes>(x), reinterpret_cast<Bytes>(x), (i ^ 3)...));
+    }
+    (std::make_integer_sequence<int, 4 * lane_count>());
+}
+#ifdef __GFNI__
+LAB_INLINE Integers reverse_bits(Integers x) {  // of each number: those of a byte by a matrix of bits
+    typedef int64_t Matrices __attribute__((vector_size(4 * lane_count)));
+    const Matrices matrices = Matrices{} + static_cast<int64_t>(0x8040201008040201);
+    return reverse_bytes(
+        reinterpret_cast<Integers>(LAB_MULTIPLY_BITS(reinterpret_cast<Bytes>(x), reinterpret_cast<Bytes>(matrices), 0)));
+}
+#else
+LAB_INLINE Integers reverse_bits(Integers x) {
+    const auto swap = [](Integers bits, int32_t mask, int shift) { return (bits >> shift & mask) | (bits & mask) << shift; };
+    return reverse_bytes(swap(swap(swap(x, 0x55555555, 1), 0x33333333, 2), 0x0f0f0f0f, 4));
+}
+#endif
 
 // Takes elements of each four of `a` and of `b`, where 0 to 3 count those of `a` and 4 to 7 those of `b`.
 template <int... which>

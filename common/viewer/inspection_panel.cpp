@@ -210,7 +210,7 @@ void InspectionPanel::draw_vertices() {
 
 void InspectionPanel::draw_hemisphere() {
     if (!inspection_.has_hemisphere()) {
-        ImGui::TextColored(grey, "no hemisphere: glass, a medium, or beyond the scene");
+        text_in_words("no hemisphere: glass, a medium, or beyond the scene");
         return;
     }
     const HemisphereView& view = inspection_.hemisphere();

@@ -17,8 +17,9 @@ from tables.ages import stamped
 
 GOES_ON = True
 COUNTS = [16, 64, 256, 1024]  # samples of a pixel
-# Scene: (the chapter that is the best there, numbers of samples). A sample of fog takes others the longest.
-SCENES = {**dict.fromkeys(("cornell_box", "heart_light", "clear_glass"), ("path_regeneration", COUNTS)), "fog": ("media", COUNTS[:-1]),
+# Scene: (the chapter that is the best there, numbers of samples, its options). A sample of fog takes others the longest.
+SCENES = {**dict.fromkeys(("cornell_box", "heart_light", "clear_glass"), ("path_regeneration", COUNTS)),
+          "fog": ("media", COUNTS[:-1], "--distance-sampling", "equiangular"),
           "microfacets": ("microfacets", COUNTS), "lamps": ("many_lights", COUNTS)}
 PEERS = {  # case: (--variant, --sampler)
     "Mitsuba LLVM": ("llvm_ad_rgb", "independent"), "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
@@ -28,8 +29,9 @@ PEERS = {  # case: (--variant, --sampler)
 
 
 def our_case(scene, reference):
-    folder = chapter_named(SCENES[scene.stem][0])
-    return new_case(scene, reference, f"chapter {int(folder[:2])}, native", folder) | {"backend": "native"}
+    chapter, _, *options = SCENES[scene.stem]
+    folder = chapter_named(chapter)
+    return new_case(scene, reference, f"chapter {int(folder[:2])}, native", folder, options) | {"backend": "native"}
 
 
 def peer_case(scene, reference, name):
@@ -46,7 +48,7 @@ def all_cases():
 def render(case, seed):
     """The run with this seed. A chapter's rows are those of one picture, whose first samples are those of a smaller one."""
     settings = {"backend": case["backend"], "device": None}
-    _, counts = SCENES[scene_of(case["scene"])]
+    counts = SCENES[scene_of(case["scene"])][1]
     report = run_case(case, settings, ["--samples", *(counts if case["is_peer"] else counts[-1:]), "--seed", seed])
     rows = report["rows"] if case["is_peer"] else [row for row in report["rows"] if row["samples"] in counts]
     return {"seed": seed, "rows": rows}, report["device"]

@@ -83,3 +83,14 @@ uint get_material_class(uint triangle) {
     return is_dielectric ? MATERIAL_CLASS_DIELECTRIC : MATERIAL_CLASS_DIFFUSE;
 }
 #endif
+
+#ifdef FEATURE_MEDIA
+// The medium with this index. Where the compiler sees that there is no other, it is not loaded for each path.
+Medium get_medium(uint index) {
+#ifdef FEATURE_BOUNDARIES
+    return media[index];
+#else
+    return media[0];
+#endif
+}
+#endif

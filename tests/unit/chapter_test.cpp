@@ -35,7 +35,7 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
         EXPECT_EQ(chapter.dielectrics, mentions("is_dielectric")) << name;
         EXPECT_EQ(chapter.microfacets, mentions("microfacets[")) << name;
         EXPECT_EQ(chapter.lens, mentions("aperture_radius")) << name;
-        EXPECT_EQ(chapter.media, mentions("media[")) << name;
+        EXPECT_EQ(chapter.media, mentions("get_medium(")) << name;
         EXPECT_EQ(chapter.low_discrepancy, mentions("get_random_words(inout uvec2 seed) {")) << name;
         for (const ChapterChoice& choice : chapter.choices) {
             EXPECT_TRUE(mentions("#define " + choice.define() + " " + choice.values.front().second))
