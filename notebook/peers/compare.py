@@ -17,10 +17,15 @@ from tables.ages import stamped
 
 GOES_ON = True
 COUNTS = [16, 64, 256, 1024]  # samples of a pixel
-# Scene: (the chapter that is the best there, numbers of samples, its options). A sample of fog takes others the longest.
-SCENES = {**dict.fromkeys(("cornell_box", "heart_light", "clear_glass"), ("path_regeneration", COUNTS)),
-          "fog": ("media", COUNTS[:-1], "--distance-sampling", "equiangular"),
-          "microfacets": ("microfacets", COUNTS), "lamps": ("many_lights", COUNTS)}
+# Scene: (numbers of samples, the chapter that is the best there, its options). A sample of fog takes others the longest.
+SCENES = {
+    "cornell_box": (COUNTS, "path_regeneration"),
+    "heart_light": (COUNTS, "many_lights"),
+    "clear_glass": (COUNTS, "path_regeneration", "--survival-cap", "1"),
+    "fog": (COUNTS[:-1], "media", "--distance-sampling", "equiangular"),
+    "microfacets": (COUNTS, "microfacets", "--survival-cap", "1", "--survival-weight", "0.25"),
+    "lamps": (COUNTS, "many_lights"),
+}
 PEERS = {  # case: (--variant, --sampler)
     "Mitsuba LLVM": ("llvm_ad_rgb", "independent"), "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
     "Cycles, light tree": ("cycles", "light_tree"), "Cycles, no light tree": ("cycles", "no_light_tree"),
@@ -29,9 +34,10 @@ PEERS = {  # case: (--variant, --sampler)
 
 
 def our_case(scene, reference):
-    chapter, _, *options = SCENES[scene.stem]
+    _, chapter, *options = SCENES[scene.stem]
     folder = chapter_named(chapter)
-    return new_case(scene, reference, f"chapter {int(folder[:2])}, native", folder, options) | {"backend": "native"}
+    name = " ".join([f"chapter {int(folder[:2])}, native", *options])
+    return new_case(scene, reference, name, folder, options) | {"backend": "native"}
 
 
 def peer_case(scene, reference, name):
@@ -48,7 +54,7 @@ def all_cases():
 def render(case, seed):
     """The run with this seed. A chapter's rows are those of one picture, whose first samples are those of a smaller one."""
     settings = {"backend": case["backend"], "device": None}
-    counts = SCENES[scene_of(case["scene"])][1]
+    counts, *_ = SCENES[scene_of(case["scene"])]
     report = run_case(case, settings, ["--samples", *(counts if case["is_peer"] else counts[-1:]), "--seed", seed])
     rows = report["rows"] if case["is_peer"] else [row for row in report["rows"] if row["samples"] in counts]
     return {"seed": seed, "rows": rows}, report["device"]
