@@ -20,7 +20,7 @@ struct RayHit {
 
 struct RayPacket;  // packet.h
 
-// Rays by Embree: embree.h, which is compiled like a shader.
+// Rays by Embree: embree.h and few_triangles.h, which are compiled like a shader.
 class RayTracer {
   public:
     struct Triangle {  // of the world; the last number of a row is instance, triangle and nothing

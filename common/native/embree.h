@@ -104,7 +104,7 @@ class EmbreeTracer : public RayTracer {
         }
         packet.t_max *= 1 / unit_;
     }
-    float unit() const { return unit_; }
+    const float unit_;  // length of the scene's unit in Embree
 
   private:
     // Embree multiplies three lengths, which must neither overflow nor underflow: it gets a scene whose coordinates are up to
@@ -166,7 +166,6 @@ class EmbreeTracer : public RayTracer {
     struct Place {  // of a triangle in the scene
         uint32_t instance, triangle;
     };
-    float unit_;  // length of the scene's unit in Embree
     std::vector<Place> places_;
     std::atomic<size_t> bytes_ = 0;
     std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;

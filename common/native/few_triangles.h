@@ -2,7 +2,7 @@
 #pragma once
 #include "native/embree.h"
 
-#ifdef __AVX2__
+#ifdef LAB_FEW_TRIANGLES
 #include "native/vectors.h"
 
 namespace lab::native {
@@ -12,19 +12,17 @@ class FewTriangles final : public EmbreeTracer {
     static constexpr size_t limit = 5 * lane_count / 2;  // in scenes full of gaps, Embree is faster with more
 
     FewTriangles(const Triangle* triangles, size_t count) : EmbreeTracer(triangles, count) {
-        for (size_t i = 0; i < count; ++i) planes_.emplace_back(triangles[i], unit());
+        for (size_t i = 0; i < count; ++i) planes_.emplace_back(triangles[i], unit_);
     }
 
     void find_closest_hits(RayPacket& packet) const override {
         to_units(packet);
         const Rays rays(packet);
-        Hits closest = rays.ends();
-        Integers is_hit{};
+        Hits closest = rays.ends(packet.t_max);
         Words primitive{};
         for (size_t i = 0; i < planes_.size(); ++i) {
             const Hits hits = rays.hits(planes_[i]);
             const Integers is_closer = hits.are_before(closest);
-            is_hit |= is_closer;
             primitive = is_closer ? Words{} + static_cast<uint32_t>(i) : primitive;
             closest.height = is_closer ? hits.height : closest.height;
             closest.speed = is_closer ? hits.speed : closest.speed;
@@ -34,14 +32,14 @@ class FewTriangles final : public EmbreeTracer {
         for (int i = 0; i < 2; ++i) packet.barycentrics[i] = closest.weights[i + 1] / closest.sum;
         packet.t_max = closest.height / closest.speed;
         packet.primitive = primitive;
-        packet.is_active = is_hit & packet.is_active;
+        packet.is_active &= closest.sum != 0;
         to_scene(packet);
     }
 
     void find_any_hits(RayPacket& packet) const override {
         to_units(packet);
         const Rays rays(packet);
-        const Hits ends = rays.ends();
+        const Hits ends = rays.ends(packet.t_max);
         const Integers is_active = packet.is_active;
         Integers is_hit{};
         for (const Plane& plane : planes_) {
@@ -66,6 +64,7 @@ class FewTriangles final : public EmbreeTracer {
 
     struct Plane {  // of a triangle
         float corners[3][3], normal[3];
+        float base[3];  // the corner whose coordinates are rounded the least: as exactly as those of a hit, or more
 
         Plane(const Triangle& triangle, float unit) {
             const decltype(triangle.x)* rows[]{&triangle.x, &triangle.y, &triangle.z};
@@ -78,6 +77,9 @@ class FewTriangles final : public EmbreeTracer {
                 const int next = (axis + 1) % 3, last = (axis + 2) % 3;
                 cross[axis] = edges[0][next] * edges[1][last] - edges[0][last] * edges[1][next];
             }
+            const auto size = [this](int i) { return std::hypot(corners[i][0], corners[i][1], corners[i][2]); };
+            const int closest = size(0) <= std::min(size(1), size(2)) ? 0 : size(1) <= size(2) ? 1 : 2;
+            std::copy_n(corners[closest], 3, base);
             const double length = std::hypot(cross[0], cross[1], cross[2]);
             for (int axis = 0; axis < 3; ++axis) normal[axis] = length > 0 ? static_cast<float>(cross[axis] / length) : 0;
         }
@@ -95,11 +97,12 @@ class FewTriangles final : public EmbreeTracer {
     };
 
     struct Rays {
-        Floats origin[3], direction[3], t_max;
+        Floats origin[3], direction[3];
         Floats x[3] = {}, y[3] = {};  // whose products with a position, relative to the origin, are where the ray sees it
 
-        explicit Rays(const RayPacket& packet) : t_max(packet.t_max) {
+        explicit Rays(const RayPacket& packet) {
             Floats sizes[3];
+            Integers z[3];
             for (int axis = 0; axis < 3; ++axis) {
                 origin[axis] = packet.origin[axis];
                 direction[axis] = packet.direction[axis];
@@ -107,32 +110,40 @@ class FewTriangles final : public EmbreeTracer {
             }
             // Shears the ray into the axis that it follows the most.
             Integers is_left = ~Integers{};
+            Floats along{}, across[2]{};
             for (int axis = 0; axis < 3; ++axis) {
                 const int next = (axis + 1) % 3, last = (axis + 2) % 3;
                 const Integers is_largest = is_left & (sizes[axis] >= sizes[next]) & (sizes[axis] >= sizes[last]);
                 is_left &= ~is_largest;
-                x[next] = is_largest ? of(1) : x[next];
-                x[axis] = is_largest ? -direction[next] / direction[axis] : x[axis];
-                y[last] = is_largest ? of(1) : y[last];
-                y[axis] = is_largest ? -direction[last] / direction[axis] : y[axis];
+                along = is_largest ? direction[axis] : along;
+                across[0] = is_largest ? direction[next] : across[0];
+                across[1] = is_largest ? direction[last] : across[1];
+                z[axis] = is_largest;
+            }
+            const Floats slopes[]{-across[0] / along, -across[1] / along};
+            for (int axis = 0; axis < 3; ++axis) {
+                x[axis] = z[axis] ? slopes[0] : z[(axis + 2) % 3] ? of(1) : Floats{};
+                y[axis] = z[axis] ? slopes[1] : z[(axis + 1) % 3] ? of(1) : Floats{};
             }
         }
 
-        Hits ends() const {
+        // What is nearer than t_max is before them.
+        static Hits ends(Floats t_max) {
             Hits ends{};
             ends.height = t_max;
             ends.speed += 1;
             return ends;
         }
 
-        // Weights of corners have the right sign, as in bvh.glsl, but here those of rays at an edge are 0 and inside. So no ray
-        // passes between two triangles, nor between those around a corner.
+        // Weights of corners have the right sign, as in compute.glsl, and are 0 only at an edge, which is inside. So no ray
+        // passes between two triangles, nor between those around a corner, unless it runs along one of them.
         LAB_INLINE Hits hits(const Plane& plane) const {
-            Floats corners[3][3], xs[3], ys[3], normal[3];
+            Floats corners[3][3], xs[3], ys[3], base[3], normal[3];
             for (int i = 0; i < 3; ++i) {
                 for (int axis = 0; axis < 3; ++axis) corners[i][axis] = plane.corners[i][axis] - origin[axis];
                 xs[i] = dot(corners[i], x);
                 ys[i] = dot(corners[i], y);
+                base[i] = plane.base[i] - origin[i];
                 normal[i] = of(plane.normal[i]);
             }
             Hits hits;
@@ -143,7 +154,7 @@ class FewTriangles final : public EmbreeTracer {
             const auto& [a, b, c] = hits.weights;
             hits.sum = a + b + c;
             hits.are_inside = (((a >= 0) & (b >= 0) & (c >= 0)) | ((a <= 0) & (b <= 0) & (c <= 0))) & (hits.sum != 0);
-            const Floats height = dot(corners[0], normal), speed = dot(direction, normal);
+            const Floats height = dot(base, normal), speed = dot(direction, normal);
             hits.height = speed < 0 ? -height : height;
             hits.speed = speed < 0 ? -speed : speed;
             return hits;
@@ -159,7 +170,7 @@ class FewTriangles final : public EmbreeTracer {
 extern "C" __attribute__((visibility("default"))) lab::native::RayTracer* lab_make_ray_tracer(
     const lab::native::RayTracer::Triangle* triangles, size_t count) {
     using namespace lab::native;
-#ifdef __AVX2__
+#ifdef LAB_FEW_TRIANGLES
     if (count <= FewTriangles::limit) return new FewTriangles(triangles, count);
 #endif
     return new EmbreeTracer(triangles, count);

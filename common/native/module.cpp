@@ -60,7 +60,7 @@ std::string why_no_lanes() {
     if (mode == Mode::debug) return "a debugger sees no lanes";
     if (wished_lanes() == "0") return "LAB_LANES=0";
 #if defined(__x86_64__) && defined(__GLIBC__)
-    return __builtin_cpu_supports("avx2") ? "" : "the CPU lacks AVX2";
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? "" : "the CPU lacks AVX2 or FMA";
 #else
     return "lanes need an x86 CPU and the GNU C library";
 #endif
@@ -318,7 +318,7 @@ Code load(const std::vector<uint32_t>& spirv) {
     std::string refusal = why_no_lanes();
     if (refusal.empty()) {
         auto for_lanes = arguments;  // GCC 12 crashes where it tries to make vectors of vectors
-        for_lanes.insert(for_lanes.end(), {"-fno-tree-vectorize", "-lmvec"});
+        for_lanes.insert(for_lanes.end(), {"-fno-tree-vectorize", "-lmvec", "-Wl,-z,defs"});
         if (void* library = load_library(translate_for_lanes(spirv), for_lanes, refusal)) return code_of(library, "");
     }
     return code_of(load_library(translate(spirv), arguments), refusal);
@@ -330,7 +330,11 @@ MakeRayTracer load_embree() {
     auto arguments = compiler_arguments();
     arguments.push_back("-l" + embree);
     const std::string text = "#include <" + embree + "/rtcore.h>\n#include \"native/few_triangles.h\"\n";
-    return reinterpret_cast<MakeRayTracer>(dlsym(load_library(text, arguments), "lab_make_ray_tracer"));
+    auto for_lanes = arguments;
+    for_lanes.emplace_back("-DLAB_FEW_TRIANGLES");
+    std::string refusal = why_no_lanes();
+    void* library = refusal.empty() ? load_library(text, for_lanes, refusal) : nullptr;
+    return reinterpret_cast<MakeRayTracer>(dlsym(library ? library : load_library(text, arguments), "lab_make_ray_tracer"));
 }
 
 std::string ray_tracer_name() {

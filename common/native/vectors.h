@@ -67,26 +67,20 @@ extern "C" Floats LAB_LIBMVEC(v_expf)(Floats);
 extern "C" Floats LAB_LIBMVEC(v_logf)(Floats);
 extern "C" Floats LAB_LIBMVEC(vv_powf)(Floats, Floats);
 
-LAB_INLINE Integers reverse_bytes(Integers x) {  // of each number
+LAB_INLINE Integers reverse_bits(Integers x) {  // of each number: those of its bytes, then the bytes
+#ifdef __GFNI__
+    typedef int64_t Matrices __attribute__((vector_size(4 * lane_count)));
+    const Matrices matrices = Matrices{} + static_cast<int64_t>(0x8040201008040201);
+    const Bytes bytes = LAB_MULTIPLY_BITS(reinterpret_cast<Bytes>(x), reinterpret_cast<Bytes>(matrices), 0);
+#else
+    const auto swap = [](Integers bits, int32_t mask, int shift) { return (bits >> shift & mask) | (bits & mask) << shift; };
+    const Bytes bytes = reinterpret_cast<Bytes>(swap(swap(swap(x, 0x55555555, 1), 0x33333333, 2), 0x0f0f0f0f, 4));
+#endif
     return [&]<int... i>(std::integer_sequence<int, i...>) {
-        return reinterpret_cast<Integers>(
-            __builtin_shufflevector(reinterpret_cast<Bytes>(x), reinterpret_cast<Bytes>(x), (i ^ 3)...));
+        return reinterpret_cast<Integers>(__builtin_shufflevector(bytes, bytes, (i ^ 3)...));
     }
     (std::make_integer_sequence<int, 4 * lane_count>());
 }
-#ifdef __GFNI__
-LAB_INLINE Integers reverse_bits(Integers x) {  // of each number: those of a byte by a matrix of bits
-    typedef int64_t Matrices __attribute__((vector_size(4 * lane_count)));
-    const Matrices matrices = Matrices{} + static_cast<int64_t>(0x8040201008040201);
-    return reverse_bytes(
-        reinterpret_cast<Integers>(LAB_MULTIPLY_BITS(reinterpret_cast<Bytes>(x), reinterpret_cast<Bytes>(matrices), 0)));
-}
-#else
-LAB_INLINE Integers reverse_bits(Integers x) {
-    const auto swap = [](Integers bits, int32_t mask, int shift) { return (bits >> shift & mask) | (bits & mask) << shift; };
-    return reverse_bytes(swap(swap(swap(x, 0x55555555, 1), 0x33333333, 2), 0x0f0f0f0f, 4));
-}
-#endif
 
 // Takes elements of each four of `a` and of `b`, where 0 to 3 count those of `a` and 4 to 7 those of `b`.
 template <int... which>

@@ -28,7 +28,7 @@ def material_properties(name, material):
     else:
         values = {"type": "matte", "kd": floats(material.diffuse)}
     if material.emission.any():
-        # By itself LuxCore leaves lamps of more than 24 triangles to chance.
+        # By itself LuxCore leaves lamps of many triangles to chance.
         values |= {"emission": floats(material.emission), "emission.directlightsampling.type": "ENABLED"}
     return {f"scene.materials.{name}.{key}": value for key, value in values.items()}
 

@@ -4,7 +4,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "files/project_folder.h"
+#include "gpu/shader_compiler.h"
 #include "hard_cases/probe.h"
+#include "native/module.h"
 #include "support/gpu_test.h"
 #include "support/scenes.h"
 
@@ -261,14 +264,30 @@ void Intersection::expect_no_escapes(uint32_t effort) const {
 TEST_P(Intersection, NoRayEscapesFromAClosedMesh) { expect_no_escapes(1); }
 TEST_P(Intersection, NoneOfManyRaysEscapesFromAClosedMesh_all) { expect_no_escapes(4); }
 
-// Lanes do not ask Embree there.
-using IntersectionOfAFewTriangles = Intersection;
+// Lanes test each of them.
+class IntersectionOfAFewTriangles : public Intersection {
+  protected:
+    void SetUp() override {
+        Intersection::SetUp();
+        if (IsSkipped()) return;
+        const auto any_shader = project_folder() / "shaders/engine/trace_ray/world_triangles.comp";
+        const native::Code code = native::load(compile_shader({.file = any_shader}, true));
+        if (!code.why_one_by_one.empty()) GTEST_SKIP() << "there are no lanes: " << code.why_one_by_one;
+    }
+};
 INSTANTIATE_TEST_SUITE_P(Backends, IntersectionOfAFewTriangles, testing::Values(native_backend), backend_name);
+
 TEST_P(IntersectionOfAFewTriangles, NoRayEscapesFromAClosedMesh) {
     expect_no_escapes({{"a_few", bumpy_sphere(3), vec3(0), 0.3f},
                        {"a_few_far_away", moved(bumpy_sphere(3), 2, far_away), far_away, 0.6f},
                        {"pyramid_far_away", grid_pyramid(2, 12, far_away), far_away + vec3(6, 6, 4), 1}},
                       2e5, 0);
+}
+
+TEST_P(IntersectionOfAFewTriangles, NoRayHitsTheTriangleItLeaves) {
+    const glm::dvec3 total = probe_total(triangle_scene(Random(4).triangles(12)), settings("reintersect", 320, 1));
+    EXPECT_GE(total.g, 1e4);
+    EXPECT_EQ(total.r, 0);
 }
 
 // Of 16 with areas of 10^-12, the chance that any ray hits one is 10^-5.
