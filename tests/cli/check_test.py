@@ -260,6 +260,10 @@ class CheckTest(Checking, ProgramTest):
     def test_samples_that_depend_on_each_other_have_the_number_of_their_level(self):
         self.assert_tool_refused(["check", 9, "--samples", 4], "--samples", "leave it out", code=2)
 
+    def test_what_is_no_file_is_refused(self):
+        self.assert_tool_refused(["check", 3, "missing.glsl"], "missing.glsl: no such file", code=2)
+        self.assert_tool_refused(["check", 3, PROJECT / "chapters"], "chapters: a folder", "--all", code=2)
+
     def test_a_backend_that_programs_lack_is_refused_with_those_that_they_have(self):
         self.assert_tool_refused(["check", 3, "--backend", "raster"], "--backend: raster not in", "compute", code=2)
 

@@ -72,7 +72,7 @@ def check(options, file, picture=None):
     """Returns the result of a check; raises UserError if there is none. Incorrect shaders always get a picture, others only if
     `picture` is a file for it."""
     if not file.is_file():
-        raise UserError(f"{printable(file)}: no such file")
+        raise UserError(f"{printable(file)}: " + ("a folder: name one of its files, or take --all" if file.is_dir() else "no such file"))
     watch = (lambda cases: None) if options.is_quiet or options.folder else tell_early
     settings = vars(options) | {"first_seed": first_seed(options.seed)}
     # Points are given for each scene, so each takes all runs.
