@@ -21,6 +21,7 @@ void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdlib>
@@ -30,6 +31,7 @@ void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 #include <map>
 #include <mutex>
 #include <sstream>
+#include <thread>
 
 #include "clock.h"
 #include "error.h"
@@ -156,8 +158,10 @@ bool run_program(const std::vector<std::string>& arguments, const fs::path& log)
     const bool is_started = posix_spawn(&process, pointers[0], &actions, nullptr, pointers.data(), environment.data()) == 0;
     posix_spawn_file_actions_destroy(&actions);
     if (!is_started) return false;
-    while (waitpid(process, &status, 0) < 0 && errno == EINTR)
+    while (waitpid(process, &status, WNOHANG) == 0) {  // to wait without looking would miss a signal that came just before
         if (EndLater::is_wished()) kill(process, SIGTERM);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 

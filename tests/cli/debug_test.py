@@ -120,6 +120,18 @@ class InterruptedCompilerTest(CopiedLab, ProgramTest):
                 self.assertEqual(list((self.tree / "cache/path_tracing_lab").glob("native-*")), [])
                 (self.folder / "started").unlink()
 
+    def test_a_signal_that_comes_at_once_is_heard(self):
+        def let_the_compiler_run_first():
+            os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])
+            os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))  # who starts a program waits for the core
+
+        environment = self.compiler("kill -TERM $PPID\nexec sleep 60\n") | {"XDG_CACHE_HOME": str(self.tree / "cache")}
+        for _ in range(3):
+            with self.start(*self.SIZE, "--backend=native", environment=environment, program=self.program,
+                            prepare=let_the_compiler_run_first) as process:
+                process.communicate(timeout=20)
+            self.assertEqual(process.returncode, -signal.SIGTERM)
+
 
 class LanesTest(CopiedLab, ProgramTest):
     """How many paths run at once is said, with the reason if it is one."""
