@@ -191,9 +191,10 @@ class AddedChapter_all(Tree, ProgramTest):
         if not shutil.which("mkdocs"):
             self.skipTest("needs MkDocs, which ./lab book installs")
         self.rename()  # a copy has no page
-        (self.tree / "build/bin").mkdir(parents=True)
-        shutil.copy(BINARIES / "dump_arrays", self.tree / "build/bin")
-        self.run_in_tree(sys.executable, "-B", "tools", "book", "--output", self.folder / "book")
+        binaries = self.tree / "build/bin"
+        binaries.mkdir(parents=True)
+        shutil.copy(BINARIES / "dump_arrays", binaries)
+        self.run_in_tree(sys.executable, "-B", "tools", "book", "--output", self.folder / "book", LAB_BINARIES=str(binaries))
         self.assertTrue((self.folder / "book/chapters" / COPY / "index.html").is_file())
 
 

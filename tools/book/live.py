@@ -136,10 +136,14 @@ def script(name, value):
 
 
 def experiments_of_page(chapter, folder):
-    """The experiments of ./lab check as a page renders them: their scenes' arrays, each once, and what the chapter's own shader shows."""
+    """The experiments of ./lab check as a page renders them: their scenes' arrays, each once, and what the chapter's own shader shows.
+    A new chapter has none until ./lab notebook learn has measured it."""
     number = int(chapter[:2])
-    expected, shown, scenes = read_json(expected_file(number))["experiments"], [], []
+    measured, shown, scenes = expected_file(number), [], []
+    expected = read_json(measured)["experiments"] if measured.exists() else {}
     for name, experiment in experiments_of(number).items():
+        if name not in expected:
+            continue
         points, sights = [], known_sights(expected[name])
         for index, (point, sight) in enumerate(zip(experiment.points, sights)):
             file = write_scene(point.scene, folder, f"{chapter}_{name}_{index}")
@@ -151,7 +155,8 @@ def experiments_of_page(chapter, folder):
                            "scene": scenes.index(arrays), "parameters": parameters})
         shown.append({"name": name, "subject": experiment.subject, "varies": experiment.varies, "when": experiment.when, "points": points})
     # Scenes with the same features share a program.
-    stack = max((define for arrays in scenes for define in arrays["defines"] if define.startswith("BVH_STACK_SIZE")), key=lambda define: int(define.split()[1]))
+    stack = max((define for arrays in scenes for define in arrays["defines"] if define.startswith("BVH_STACK_SIZE")),
+                key=lambda define: int(define.split()[1]), default="")
     for arrays in scenes:
         arrays["defines"] = [stack if define.startswith("BVH_STACK_SIZE") else define for define in arrays["defines"]]
     return {"experiments": shown, "scenes": scenes, "rules": {name: getattr(facts, name) for name in RULES}}
