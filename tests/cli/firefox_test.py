@@ -10,9 +10,8 @@ import threading
 import unittest
 from pathlib import Path
 
-import numpy as np
-
 from book_test import Site  # first: it finds the others
+import numpy as np
 from image_files import Exr
 from program import BINARIES, ProgramTest
 from project import CHAPTERS, course, scene_of

@@ -3,10 +3,10 @@
 import re
 from io import BytesIO
 
+from program import BINARIES, ProgramTest  # first: it finds the others
 import image_constructs
 import numpy as np
 from PIL import Image
-from program import BINARIES, ProgramTest
 
 # Where Pillow differs from the formats or from us: colours beyond a palette, which no format defines, are grey there; it does not
 # cut 16-bit grey to 8 bits, and does not know palettes of 15 bits.
@@ -22,7 +22,7 @@ def pillow_pixels(contents):
         return None
 
 
-class ForeignImages_all(ProgramTest):  # noqa: N801
+class ForeignImages_all(ProgramTest):
     def compare(self, files, tolerance, kind=np.uint8, channels=4):
         files = list(files)
         paths = [self.write(name, contents) for name, contents, _ in files]
