@@ -259,8 +259,9 @@ std::vector<uint32_t> compile_shader(const ShaderSource& source, bool has_lines)
     const ExpandedShader expanded(source);
     const auto version = glslang::GetVersion();
     const std::string key = expanded.preamble + expanded.text + source.file.extension().string() +
-                            (has_lines ? " with lines" : "") + "/" + std::to_string(version.major) + "." +
-                            std::to_string(version.minor) + "." + std::to_string(version.patch);
+                            (has_lines ? " with lines of " + source.file.generic_string() : "") + "/" +
+                            std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
+                            std::to_string(version.patch);
     const std::string name = cache_name("shader", key);
     std::vector<uint32_t> words;
     if (const auto cached = read_cache(name)) {

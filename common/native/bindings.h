@@ -46,6 +46,7 @@ struct Bindings {
         size_t bytes;
     } ranges[64];
     std::byte* push_constants;
+    uint32_t group_count;
     const bool* is_stopped;  // loops of the shader end where this is true; other threads write it
 
     const RayTracer* rays;  // where shaders are compiled with BACKEND_EMBREE

@@ -154,7 +154,8 @@ std::string Writer::global(Id id) {
     if (definition.op != spv::OpVariable) return "";
     const spv::StorageClass storage = program_.storage(id);
     if (storage == spv::StorageClassInput) {
-        static const std::map<int64_t, std::string> inputs{{spv::BuiltInWorkgroupId, "gl_WorkGroupID"},
+        static const std::map<int64_t, std::string> inputs{{spv::BuiltInNumWorkgroups, "gl_NumWorkGroups"},
+                                                           {spv::BuiltInWorkgroupId, "gl_WorkGroupID"},
                                                            {spv::BuiltInLocalInvocationId, "gl_LocalInvocationID"},
                                                            {spv::BuiltInGlobalInvocationId, "gl_GlobalInvocationID"},
                                                            {spv::BuiltInLocalInvocationIndex, "gl_LocalInvocationIndex"}};

@@ -272,6 +272,11 @@ struct Builtins {
     LAB_ATOMIC(atomicXor, before ^ operand)
     LAB_ATOMIC(atomicExchange, operand)
 #undef LAB_ATOMIC
+    template <typename T>
+    static T atomicCompSwap(T& target, std::type_identity_t<T> wanted, std::type_identity_t<T> expected) {
+        __atomic_compare_exchange(&target, &expected, &wanted, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+        return expected;
+    }
 
     static ivec2 textureSize(const Texture& texture) { return {texture.width, texture.height}; }
     static vec4 texelFetch(const Texture& texture, ivec2 position) {
@@ -290,7 +295,7 @@ struct Builtins {
 // invocation.
 struct ShaderBase : Builtins {
     const Bindings& bindings;
-    uvec3 gl_WorkGroupID, gl_LocalInvocationID, gl_GlobalInvocationID;
+    uvec3 gl_NumWorkGroups, gl_WorkGroupID, gl_LocalInvocationID, gl_GlobalInvocationID;
     uint gl_LocalInvocationIndex;
 
     // By Embree, see shaders/engine/trace_ray/embree.glsl.
@@ -324,7 +329,9 @@ template <typename Shader>
 Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t error_size) {
     return run_group(error, error_size, [&] {
         for (uint i = 0; i < Shader::local_size__; ++i) {
-            Shader shader{{{}, bindings, uvec3(group, 0, 0), uvec3(i, 0, 0), uvec3(group * Shader::local_size__ + i, 0, 0), i}};
+            const uint index = group * Shader::local_size__ + i;
+            Shader shader{
+                {{}, bindings, uvec3(bindings.group_count, 1, 1), uvec3(group, 0, 0), uvec3(i, 0, 0), uvec3(index, 0, 0), i}};
             shader.main__();
         }
     });

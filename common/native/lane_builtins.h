@@ -166,15 +166,15 @@ struct Builtins : native::Builtins {
     LAB_INLINE static ivec2 textureSize(const Texture& texture) { return Plain::textureSize(texture); }
 
     // These ask which lanes are active.
-#define LAB_ATOMIC(name)                                                                                         \
-    template <typename T, typename U>                                                                            \
-    LAB_INLINE static V<T> name(const Mask& active, const Ref<T>& target, const U& operand) {                    \
-        const V<T> operands = operand;                                                                           \
-        V<T> before;                                                                                             \
-        for_each_lane(active, [&](int lane) {                                                                    \
-            before.set(lane, Plain::name(reinterpret_cast<T*>(target.base)[target.word(lane)], operands[lane])); \
-        });                                                                                                      \
-        return before;                                                                                           \
+#define LAB_ATOMIC(name)                                                                          \
+    template <typename T, typename... U>                                                          \
+    LAB_INLINE static V<T> name(const Mask& active, const Ref<T>& target, const U&... operands) { \
+        V<T> before;                                                                              \
+        for_each_lane(active, [&](int lane) {                                                     \
+            T& word = reinterpret_cast<T*>(target.base)[target.word(lane)];                       \
+            before.set(lane, Plain::name(word, lane_of(operands, lane)...));                      \
+        });                                                                                       \
+        return before;                                                                            \
     }
     LAB_ATOMIC(atomicAdd)
     LAB_ATOMIC(atomicMin)
@@ -183,6 +183,7 @@ struct Builtins : native::Builtins {
     LAB_ATOMIC(atomicOr)
     LAB_ATOMIC(atomicXor)
     LAB_ATOMIC(atomicExchange)
+    LAB_ATOMIC(atomicCompSwap)
 #undef LAB_ATOMIC
     template <typename T, typename P>
     LAB_INLINE static auto texelFetch(const Mask& active, const T& texture, const P& position) {
@@ -205,7 +206,7 @@ struct Builtins : native::Builtins {
 
 struct ShaderBase : Builtins {
     const Bindings& bindings;
-    uvec3 gl_WorkGroupID;
+    uvec3 gl_NumWorkGroups, gl_WorkGroupID;
     V<uvec3> gl_LocalInvocationID, gl_GlobalInvocationID;
     V<uint> gl_LocalInvocationIndex;
 
@@ -252,7 +253,7 @@ Outcome run_group(const Bindings& bindings, uint32_t group, char* error, size_t 
             Lanes<uint> index;
             for (uint lane = 0; lane < lane_count; ++lane) index.set(static_cast<int>(lane), first + lane);
             const V<uvec3> local = make<uvec3>(index, 0u, 0u), global = make<uvec3>(index + group * Shader::local_size__, 0u, 0u);
-            Shader shader{{{}, bindings, uvec3(group, 0, 0), local, global, index}};
+            Shader shader{{{}, bindings, uvec3(bindings.group_count, 1, 1), uvec3(group, 0, 0), local, global, index}};
             shader.main__(index < Shader::local_size__);
         }
     });

@@ -82,9 +82,8 @@ void LaneWriter::store(const Pointer& pointer, const std::string& text) {
     flush(true);
     out(code + " ");
 }
-std::string LaneWriter::atomic(const std::string& name, const Instruction& instruction) {
-    return "lab__::Builtins::" + name + "(active__, " + reference(pointer_to(instruction.operands[0])) + ", " +
-           value(instruction.operands.back()) + ")";
+std::string LaneWriter::atomic(const std::string& name, Id pointer, const std::string& operands) {
+    return "lab__::Builtins::" + name + "(active__, " + reference(pointer_to(pointer)) + ", " + operands + ")";
 }
 std::string LaneWriter::fetch(const Instruction& instruction) {
     const Pointer texture = pointer_to(instruction.operands[0]);

@@ -16,7 +16,7 @@ class LaneWriter : public Writer {
     std::string operation(const Instruction& instruction) override;
     std::string load(const Pointer& pointer) override;
     void store(const Pointer& pointer, const std::string& value) override;
-    std::string atomic(const std::string& name, const Instruction& instruction) override;
+    std::string atomic(const std::string& name, Id pointer, const std::string& operands) override;
     std::string fetch(const Instruction& instruction) override;
     std::string mask(bool has_more) const override { return has_more ? "active__, " : "active__"; }
     std::string returned(const Function& function, const std::string& body) override;

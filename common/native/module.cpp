@@ -357,6 +357,7 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
     (void)handles_crashes;
     bool is_stopped = false;
     bindings.is_stopped = &is_stopped;
+    bindings.group_count = end;
     const std::atomic_ref stop(is_stopped);
     // Interrupts are seen while a shader runs, since it may never end.
     const std::jthread watch([&](const std::stop_token& finished) {

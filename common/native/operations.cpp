@@ -23,7 +23,8 @@ const std::map<spv::Op, std::string>& operations() {
     static const std::map<spv::Op, std::string> all{
         {spv::OpIAdd, "+"}, {spv::OpFAdd, "+"}, {spv::OpISub, "-"}, {spv::OpFSub, "-"}, {spv::OpIMul, "*"}, {spv::OpFMul, "*"},
         {spv::OpFDiv, "/"}, {spv::OpVectorTimesScalar, "*"}, {spv::OpBitwiseAnd, "&"}, {spv::OpBitwiseOr, "|"},
-        {spv::OpBitwiseXor, "^"}, {spv::OpLogicalAnd, "both"}, {spv::OpLogicalOr, "either"},
+        {spv::OpBitwiseXor, "^"}, {spv::OpShiftLeftLogical, "<<"}, {spv::OpShiftRightLogical, ">>"},
+        {spv::OpShiftRightArithmetic, ">>"}, {spv::OpLogicalAnd, "both"}, {spv::OpLogicalOr, "either"},
         {spv::OpMatrixTimesScalar, "multiply"}, {spv::OpVectorTimesMatrix, "multiply"}, {spv::OpMatrixTimesVector, "multiply"},
         {spv::OpMatrixTimesMatrix, "multiply"}, {spv::OpOuterProduct, "outerProduct"}, {spv::OpTranspose, "transpose"},
         {spv::OpDot, "dot"}, {spv::OpFNegate, "negate"}, {spv::OpSNegate, "negate"}, {spv::OpNot, "flip"},
@@ -47,10 +48,16 @@ const std::map<spv::Op, std::pair<const char*, const char*>> pairs{{spv::OpUMulE
                                                                    {spv::OpSMulExtended, {" * ", "upper_half"}},
                                                                    {spv::OpIAddCarry, {" + ", "carry"}},
                                                                    {spv::OpISubBorrow, {" - ", "borrow"}}};
-const std::map<spv::Op, std::string> atomics{
-    {spv::OpAtomicIAdd, "atomicAdd"}, {spv::OpAtomicSMin, "atomicMin"}, {spv::OpAtomicUMin, "atomicMin"},
-    {spv::OpAtomicSMax, "atomicMax"}, {spv::OpAtomicUMax, "atomicMax"}, {spv::OpAtomicAnd, "atomicAnd"},
-    {spv::OpAtomicOr, "atomicOr"},    {spv::OpAtomicXor, "atomicXor"},  {spv::OpAtomicExchange, "atomicExchange"}};
+const std::map<spv::Op, std::string> atomics{{spv::OpAtomicIAdd, "atomicAdd"},
+                                             {spv::OpAtomicSMin, "atomicMin"},
+                                             {spv::OpAtomicUMin, "atomicMin"},
+                                             {spv::OpAtomicSMax, "atomicMax"},
+                                             {spv::OpAtomicUMax, "atomicMax"},
+                                             {spv::OpAtomicAnd, "atomicAnd"},
+                                             {spv::OpAtomicOr, "atomicOr"},
+                                             {spv::OpAtomicXor, "atomicXor"},
+                                             {spv::OpAtomicExchange, "atomicExchange"},
+                                             {spv::OpAtomicCompareExchange, "atomicCompSwap"}};
 
 }  // namespace
 
@@ -72,9 +79,11 @@ std::string Writer::operation(const Instruction& instruction) {
         return text;
     };
     if (const auto found = operations().find(instruction.op); found != operations().end()) {
-        if (found->second.size() > 1) return builtin + found->second + "(" + values(0) + ")";
-        const std::string first = value(operands[0]);
-        return "(" + first + " " + found->second + " " + value(operands[1]) + ")";
+        if (std::isalpha(static_cast<unsigned char>(found->second[0]))) return builtin + found->second + "(" + values(0) + ")";
+        const std::string first = value(operands[0]), second = value(operands[1]);
+        const bool has_other_sign = type_of(operands[1]) != instruction.type && instruction.op != spv::OpVectorTimesScalar;
+        return "(" + first + " " + found->second + " " +
+               (has_other_sign ? "lab__::convert<" + plain_type(instruction.type) + ">(" + second + ")" : second) + ")";
     }
     if (const auto found = pairs.find(instruction.op); found != pairs.end()) {
         const std::string a = value(operands[0]), b = value(operands[1]);
@@ -89,13 +98,6 @@ std::string Writer::operation(const Instruction& instruction) {
             if (number == GLSLstd450FrexpStruct)
                 return type + "{" + builtin + "fraction" + parts + ", " + builtin + "exponent" + parts + "}";
             return builtin + name + parts;
-        }
-        case spv::OpShiftLeftLogical:
-        case spv::OpShiftRightLogical:
-        case spv::OpShiftRightArithmetic: {
-            const std::string first = value(operands[0]);
-            return "(" + first + (instruction.op == spv::OpShiftLeftLogical ? " << " : " >> ") + "lab__::convert<" +
-                   plain_type(instruction.type) + ">(" + value(operands[1]) + "))";
         }
         case spv::OpConvertFToS:
         case spv::OpConvertFToU:
@@ -140,7 +142,7 @@ std::string Writer::operation(const Instruction& instruction) {
             return builtin + "textureSize(" + place(pointer_to(operands[0])) + ")";
         default:
             if (const auto found = atomics.find(instruction.op); found != atomics.end())
-                return atomic(found->second, instruction);
+                return atomic(found->second, operands[0], values(instruction.op == spv::OpAtomicCompareExchange ? 4 : 3));
             program_.fail(instruction, "a function of this line (SPIR-V's instruction " + std::to_string(instruction.op) + ")");
     }
 }

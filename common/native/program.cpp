@@ -172,6 +172,27 @@ Program::Program(const std::vector<uint32_t>& words) {
         if (instruction.id) types_[instruction.id] = instruction.type;
         read(instruction, function, blocks, block);
     }
+    if (local_size == 0) fail({}, "workgroups of more than one dimension");
+}
+
+std::string Program::first_use(Id declared) const {
+    if (const auto found = first_uses_.find(declared); found != first_uses_.end()) return place(found->second);
+    for (const Id id : globals) {  // what has it as its type or as a part of it
+        const Instruction& user = definition(id);
+        const size_t begin = user.op == spv::OpTypePointer ? 1 : 0, end = user.op == spv::OpTypeStruct ? SIZE_MAX : begin + 1;
+        const bool is_type = user.op >= spv::OpTypeVector && user.op <= spv::OpTypePointer;
+        bool is_used = user.type == declared;
+        for (size_t i = begin; is_type && i < std::min(end, user.operands.size()); ++i) is_used |= user.operands[i] == declared;
+        if (!is_used) continue;
+        if (std::string text = first_use(id); !text.empty()) return text;
+    }
+    return "";
+}
+std::string Program::place(const Instruction& at) const {
+    if (at.line) return name(at.file) + ":" + std::to_string(at.line);
+    const std::string text = first_use(at.id);
+    const Function& function = functions.at(main);
+    return text.empty() ? place({.file = function.file, .line = std::max(function.line, 1u)}) : text;
 }
 
 void Program::read(Instruction& instruction, Function*& function, Blocks& blocks, Id& block) {
@@ -207,8 +228,7 @@ void Program::read(Instruction& instruction, Function*& function, Blocks& blocks
             break;
         case spv::OpExecutionMode:
             if (operands[1] != spv::ExecutionModeLocalSize) break;
-            if (operands[3] != 1 || operands[4] != 1) fail(instruction, "workgroups of more than one dimension");
-            local_size = operands[2];
+            local_size = operands[3] == 1 && operands[4] == 1 ? operands[2] : 0;
             break;
         case spv::OpFunction:
             function = &functions[instruction.id];
@@ -229,9 +249,12 @@ void Program::read(Instruction& instruction, Function*& function, Blocks& blocks
             function = nullptr;
             break;
         default:
-            if (function)
+            if (function) {
+                for (const Id used : ids_in(instruction))
+                    first_uses_.try_emplace(used, Instruction{.file = file_, .line = line_});
+                first_uses_.try_emplace(instruction.type, Instruction{.file = file_, .line = line_});
                 blocks.at(block).push_back(std::move(instruction));
-            else if (instruction.id) {
+            } else if (instruction.id) {
                 globals.push_back(instruction.id);
                 definitions_[instruction.id] = std::move(instruction);
             }

@@ -122,7 +122,8 @@ class Program {
         all.erase("");
         return all;
     }
-    std::string place(const Instruction& at) const { return name(at.file) + ":" + std::to_string(at.line); }
+    // The line of the text. Declarations have none in SPIR-V: theirs is where they are used first.
+    std::string place(const Instruction& at) const;
     [[noreturn]] void fail(const Instruction& at, const std::string& what) const {
         throw UserError(place(at) + ": the backend native does not know " + what + ": use another one, --backend compute");
     }
@@ -132,6 +133,7 @@ class Program {
     enum class Access { none, set, read };
     Access first_access(const Sequence& sequence, Id variable) const;
     void move_inwards(Sequence& sequence) const;
+    std::string first_use(Id declared) const;
     static std::string text_of(std::span<const uint32_t> words) {
         return {reinterpret_cast<const char*>(words.data()),
                 strnlen(reinterpret_cast<const char*>(words.data()), 4 * words.size())};
@@ -142,6 +144,7 @@ class Program {
     std::map<Id, std::string> names_;
     std::map<std::pair<Id, uint32_t>, std::string> member_names_;
     std::map<std::tuple<Id, int64_t, spv::Decoration>, int64_t> decorations_;
+    std::map<Id, Instruction> first_uses_;  // in functions
     Id file_ = 0;
     uint32_t line_ = 0;
 };

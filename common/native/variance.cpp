@@ -13,7 +13,8 @@ class Variance::Walk {
     void run() {
         for (const Id id : program_.globals) {
             const bool is_input = program_.definition(id).op == spv::OpVariable && program_.storage(id) == spv::StorageClassInput;
-            if (is_input && program_.decoration(id, spv::DecorationBuiltIn) != spv::BuiltInWorkgroupId) vary(id);
+            const int64_t input = program_.decoration(id, spv::DecorationBuiltIn);
+            if (is_input && input != spv::BuiltInWorkgroupId && input != spv::BuiltInNumWorkgroups) vary(id);
         }
         do {
             is_settled_ = true;

@@ -20,7 +20,7 @@ std::string spelled(const std::string& name) {
     static const std::set<std::string> words{
         "_Complex", "alignas", "alignof", "alloca", "and", "and_eq", "asm", "assert", "auto", "bitand", "bitor", "catch", "char",
         "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl", "concept", "const_cast",
-        "consteval", "constexpr", "constinit", "decltype", "delete", "dynamic_cast", "enum", "errno", "explicit", "export",
+        "consteval", "constexpr", "constinit", "decltype", "defined", "delete", "dynamic_cast", "enum", "errno", "explicit", "export",
         "extern", "friend", "goto", "inline", "long", "main", "mutable", "namespace", "new", "noexcept", "not", "not_eq",
         "nullptr", "offsetof", "operator", "or", "or_eq", "private", "protected", "public", "register", "reinterpret_cast",
         "requires", "Shader", "short", "signed", "sizeof", "static", "static_assert", "static_cast", "stderr", "stdin", "stdout",
@@ -122,9 +122,8 @@ void Writer::store(const Pointer& pointer, const std::string& text) {
     flush(true);
     out(target + " = " + text + "; ");
 }
-std::string Writer::atomic(const std::string& name, const Instruction& instruction) {
-    return "lab__::Builtins::" + name + "(" + place(pointer_to(instruction.operands[0])) + ", " +
-           value(instruction.operands.back()) + ")";
+std::string Writer::atomic(const std::string& name, Id pointer, const std::string& operands) {
+    return "lab__::Builtins::" + name + "(" + place(pointer_to(pointer)) + ", " + operands + ")";
 }
 std::string Writer::fetch(const Instruction& instruction) {
     return "lab__::Builtins::texelFetch(" + place(pointer_to(instruction.operands[0])) + ", " + value(instruction.operands[1]) +
@@ -333,11 +332,13 @@ std::string Writer::write() {
     for (const Id id : program_.globals) globals += global(id);
     reach(program_.main);
     for (const Id id : reached_) code += function(program_.functions.at(id));
-    std::string macros;  // of C's headers, whose names shaders may use
-    for (const std::string& name : program_.names())
-        if (std::none_of(name.begin(), name.end(),
-                         [](unsigned char c) { return std::islower(c) || !(std::isalnum(c) || c == '_'); }))
-            macros += "#undef " + name + "\n";
+    std::string macros;                                 // of C's headers, whose names shaders may use
+    for (const std::string& name : program_.names()) {  // and those of files
+        const std::string word = name.substr(0, name.find('('));
+        const bool is_word = std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+        if (is_word && spelled(word) == word && !std::isdigit(static_cast<unsigned char>(word[0])))
+            macros += "#undef " + word + "\n";
+    }
     return prologue() + macros +
            "namespace lab::native {\nstruct Shader : lab__::ShaderBase {\nstatic constexpr lab__::uint local_size__ = " +
            std::to_string(program_.local_size) + ";\n" + globals + code +

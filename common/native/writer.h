@@ -20,7 +20,7 @@ class Writer {
     virtual std::string operation(const Instruction& instruction);
     virtual std::string load(const Pointer& pointer);
     virtual void store(const Pointer& pointer, const std::string& value);
-    virtual std::string atomic(const std::string& name, const Instruction& instruction);
+    virtual std::string atomic(const std::string& name, Id pointer, const std::string& operands);
     virtual std::string fetch(const Instruction& instruction);
     virtual std::string mask(bool /*has_more*/) const { return ""; }  // what functions get first
     virtual std::string returned(const Function&, const std::string& body) { return body; }

@@ -19,8 +19,9 @@ class ProgramWriter {
     std::string function(const std::string& name, bool has_helper) {
         has_helper_ = has_helper;
         next_name_ = 0;
-        variables_ = {"x", "y", "v.x", "v.y", "p.first", "p.rest.z"};
+        variables_ = {"x", "y", "v.x", "v.y", "p.first", "p.rest.z", "list[1]", "q[1].rest.x", "global"};
         return "uint " + name + "(uint x, inout uint y) {\nuvec2 v = uvec2(x, y);\nPair p = Pair(x + 1u, uvec3(y));\n" +
+               "uint list[4] = uint[](x, 2u, y, 7u);\nPair q[2] = Pair[](p, Pair(y, uvec3(3u, x, 5u)));\nbool flag = x < y;\n" +
                statements(2) + "return " + value(2) + ";\n}\n";
     }
 
@@ -30,7 +31,7 @@ class ProgramWriter {
     std::string new_name() { return "n" + std::to_string(next_name_++); }
     std::string value(int depth) {
         const auto part = [&] { return value(depth - 1); };
-        switch (roll(depth > 0 ? 14 : 3)) {
+        switch (roll(depth > 0 ? 21 : 3)) {
             case 0:
                 return std::to_string(roll(9)) + "u";
             case 1:
@@ -56,12 +57,26 @@ class ProgramWriter {
                 return "pairs[" + part() + " & 3u].rest.y";
             case 12:
                 return "min(" + part() + ", " + part() + ")";
+            case 13:
+                return "list[" + part() + " & 3u]";
+            case 14:
+                return "q[" + part() + " & 1u].rest[" + part() + " % 3u]";
+            case 15:
+                return "uint(int(" + part() + ") >> (" + part() + " & 31u))";
+            case 16:
+                return "(" + part() + " << int(" + part() + " & 31u))";
+            case 17:
+                return "bitfieldInsert(" + part() + ", " + part() + ", int(" + part() + " & 15u), int(" + part() + " & 15u))";
+            case 18:
+                return "uint(bitfieldExtract(int(" + part() + "), int(" + part() + " & 15u), 9) + findMSB(int(" + part() + ")))";
+            case 19:
+                return "uint(int(" + part() + ") / (int(" + part() + " & 63u) + 1) + bitCount(" + part() + "))";
             default:
                 return has_helper_ && !is_pure_ ? "helper(" + part() + ", " + variable() + ")" : part();
         }
     }
     std::string condition(int depth) {
-        switch (roll(depth > 0 ? 6 : 3)) {
+        switch (roll(depth > 0 ? 8 : 4)) {
             case 0:
                 return "(" + value(depth) + " & 1u) == 0u";
             case 1:
@@ -69,9 +84,13 @@ class ProgramWriter {
             case 2:
                 return "uvec2(" + value(0) + ", 3u) != v";
             case 3:
-                return "(" + condition(depth - 1) + " && " + condition(depth - 1) + ")";
+                return "flag";
             case 4:
+                return "(" + condition(depth - 1) + " && " + condition(depth - 1) + ")";
+            case 5:
                 return "(" + condition(depth - 1) + " || " + condition(depth - 1) + ")";
+            case 6:
+                return "(" + value(depth - 1) + " < 9u ? flag : " + condition(depth - 1) + ")";
             default:
                 return "!(" + condition(depth - 1) + ")";
         }
@@ -91,7 +110,7 @@ class ProgramWriter {
     }
     std::string statement(int depth) {
         const std::string bound = roll(2) ? "(" + value(1) + " & 3u)" : "3u";
-        switch (roll(depth > 0 ? 13 : 6)) {
+        switch (roll(depth > 0 ? 16 : 8)) {
             case 0:
                 return variable() + " = " + value(2) + ";\n";
             case 1: {  // GLSL leaves it open which side comes first
@@ -112,16 +131,22 @@ class ProgramWriter {
             case 5:
                 return jump();
             case 6:
+                return element();
             case 7:
-                return "if (" + condition(2) + ") {\n" + statements(depth - 1) + "}\n";
+                return "flag = " + condition(2) + ";\n";
             case 8:
-                return "if (" + condition(1) + ") {\n" + statements(depth - 1) + "} else {\n" + statements(depth - 1) + "}\n";
             case 9:
-            case 10: {
+                return "if (" + condition(2) + ") {\n" + statements(depth - 1) + "}\n";
+            case 10:
+                return "if (" + condition(1) + ") {\n" + statements(depth - 1) + "} else {\n" + statements(depth - 1) + "}\n";
+            case 11:
+            case 12: {
                 const std::string i = new_name();
                 return "for (uint " + i + " = 0u; " + i + " < " + bound + "; ++" + i + ") {\n" + loop_body(depth) + "}\n";
             }
-            case 11: {
+            case 13:
+                return cases(depth);
+            case 14: {
                 const std::string i = new_name();
                 return "uint " + i + " = 0u;\nwhile (" + i + " < " + bound + " && " + condition(1) + ") {\n++" + i + ";\n" +
                        loop_body(depth) + "}\n";
@@ -130,6 +155,32 @@ class ProgramWriter {
                 const std::string i = new_name();
                 return "uint " + i + " = 0u;\ndo {\n++" + i + ";\n" + loop_body(depth) + "} while (" + i + " < " + bound + ");\n";
             }
+        }
+    }
+    std::string cases(int depth) {  // the default may be in the middle, and cases may go on with the next one
+        std::string text = "switch (" + value(1) + " & 3u) {\n";
+        const uint32_t last = roll(5);
+        for (uint32_t i = 0; i < 4; ++i) {
+            text += (i == last ? "default:\n" : "case " + std::to_string(i) + "u:\n") + statements(depth - 1);
+            if (roll(2)) text += "break;\n";
+        }
+        return text + "}\n";
+    }
+    std::string element() {  // of arrays and of vectors, in each lane another one
+        const std::string at = "[" + value(1) + " & 1u]";
+        switch (roll(6)) {
+            case 0:
+                return "list" + at + " = " + value(1) + ";\n";
+            case 1:
+                return "q" + at + ".rest.zx = v;\n";
+            case 2:
+                return "q" + at + " = p;\n";
+            case 3:
+                return "v" + at + "++;\n";
+            case 4:
+                return "swap(list" + at + ", q" + at + ".rest.y);\n";
+            default:
+                return "--p.rest;\n";
         }
     }
     std::string swizzle() {  // or all of a structure
@@ -175,17 +226,18 @@ std::string shader_of(const std::vector<uint32_t>& seeds) {
         for (size_t at = 0; (at = text.find("helper(", at)) != std::string::npos; at += helper.size())
             text.replace(at, 6, helper);
         functions += text;
-        calls += "y = place * 7u;\nresults[" + name + "u * " + std::to_string(invocations * group_count) +
+        calls += "global = y = place * 7u;\nresults[" + name + "u * " + std::to_string(invocations * group_count) +
                  "u + place] = program_" + name + "(place * 2654435761u >> (place & 15u), y) ^ y;\n";
     }
-    return "#version 460\n#extension GL_EXT_scalar_block_layout : require\n"
+    return "#version 460\n#extension GL_EXT_scalar_block_layout : require\n#line 1 \"test.glsl\"\n"
            "struct Pair { uint first; uvec3 rest; };\n"
            "layout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
            "layout(scalar, set = 0, binding = 2) readonly buffer Table { uint table[]; };\n"
            "layout(scalar, set = 0, binding = 3) readonly buffer Pairs { Pair pairs[]; };\n"
            "layout(local_size_x = " +
-           std::to_string(invocations) + ") in;\n" + functions + "void main() {\nuint place = gl_GlobalInvocationID.x, y;\n" +
-           calls + "}\n";
+           std::to_string(invocations) +
+           ") in;\nuint global;\nvoid swap(inout uint a, inout uint b) {\nuint c = a;\na = b;\nb = c;\n++global;\n}\n" +
+           functions + "void main() {\nuint place = gl_GlobalInvocationID.x, y;\n" + calls + "}\n";
 }
 
 std::vector<uint32_t> table() {

@@ -136,6 +136,9 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "mat3 m = mat3(2.0);\nm[0][0] = float(x);\nmat4 n = mat4(m);\nr = uint(n[0][0] + n[2][2] + 3.0 * n[3][3] + n[3][0]);",
         "uint n = gl_WorkGroupID.x;\nr = i > 5u && n > 0u && numbers[(n - 1u) * 40000000u].x > 0u ? 7u : 5u;",
         "const Named table[2] = Named[2](Named(5u, 2u), Named(7u, 3u));\nr = table[i].offset;",
+        "uvec2 v = uvec2(x, 4);\nv++;\nr = v.y;",
+        "r = gl_NumWorkGroups.x + 3u;",
+        "results[50u + i] = 3u;\nr = atomicCompSwap(results[50u + i], 3u, 2u) + atomicCompSwap(results[50u + i], 3u, 7u);",
     };
     expect_fives(bodies);
 }

@@ -70,10 +70,13 @@ TEST(Native, NamesMayBeThoseThatTheTranslationUses) {
 }
 
 TEST(Native, FunctionsMayHaveAnyName) {
-    EXPECT_EQ(run_shader("float Shader(float x) { return x; } float native_scale(float x) { return 2.0 * x; }\n"
-                         "float offsetof(float x) { return 3.0 * x; } float Builtins(float x) { return 4.0 * x; }",
-                         "give(Shader(1.0)); give(native_scale(1.0)); give(offsetof(1.0)); give(Builtins(1.0));"),
-              (Numbers{1, 2, 3, 4}));
+    EXPECT_EQ(
+        run_shader("float Shader(float x) { return x; } float native_scale(float x) { return 2.0 * x; }\n"
+                   "float offsetof(float x) { return 3.0 * x; } float Builtins(float x) { return 4.0 * x; }\n"
+                   "float INFINITY(float x) { return 5.0 * x; }",
+                   "give(Shader(1.0)); give(native_scale(1.0)); give(offsetof(1.0)); give(Builtins(1.0)); give(INFINITY(1.0));"
+                   "float M_PIf32 = 6.0, defined = 7.0; give(M_PIf32); give(defined);"),
+        (Numbers{1, 2, 3, 4, 5, 6, 7}));
 }
 
 TEST(Native, BitsOfNegativeNumbersAreThoseOfTheirWords) {
@@ -205,18 +208,19 @@ TEST(Native, BlocksMayHaveNamesAndHeaders) {
 TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
     for (const auto& [glsl, message] : std::initializer_list<std::pair<const char*, const char*>>{
              {"layout(std140, binding = 1) buffer Block { float list[2]; };\nvoid main() { list[0] = 1.0; }",
-              "a layout of memory other than layout(scalar)"},
+              "test.glsl:2: the backend native does not know a layout of memory other than layout(scalar)"},
              {"layout(scalar, binding = 1, row_major) buffer Block { mat3 m; };\nvoid main() { m[0] = vec3(1.0); }",
               "a layout of memory other than layout(scalar)"},
              {"layout(constant_id = 3) const int N = 4;\nconst int M = N * 2;\nlayout(scalar, binding = 1) buffer Block { int x; "
               "};\n"
               "void main() { x = M; }",
               "constants that are computed from specialisation constants"},
-             {"layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}", "workgroups of more than one dimension"},
-             {"shared float x;\nvoid main() { x = 1.0; }", "shared variables"},
+             {"layout(local_size_x = 8, local_size_y = 8) in;\nvoid main() {}",
+              "test.glsl:2: the backend native does not know workgroups of more than one dimension"},
+             {"shared float x;\nvoid main() { x = 1.0; }", "test.glsl:2: the backend native does not know shared variables"},
              {"void main() {\n\nbarrier(); }", "test.glsl:3: the backend native does not know a function of this line"},
              {"layout(scalar, binding = 1) buffer Block { float x; };\nvoid main() { double y = x; x = float(y * y); }",
-              "numbers of other than 32 bits"}}) {
+              "test.glsl:2: the backend native does not know numbers of other than 32 bits"}}) {
         for (const auto translate : {native::translate, native::translate_for_lanes}) {
             try {
                 translate(compile_glsl(glsl));
@@ -225,6 +229,19 @@ TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
                 EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
                 EXPECT_NE(std::string(error.what()).find("--backend compute"), std::string::npos) << error.what();
             }
+        }
+    }
+}
+
+TEST(Native, ACopyOfAShaderHasItsOwnLines) {
+    const TestFolder folder;
+    for (const char* name : {"first.comp", "second.comp"}) {
+        const auto file = folder.write(name, "#version 460\nshared float x;\nvoid main() { x = 1.0; }\n");
+        try {
+            native::translate(compile_shader({.file = file}, true));
+            ADD_FAILURE();
+        } catch (const UserError& error) {
+            EXPECT_EQ(std::string(error.what()).find(file.generic_string() + ":3: "), 0u) << error.what();
         }
     }
 }
