@@ -110,7 +110,7 @@ class PathBuilder {
         if (has_flight(event) && event.flight < t_max) {
             vertex.is_hit = false;
             vertex.is_collision = true;
-            vertex.position = vertex.origin + event.flight * vertex.direction;
+            vertex.position = event.origin + event.flight * event.direction;  // which a driver's sine keeps short of unit length
             vertex.normal = vec3(0);
         }
         path_.vertices.push_back(std::move(vertex));

@@ -15,8 +15,11 @@ SWIFTSHADER = {"VK_DRIVER_FILES": DRIVER, "VK_ICD_FILENAMES": DRIVER}
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
 SCENES = sorted(path.stem for path in (PROJECT / "assets/scenes").glob("*.json"))
 
-# A path that goes another way nearly always differs by more than a tenth. Few may; most of them hit glass or textures.
+# A path that goes another way nearly always differs by more than a tenth. Few may; most of them hit glass or textures. Where two lamps
+# are as likely, rounding decides which one comes first in the light tree: probabilities that differ by 1e-7 turn 15 % of the paths in
+# check_room, so with the tree only the means tell.
 OTHER_WAY, MOST_OTHER_WAYS = 0.1, 0.005
+LONGEST_PATH = 8  # rounding errors of many collisions add up
 # Allowed difference of the means of all others: the error of its sines and cosines.
 SINE_ERROR = 2e-4
 
@@ -27,23 +30,25 @@ def setUpModule():
 
 
 class SwiftShader_all(RenderTest):
-    def paths(self, device, chapter, scene, environment=None):
+    def paths(self, device, chapter, scene, *options, environment=None):
         """The radiance of one path in each pixel."""
         program = BINARIES / chapter
-        picture = self.picture(device, "--samples=1", f"--device={device}", scene=scene, size=(96, 96), program=program,
-                               environment=environment)
+        picture = self.picture(device, "--samples=1", f"--device={device}", f"--max-path-length={LONGEST_PATH}", *options, scene=scene,
+                               size=(96, 96), program=program, environment=environment)
         self.assertEqual(picture.text("invalid_samples"), "0")
         return np.array(picture.pixels()).reshape(3, -1)
 
     def test_paths_are_those_of_mesas_driver(self):
-        cases = [(chapter, "cornell_box") for chapter in CHAPTERS] + [(CHAPTERS[-1], scene) for scene in SCENES]
-        for chapter, scene in cases:
-            with self.subTest(chapter=chapter, scene=scene):
-                expected = self.paths("llvmpipe", chapter, scene)
-                actual = self.paths("SwiftShader", chapter, scene, SWIFTSHADER)
+        cases = [(chapter, "cornell_box") for chapter in CHAPTERS]
+        cases += [(CHAPTERS[-1], scene, f"--light-choice={choice}") for scene in SCENES for choice in ("power", "tree")]
+        for case in cases:
+            with self.subTest(case):
+                expected = self.paths("llvmpipe", *case)
+                actual = self.paths("SwiftShader", *case, environment=SWIFTSHADER)
                 differences = actual - expected
                 limits = OTHER_WAY * np.maximum(expected, actual) + 1e-6 * expected.mean()
-                self.assertLess(np.any(abs(differences) > limits, axis=0).mean(), MOST_OTHER_WAYS)
+                if "--light-choice=tree" not in case:
+                    self.assertLess(np.any(abs(differences) > limits, axis=0).mean(), MOST_OTHER_WAYS)
                 # A path that goes another way is as likely to gain as to lose: allow five standard deviations of the sum.
                 deviation = np.sqrt((differences.sum(axis=0) ** 2).sum())
                 self.assertLess(abs(differences.sum()), 5 * deviation + SINE_ERROR * expected.sum())
