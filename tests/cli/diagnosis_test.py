@@ -14,7 +14,7 @@ from check import diagnosis, grading
 from check.diagnosis import reason, right_ones
 from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
 from check.facts import DARK, fact
-from check.findings import LONGEST, findings
+from check.findings import LONGEST, findings, shortened
 from check.grading import RUNS, expected_file, first_seed
 from check.names import names_of, similar_to
 from check.words import MARGIN, MOST_FACTS, headline, hint_lines, laid_out, smallest_bias
@@ -152,6 +152,15 @@ class FindingsTest(unittest.TestCase):
                         self.assertLessEqual(len(told["text"]), LONGEST)
                         self.assertEqual(told["text"].count("\n"), 0)
 
+    def test_a_text_that_is_cut_does_not_end_in_the_middle_of_a_thought(self):
+        coloured = "light in a glowing ball with a coloured wall, after three bounces"
+        self.assertEqual(shortened("0.82 ± 0.01 times as bright as it should be", [coloured]),
+                         "0.82 ± 0.01 times as bright: light in a glowing ball with a coloured wall …")
+        self.assertEqual(shortened("up to 1.4 times the rays of the chapter's own shader", [coloured]),
+                         "up to 1.4 times the rays: light in a glowing ball with a coloured wall …")
+        self.assertEqual(shortened("too dark", ["light of a lamp that stands in the farthest corner of a room with a mirror in a frame of"] * 2),
+                         "too dark: light of a lamp that stands in the farthest corner of a room … and 1 more")
+
     def test_what_a_student_reads_fits_into_a_line(self):
         self.assertLessEqual(MARGIN + LONGEST, LINE, "facts")
         for bug in catalogue():
@@ -218,6 +227,16 @@ class NamesTest(unittest.TestCase):
     def test_what_the_experiments_cannot_tell_apart_is_told_together(self):
         facts = {"angle": seen([2.0] * 3)}
         self.assertEqual(sorted(names_of(facts, {}, self.KNOWN, {})), ["also-twice", "twice"])
+
+    def test_one_doubtful_point_may_be_chance_but_not_two(self):
+        facts = {"angle": seen([2.0] * 3)}
+        once, twice = ({"other": {"shows": {"angle": shows}}, "twice": self.KNOWN["twice"]} for shows in ("2 2 2.27", "2.27 2 2.27"))
+        self.assertEqual(names_of(facts, {}, once, {}), ["twice", "other"])
+        self.assertEqual(names_of(facts, {}, twice, {}), ["twice"])
+
+    def test_a_mistake_that_shows_elsewhere_alone_is_another_one(self):
+        known = {"slightly": {"shows": {"angle": "1.09 1.09 1.09"}}, "elsewhere": {"shows": {"distance": "2 2 2"}}}
+        self.assertEqual(names_of({"angle": seen([1.09] * 3)}, {}, known, {}), ["slightly"])
 
 
 class SimilarNamesTest(unittest.TestCase):

@@ -134,13 +134,14 @@ def reason(chapter, facts, sights, known, is_correct):
     """What the facts say: what is wrong, each with a short text and its evidence, subjects that are right, and mistakes of the catalogue
     that fit or, if none fits, may fit."""
     told = [found.told() for found in findings(facts.values())]
-    told = told or ([] if is_correct else noise_findings(facts, sights, known["experiments"]))
+    noisy = any(is_noisy(facts[name].experiment, sights[name], known["experiments"][name]) for name in sights)
+    told = told or (noise_findings(facts, sights, known["experiments"]) if noisy or not is_correct else [])
     wrong = [name for name, seen in facts.items() if not seen.is_right]
     fitting = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
     names = fitting or (similar_to(facts, known["mistakes"]) if wrong else [])
     return {"facts": told, "right": right_ones(facts), "wrong": wrong, "fits": bool(fitting),
             "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
-            "is_noisy": any(is_noisy(facts[name].experiment, sights[name], known["experiments"][name]) for name in sights),
+            "is_noisy": noisy,
             "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
             "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()}}
 

@@ -1,12 +1,15 @@
 """What the facts of a check have in common: experiments that are wrong in the same way become one finding, since they probably have
 the same cause."""
 import math
+import re
 import textwrap
 from dataclasses import dataclass, field
 
 from check.facts import TOLERANCE, common_value, constant, number, power_law
 
 LONGEST = 85  # characters of a finding's text: with its head, a line of 100
+SPARED = (" as it should be", " of the chapter's own shader")  # what goes without saying where a text would be too long
+OPEN_WORDS = "an?|the|and|of|in|on|by|to|from|with|under|after|behind|that|which|what|whose|where|is|are|has"  # no end of a text
 SHARE = 0.5  # of what is wrong: a factor that fewer experiments have in common is a coincidence
 INVALID = "infinite or not a number"
 BOUNCES = 4  # at most, of an experiment
@@ -25,12 +28,19 @@ class Finding:
 
 
 def shortened(way, subjects):
-    """A text with as many of the subjects as fit into it."""
-    for count in range(len(subjects), 0, -1):
-        rest = f" and {len(subjects) - count} more" if count < len(subjects) else ""
-        if len(text := f"{way}: {'; '.join(subjects[:count])}{rest}") <= LONGEST:
-            return text
-    return textwrap.shorten(f"{way}: {subjects[0]}", LONGEST, placeholder=f" … and {len(subjects) - 1} more" if len(subjects) > 1 else " …")
+    """A text with as many of the subjects as fit into it. A subject that does not fit ends at a comma or before words that need another."""
+    brief = way
+    for words in SPARED:
+        brief = brief.replace(words, "")
+    for start in (way, brief):
+        for count in range(len(subjects), 0, -1):
+            rest = f" and {len(subjects) - count} more" if count < len(subjects) else ""
+            if len(text := f"{start}: {'; '.join(subjects[:count])}{rest}") <= LONGEST:
+                return text
+    end = f" … and {len(subjects) - 1} more" if len(subjects) > 1 else " …"
+    subject = textwrap.shorten(subjects[0], max(LONGEST - len(f"{brief}: "), len(end) + 1), placeholder=end).removesuffix(end)
+    subject = subject.rpartition(",")[0] or subject
+    return f"{brief}: {re.sub(f'( ({OPEN_WORDS}))+$', '', subject)}{end}"
 
 
 def wrong_readings(seen):

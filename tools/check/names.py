@@ -8,6 +8,7 @@ from check.experiments import known_sights
 # Another student's shader has the same mistake but not quite the same numbers: relative tolerance, and its minimum.
 LOOSENESS, LEAST = 0.03, 0.01
 FITS, EXCLUDED = 3.5, 5.0  # standard errors: within the first it fits, beyond the second it is a different mistake
+MOST_DOUBTS = 1  # points between the two: more of them exclude it as well
 NOISE_LOOSENESS, RAYS_LOOSENESS = 0.25, 0.08  # of their logarithms
 # One that only may fit: how much of what is wrong it must explain, and how many points may contradict it.
 LEAST_LIKENESS, MOST_CONTRADICTIONS = 0.75, 3
@@ -30,6 +31,11 @@ def distance(shown, facts):
     """How far what a mistake shows is from the facts, in standard errors at the point that contradicts it most."""
     far = 0.0 if all(seen.readings for seen in facts.values()) else math.inf
     return max([far, *(off for _, _, off in compared(shown, facts))])
+
+
+def is_doubtful(shown, facts):
+    """Whether several points speak against a mistake, though none of them enough to exclude it."""
+    return sum(off > FITS for _, _, off in compared(shown, facts)) > MOST_DOUBTS
 
 
 def noise_distance(entry, ratios):
@@ -56,12 +62,18 @@ def ratios_of(sights, expected):
 def names_of(facts, sights, known, expected):
     """The names of the catalogue's mistakes that the facts leave: those that fit and those not far enough away to be excluded,
     nearest first; empty if none fits."""
-    far = {name: distance(entry["shows"], facts) for name, entry in known.items() if "unseen" not in entry}
-    if all(seen.is_right for seen in facts.values()):
+    wrong = {name for name, seen in facts.items() if not seen.is_right}
+    # A small difference is near to none, but a mistake that is right wherever the shader is wrong is another one.
+    far = {name: distance(entry["shows"], facts) for name, entry in known.items()
+           if "unseen" not in entry and (not wrong or wrong & set(entry["shows"]))}
+    if not wrong:
         ratios = ratios_of(sights, expected)
-        far = {name: max(value, noise_distance(known[name], ratios)) for name, value in far.items()}
+        those = {name: known[name] for name in far if known[name].get("noise") or known[name].get("rays")}  # the rest shows elsewhere
+        far = {name: max(far[name], noise_distance(entry, ratios)) for name, entry in those.items()}
     ordered = sorted(far, key=far.get)
-    return [name for name in ordered if far[name] <= EXCLUDED] if ordered and far[ordered[0]] <= FITS else []
+    if not ordered or far[ordered[0]] > FITS:
+        return []
+    return [name for name in ordered if far[name] <= EXCLUDED and not is_doubtful(known[name]["shows"], facts)]
 
 
 def likeness(shown, facts):
