@@ -7,8 +7,8 @@ import subprocess
 import sys
 import unittest
 
-import yaml
 from program import BINARIES, PROJECT  # first: it finds the tools
+import yaml
 from package import make, windows_programs
 from project import CHAPTERS
 
