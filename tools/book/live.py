@@ -131,8 +131,12 @@ def fits(scripts):
     return sum(map(len, scripts.values())) <= LARGEST
 
 
+def literal(value):
+    return json.dumps(value, separators=(",", ":"))
+
+
 def script(name, value):
-    return f"live.data[{json.dumps(name)}] = {json.dumps(value)};\n"
+    return f"live.data[{json.dumps(name)}] = {literal(value)};\n"
 
 
 def experiments_of_page(chapter, folder):
@@ -215,7 +219,7 @@ def write(folder, frames):
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")
-    (folder / "sources.js").write_text(f"var live = globalThis.live ?? {{}};\nlive.data = {{}};\nlive.sources = {json.dumps(texts)};\n"
-                                       f"live.chapters = {json.dumps(chapters)};\n", encoding="utf-8")
+    (folder / "sources.js").write_text(f"var live = globalThis.live ?? {{}};\nlive.data = {{}};\nlive.sources = {literal(texts)};\n"
+                                       f"live.chapters = {literal(chapters)};\n", encoding="utf-8")
     for name in [*SCRIPTS, "live.css"]:
         shutil.copy(HERE / name, folder / name)
