@@ -41,7 +41,7 @@ void expect_right_probabilities(const Scene& scene, uint32_t size, double larges
 
 TEST(LightTree, ProbabilitiesOfLampsInAHall) { expect_right_probabilities(load_shipped_scene("lamps.json"), 25, 0.005); }
 // 10⁸ times a lamp is looked for at a point.
-TEST(LightTree, ProbabilitiesOfLampsInAHall_all) { expect_right_probabilities(load_shipped_scene("lamps.json"), 40, 0.003); }
+TEST(LightTree, ProbabilitiesAtMorePointsOfAHall_all) { expect_right_probabilities(load_shipped_scene("lamps.json"), 40, 0.003); }
 TEST(LightTree, ProbabilitiesOfLampsOfTwelveDecades) { expect_right_probabilities(random_lamps(100, 12), 64, 0.002); }
 TEST(LightTree, ProbabilitiesOfTwoLamps) { expect_right_probabilities(random_lamps(2, 1), 64, 0.002); }
 // There is little to choose, and the table costs less.
