@@ -110,7 +110,7 @@ class PathBuilder {
         if (has_flight(event) && event.flight < t_max) {
             vertex.is_hit = false;
             vertex.is_collision = true;
-            vertex.position = event.origin + event.flight * event.direction;  // which a driver's sine keeps short of unit length
+            vertex.position = event.origin + event.flight * event.direction;  // not quite a unit vector on some drivers
             vertex.normal = vec3(0);
         }
         path_.vertices.push_back(std::move(vertex));

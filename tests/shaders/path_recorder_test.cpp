@@ -188,8 +188,8 @@ Scene box_of_medium_below_a_lamp() {
 
 // Rays end at collisions, also the last one of a path. Light samples start there or, if they are sampled by angles, on a ray.
 TEST(PathRecorder, EndsRaysInMediaAtCollisions) {
-    const auto is_on = [](const vec3& point, const PathVertex& vertex) {
-        return glm::length(glm::cross(point - vertex.origin, vertex.direction)) < 1e-4f * (1 + glm::length(point));
+    const auto is_on = [](const vec3& point, const PathVertex& vertex) {  // some are thousands of units away
+        return glm::length(glm::cross(point - vertex.origin, vertex.direction)) < 1e-4f + 1e-6f * glm::length(point);
     };
     for (const bool is_fog : {true, false})
         for (const bool has_angles : {false, true}) {
@@ -211,8 +211,7 @@ TEST(PathRecorder, EndsRaysInMediaAtCollisions) {
                         EXPECT_LT(glm::distance(before.position, vertex.origin), rounding * (1 + glm::length(vertex.origin)));
                     }
                     for (const LightSample& light : vertex.light_samples) {
-                        const bool starts_here =
-                            glm::distance(light.start, vertex.position) < 1e-4f * (1 + glm::length(light.start));
+                        const bool starts_here = glm::distance(light.start, vertex.position) < 1e-4f;
                         EXPECT_TRUE(starts_here ||
                                     (has_angles && std::ranges::any_of(path.vertices, [&](const PathVertex& other) {
                                          return is_on(light.start, other);
