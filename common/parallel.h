@@ -1,8 +1,10 @@
-// Parallel loops on all processors that the program may use.
+// Parallel loops on all processors that the program may use, and a thread that watches another one.
 #pragma once
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
+#include <future>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -51,5 +53,24 @@ Sum sum_in_parallel(size_t count, const Work& work) {
     for (const Sum& sum : sums) all += sum;
     return all;
 }
+
+// Calls look() from a thread of its own after each `period`, until that returns false or the watch is destroyed. No condition
+// variable with a stop token: in the library of GCC 12 for Windows, that can sleep forever once it is told to stop.
+class Watch {
+  public:
+    template <typename Look>
+    Watch(std::chrono::milliseconds period, Look look)
+        : thread_([period, look, over = over_.get_future()] {
+              while (over.wait_for(period) == std::future_status::timeout && look()) {
+              }
+          }) {}
+    ~Watch() { over_.set_value(); }
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
+
+  private:
+    std::promise<void> over_;
+    std::jthread thread_;  // joined first
+};
 
 }  // namespace lab

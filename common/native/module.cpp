@@ -22,7 +22,6 @@ void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -360,14 +359,9 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
     bindings.group_count = end;
     const std::atomic_ref stop(is_stopped);
     // Interrupts are seen while a shader runs, since it may never end.
-    const std::jthread watch([&](const std::stop_token& finished) {
-        std::mutex mutex;
-        std::unique_lock lock(mutex);
-        std::condition_variable_any changed;
-        while (!changed.wait_for(lock, finished, std::chrono::milliseconds(50), [] { return is_interrupted(); }) &&
-               !finished.stop_requested()) {
-        }
-        stop = is_interrupted();
+    const Watch watch(std::chrono::milliseconds(50), [&] {
+        if (is_interrupted()) stop = true;
+        return !stop;
     });
     in_parallel(end - first, 1, [&](size_t begin, size_t) {
         const HandlerStack stack;

@@ -1,13 +1,12 @@
 #include "rendering/renderer.h"
 
 #include <algorithm>
-#include <condition_variable>
+#include <chrono>
 #include <cstdio>
-#include <mutex>
-#include <thread>
 
 #include "clock.h"
 #include "files/project_folder.h"
+#include "parallel.h"
 #include "platform.h"
 #include "tracing/limited_loops.h"
 
@@ -21,25 +20,14 @@ constexpr uint32_t enough_groups = 8192;
 // but all must fit into 128 MiB, the largest binding of some devices.
 constexpr uint32_t samples_per_group = 20;
 
-// Says so if a dispatch takes very long, since its shader may never end.
-class Reminder {
-  public:
-    explicit Reminder(const Estimator& estimator)
-        : thread_([&](const std::stop_token& done) {
-              constexpr std::chrono::seconds patience(10);
-              std::mutex mutex;
-              std::unique_lock lock(mutex);
-              std::condition_variable_any ended;
-              ended.wait_for(lock, done, patience, [] { return false; });
-              if (done.stop_requested()) return;
-              const auto& file = estimator.observed.empty() ? estimator.file : estimator.observed;
-              std::fprintf(stderr, "note: no sample for %d s: if a loop of %s does not end, Ctrl-C stops the program\n",
-                           static_cast<int>(patience.count()), file.string().c_str());
-          }) {}
+constexpr std::chrono::seconds patience(10);
 
-  private:
-    std::jthread thread_;
-};
+// Says that a dispatch takes very long, since its shader may never end.
+void remind_of_endless_loops(const Estimator& estimator) {
+    const auto& file = estimator.observed.empty() ? estimator.file : estimator.observed;
+    std::fprintf(stderr, "note: no sample for %d s: if a loop of %s does not end, Ctrl-C stops the program\n",
+                 static_cast<int>(patience.count()), file.string().c_str());
+}
 
 bool are_pixels_shared(uvec2 image_size) { return 2 * count_blocks(image_size) <= enough_groups; }
 
@@ -156,10 +144,14 @@ bool Renderer::advance(uint32_t target_samples) {
     const std::span<uint32_t> counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = Clock::now();
-    std::optional<Reminder> reminder(estimator_);
-    const auto device_seconds = tracer_->trace(steps_of_pass(count, window), count, window.offset());
+    const auto device_seconds = [&] {
+        const Watch watch(patience, [&] {
+            remind_of_endless_loops(estimator_);
+            return false;
+        });
+        return tracer_->trace(steps_of_pass(count, window), count, window.offset());
+    }();
     const double seconds = seconds_since(start);
-    reminder.reset();
     if (!device_seconds) return true;  // finished samples are in the film
     device_seconds_ += *device_seconds;
     check_loops(counters, estimator_);

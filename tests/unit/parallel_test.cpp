@@ -39,5 +39,23 @@ TEST(SumInParallel, AddsEverything) {
     EXPECT_EQ(sum, count * (count - 1) / 2);
 }
 
+TEST(Watch, LooksUntilItHasSeenEnough) {
+    std::atomic<int> looks = 0;
+    const Watch watch(std::chrono::milliseconds(1), [&] { return ++looks < 3; });
+    while (looks < 3) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(looks, 3);
+}
+
+// One in a thousand waited forever in a program for Windows, as long as a stop token ended them.
+TEST(Watch, EndsBeforeItsPeriod) {
+    std::atomic<int> looks = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Watch watch(std::chrono::hours(1), [&] { return ++looks > 0; });
+        std::this_thread::sleep_for(std::chrono::milliseconds(i % 10));
+    }
+    EXPECT_EQ(looks, 0);
+}
+
 }  // namespace
 }  // namespace lab
