@@ -1,4 +1,3 @@
-#ifndef _WIN32
 #include "native/translator.h"
 
 #include "native/lane_writer.h"
@@ -11,4 +10,3 @@ std::string translate(const std::vector<uint32_t>& spirv, bool for_lanes) {
 }
 
 }  // namespace lab::native
-#endif
