@@ -2,7 +2,6 @@
 import argparse
 import json
 import os
-import platform
 import re
 import shutil
 import signal
@@ -173,13 +172,6 @@ def commit():
     except OSError:
         return "unknown"
     return git.stdout.strip() or "unknown"
-
-
-def processor():
-    """Model of this machine's CPU, and the number of cores that programs may use."""
-    lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if Path("/proc/cpuinfo").exists() else []
-    models = [line.partition(": ")[2] for line in lines if line.startswith("model name")]
-    return (models or [platform.machine()])[0], len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
 
 
 # ---------------------------------------------------------------------------------------------- progress

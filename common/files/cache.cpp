@@ -8,32 +8,24 @@
 #include "platform.h"
 
 namespace lab {
-namespace {
-
-// Empty without a home folder: in a folder that all users share, others could replace a shader.
-std::filesystem::path cache_folder() {
-    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
-        return std::filesystem::path(folder) / "path_tracing_lab";
-    const std::filesystem::path home = user_folder();
-    return home.empty() ? home : home / ".cache" / "path_tracing_lab";
-}
-
-}  // namespace
 
 std::string cache_name(const std::string& kind, std::string_view key) {
     return kind + "-" + hexadecimal(hash_text(key)) + "-" + hexadecimal(hash_text(key, key.size()));
 }
 
+// There is none without a home folder: in a folder that all users share, others could replace a shader.
 std::filesystem::path cache_file(const std::string& name) {
-    const auto folder = cache_folder();
-    return folder.empty() ? folder : folder / name;
+    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
+        return std::filesystem::path(folder) / "path_tracing_lab" / name;
+    const std::filesystem::path home = user_folder();
+    return home.empty() ? home : home / ".cache" / "path_tracing_lab" / name;
 }
 
 // The last eight bytes of an entry are a hash of the rest.
 std::optional<std::string> read_cache(const std::string& name) try {
-    const auto folder = cache_folder();
-    if (folder.empty()) return std::nullopt;
-    std::string bytes = read_file(folder / name, UINT64_MAX);
+    const auto file = cache_file(name);
+    if (file.empty()) return std::nullopt;
+    std::string bytes = read_file(file, UINT64_MAX);
     uint64_t stored = 0;
     if (bytes.size() < sizeof stored) return std::nullopt;
     const size_t size = bytes.size() - sizeof stored;
@@ -45,15 +37,15 @@ std::optional<std::string> read_cache(const std::string& name) try {
 }
 
 void write_cache(const std::string& name, std::string_view contents) {
-    const auto folder = cache_folder();
-    if (folder.empty()) return;
+    const auto file = cache_file(name);
+    if (file.empty()) return;
     std::error_code ignored;
-    std::filesystem::create_directories(folder, ignored);
+    std::filesystem::create_directories(file.parent_path(), ignored);
     const uint64_t hash = hash_text(contents);
     std::string bytes(contents);
     bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
     try {
-        write_file(folder / name, bytes);
+        write_file(file, bytes);
     } catch (const UserError&) {  // the next start just takes longer
     }
 }

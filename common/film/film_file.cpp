@@ -85,7 +85,7 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
             return to_float(double{pixel.difference[channel]} / std::max(pixel.sample_count, 1u));
         });
     // Only what exceeds the smallest count, since 32-bit floats hold whole numbers only up to 2^24.
-    if (!image.has_equal_sample_counts())
+    if (image.exceeds(samples))
         add_channel("further_samples", [&](const FilmPixel& pixel) { return pixel.sample_count - samples; });
     if (invalid > 0) add_channel("invalid_samples", [](const FilmPixel& pixel) { return pixel.invalid_count; });
     write_exr(file, exr);
@@ -184,10 +184,11 @@ FilmFile merge_films(const std::vector<std::filesystem::path>& files) {
     FilmFile merged;
     for (const auto& file : files) {  // one at a time: there may be many, and large ones
         FilmFile part = read_film(file);
-        if (!part.image.has_equal_sample_counts())
+        const uint32_t samples = part.image.min_samples();
+        if (part.image.exceeds(samples))
             throw UserError(file.string() + " is an unfinished render: finish it with --resume first");
         const uint64_t begin = part.header.first_sample;
-        ranges.push_back({begin, begin + part.image.min_samples(), file.string()});
+        ranges.push_back({begin, begin + samples, file.string()});
         if (ranges.size() == 1) {
             merged = std::move(part);
         } else {

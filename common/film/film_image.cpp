@@ -50,9 +50,7 @@ uint32_t FilmImage::min_samples() const {
     return minima.empty() ? 0 : std::ranges::min(minima);
 }
 
-bool FilmImage::has_equal_sample_counts() const {
-    return sum(&FilmPixel::sample_count) == uint64_t{min_samples()} * pixels.size();
-}
+bool FilmImage::exceeds(uint32_t samples) const { return sum(&FilmPixel::sample_count) > uint64_t{samples} * pixels.size(); }
 
 uint64_t FilmImage::sum(uint32_t FilmPixel::*count) const {
     return sum_in_parallel<uint64_t>(pixels.size(), [&](size_t begin, size_t end) {

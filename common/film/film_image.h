@@ -24,9 +24,9 @@ struct FilmImage {
     uint32_t height = 0;
     std::vector<FilmPixel> pixels;
 
-    bool has_equal_sample_counts() const;
-    uint32_t min_samples() const;                                                // smallest count of any pixel
-    uint64_t sum(uint32_t FilmPixel::*count) const;                              // of all pixels
+    uint32_t min_samples() const;                    // smallest count of any pixel
+    bool exceeds(uint32_t samples) const;            // whether some pixel has more than this, the smallest count
+    uint64_t sum(uint32_t FilmPixel::*count) const;  // of all pixels
     uint64_t invalid_samples() const { return sum(&FilmPixel::invalid_count); }  // infinite or NaN
     Image mean() const;                                                          // per pixel; 0 without samples
     std::array<double, 3> mean_radiance() const;                                 // of the whole image

@@ -4,18 +4,16 @@
 
 namespace lab {
 
+Binding buffer_binding(uint32_t index, vk::DescriptorType type, const Buffer& buffer, vk::DeviceSize size) {
+    return {.index = index, .type = type, .buffers = {{buffer.handle(), 0, size}}, .host = buffer.mapped<std::byte>()};
+}
+
 Binding storage_binding(uint32_t index, const Buffer& buffer) {
-    return {.index = index,
-            .type = vk::DescriptorType::eStorageBuffer,
-            .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}},
-            .host = buffer.mapped<std::byte>()};
+    return buffer_binding(index, vk::DescriptorType::eStorageBuffer, buffer);
 }
 
 Binding uniform_binding(uint32_t index, const Buffer& buffer) {
-    return {.index = index,
-            .type = vk::DescriptorType::eUniformBuffer,
-            .buffers = {{buffer.handle(), 0, VK_WHOLE_SIZE}},
-            .host = buffer.mapped<std::byte>()};
+    return buffer_binding(index, vk::DescriptorType::eUniformBuffer, buffer);
 }
 
 DescriptorSet::DescriptorSet(const Device& device, std::span<const Binding> bindings, vk::ShaderStageFlags stages) {

@@ -18,6 +18,8 @@ struct Binding {
     std::span<std::byte> host = {};  // contents of a host-visible buffer
 };
 
+// From the start of a buffer on, as many bytes as a shader may see.
+Binding buffer_binding(uint32_t index, vk::DescriptorType type, const Buffer& buffer, vk::DeviceSize size = VK_WHOLE_SIZE);
 Binding storage_binding(uint32_t index, const Buffer& buffer);
 Binding uniform_binding(uint32_t index, const Buffer& buffer);
 

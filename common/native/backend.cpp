@@ -10,9 +10,9 @@
 namespace lab {
 namespace {
 
-template <typename T>
-native::Bindings::Range range_of(std::span<const T> data) {  // const is cast away: shaders write only where GLSL lets them
-    return {reinterpret_cast<std::byte*>(const_cast<T*>(data.data())), data.size_bytes()};
+native::Bindings::Range range_of(const auto& array) {  // const is cast away: shaders write only where GLSL lets them
+    const auto bytes = std::as_bytes(std::span(array));
+    return {const_cast<std::byte*>(bytes.data()), bytes.size()};
 }
 
 // Binds the host's view of buffers.
@@ -44,12 +44,12 @@ class WorldTriangles {
         bound.ranges[BINDING_RENDER_PARAMETERS] = range_of(std::span(&parameters, 1));
         bound.ranges[BINDING_BVH_TRIANGLES] = range_of(triangles);
         bind(bound);
-        native::run_groups(load_shader(source, source).run, bound, 0, static_cast<uint32_t>((triangles.size() + 63) / 64));
+        native::run_groups(load_shader(source, source).run, bound, static_cast<uint32_t>((triangles.size() + 63) / 64));
     }
 
     void bind(native::Bindings& bindings) const {
-        bindings.ranges[BINDING_WORLD_TRIANGLES] = range_of(std::span<const CacheLine>(triangles_));
-        bindings.ranges[BINDING_FIRST_WORLD_TRIANGLES] = range_of(std::span<const uint32_t>(firsts_));
+        bindings.ranges[BINDING_WORLD_TRIANGLES] = range_of(triangles_);
+        bindings.ranges[BINDING_FIRST_WORLD_TRIANGLES] = range_of(firsts_);
     }
     size_t bytes() const { return triangles_.size() * sizeof(CacheLine) + firsts_.size() * sizeof(uint32_t); }
 
@@ -84,8 +84,8 @@ class NativeTree {
     }
     void bind(native::Bindings& bindings) const {
         bindings.rays = rays_.get();
-        bindings.ranges[BINDING_BVH_NODES] = range_of(std::span<const BvhNode>(bvh_.nodes));
-        bindings.ranges[BINDING_BVH_TRIANGLES] = range_of(std::span<const BvhTriangle>(bvh_.triangles));
+        bindings.ranges[BINDING_BVH_NODES] = range_of(bvh_.nodes);
+        bindings.ranges[BINDING_BVH_TRIANGLES] = range_of(bvh_.triangles);
     }
     size_t bytes() const {
         return rays_ ? rays_->bytes() : bvh_.nodes.size() * sizeof(BvhNode) + bvh_.triangles.size() * sizeof(BvhTriangle);
@@ -109,7 +109,7 @@ class NativeTracer : public Tracer {
         const auto start = Clock::now();
         for (DispatchParameters step : steps) {
             bindings.push_constants = reinterpret_cast<std::byte*>(&step);
-            native::run_groups(code_.run, bindings, 0, block_count);
+            native::run_groups(code_.run, bindings, block_count);
         }
         if (is_interrupted()) return std::nullopt;
         return seconds_since(start);
@@ -145,7 +145,7 @@ class NativeBackend : public SceneBackend {
         native::Bindings bound{};
         bind_host(bound, bindings);
         bind_host(bound, scene_.bindings());
-        bound.ranges[BINDING_TEXTURES] = range_of(std::span<const native::Texture>(textures_));
+        bound.ranges[BINDING_TEXTURES] = range_of(textures_);
         bound.ranges[BINDING_LIGHT_PROBE] = range_of(std::span<const native::Texture>(&probe_, 1));
         tree_.bind(bound);
         triangles_.bind(bound);

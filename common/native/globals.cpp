@@ -1,5 +1,4 @@
 // What a program declares: types, constants, variables and what bindings bring.
-#ifndef _WIN32
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -204,4 +203,3 @@ std::string Writer::resources(Id variable) {
 }
 
 }  // namespace lab::native
-#endif

@@ -1,4 +1,3 @@
-#ifndef _WIN32
 #include "native/lane_writer.h"
 
 namespace lab::native {
@@ -214,4 +213,3 @@ void LaneWriter::statement(const Statement& statement) {
 }
 
 }  // namespace lab::native
-#endif

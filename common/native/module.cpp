@@ -8,7 +8,7 @@ void set_mode(Mode) {}
 Code load(const std::vector<uint32_t>&) { return {}; }
 MakeRayTracer load_embree() { return nullptr; }
 std::string ray_tracer_name() { return "the lab's own tree"; }
-void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
+void run_groups(RunGroup, Bindings, uint32_t) {}
 }  // namespace lab::native
 
 #else
@@ -27,6 +27,7 @@ void run_groups(RunGroup, Bindings, uint32_t, uint32_t) {}
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <sstream>
@@ -243,11 +244,19 @@ void* load_library(const std::string& text, const std::vector<std::string>& argu
     throw UserError("the backend native cannot load its code: " + reason +
                     ": set XDG_CACHE_HOME to a folder that allows programs");
 }
-void* load_library(const std::string& text, const std::vector<std::string>& arguments) {
+
+// The library of a text for lanes if possible, or else of one without; then `why_one_by_one` says why.
+void* load_library(const std::function<std::string(bool)>& text, const std::vector<std::string>& arguments,
+                   const std::vector<std::string>& lane_arguments, std::string& why_one_by_one) {
+    why_one_by_one = why_no_lanes();
+    if (why_one_by_one.empty()) {
+        auto all = arguments;
+        all.insert(all.end(), lane_arguments.begin(), lane_arguments.end());
+        if (void* library = load_library(text(true), all, why_one_by_one)) return library;
+    }
     std::string refusal;
-    void* library = load_library(text, arguments, refusal);
-    if (!library) throw UserError("the backend native: " + refusal + ": use another backend, such as --backend compute");
-    return library;
+    if (void* library = load_library(text(false), arguments, refusal)) return library;
+    throw UserError("the backend native: " + refusal + ": use another backend, such as --backend compute");
 }
 
 // The library "embree4" or "embree3" if one can compile with it: its name without a version is there if its headers are. Empty if
@@ -313,18 +322,12 @@ std::vector<std::string> missing_tools() {
 void set_mode(Mode wanted) { mode = wanted; }
 
 Code load(const std::vector<uint32_t>& spirv) {
-    const auto code_of = [](void* library, const std::string& why_one_by_one) {
-        return Code{reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group")),
-                    *static_cast<const int*>(dlsym(library, "lab_invocations_at_once")), why_one_by_one};
-    };
-    auto arguments = compiler_arguments();
-    std::string refusal = why_no_lanes();
-    if (refusal.empty()) {
-        auto for_lanes = arguments;  // GCC 12 crashes where it tries to make vectors of vectors
-        for_lanes.insert(for_lanes.end(), {"-fno-tree-vectorize", "-lmvec", "-Wl,-z,defs"});
-        if (void* library = load_library(translate_for_lanes(spirv), for_lanes, refusal)) return code_of(library, "");
-    }
-    return code_of(load_library(translate(spirv), arguments), refusal);
+    std::string why_one_by_one;
+    void* library = load_library([&](bool for_lanes) { return translate(spirv, for_lanes); }, compiler_arguments(),
+                                 // GCC 12 crashes where it tries to make vectors of vectors
+                                 {"-fno-tree-vectorize", "-lmvec", "-Wl,-z,defs"}, why_one_by_one);
+    return {reinterpret_cast<RunGroup>(dlsym(library, "lab_run_group")),
+            *static_cast<const int*>(dlsym(library, "lab_invocations_at_once")), why_one_by_one};
 }
 
 MakeRayTracer load_embree() {
@@ -333,11 +336,9 @@ MakeRayTracer load_embree() {
     auto arguments = compiler_arguments();
     arguments.push_back("-l" + embree);
     const std::string text = "#include <" + embree + "/rtcore.h>\n#include \"native/few_triangles.h\"\n";
-    auto for_lanes = arguments;
-    for_lanes.emplace_back("-DLAB_FEW_TRIANGLES");
-    std::string refusal = why_no_lanes();
-    void* library = refusal.empty() ? load_library(text, for_lanes, refusal) : nullptr;
-    return reinterpret_cast<MakeRayTracer>(dlsym(library ? library : load_library(text, arguments), "lab_make_ray_tracer"));
+    std::string why_one_by_one;
+    void* library = load_library([&](bool) { return text; }, arguments, {"-DLAB_FEW_TRIANGLES"}, why_one_by_one);
+    return reinterpret_cast<MakeRayTracer>(dlsym(library, "lab_make_ray_tracer"));
 }
 
 std::string ray_tracer_name() {
@@ -345,7 +346,7 @@ std::string ray_tracer_name() {
     return embree.empty() ? "the lab's own tree; libembree-dev is faster" : "Embree " + embree.substr(embree.size() - 1);
 }
 
-void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
+void run_groups(RunGroup run, Bindings bindings, uint32_t count) {
     static const bool handles_crashes = [] {
         struct sigaction action {};
         action.sa_handler = return_from_crash;
@@ -356,20 +357,19 @@ void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end) {
     (void)handles_crashes;
     bool is_stopped = false;
     bindings.is_stopped = &is_stopped;
-    bindings.group_count = end;
+    bindings.group_count = count;
     const std::atomic_ref stop(is_stopped);
     // Interrupts are seen while a shader runs, since it may never end.
     const Watch watch(std::chrono::milliseconds(50), [&] {
         if (is_interrupted()) stop = true;
         return !stop;
     });
-    in_parallel(end - first, 1, [&](size_t begin, size_t) {
+    in_parallel(count, 1, [&](size_t begin, size_t) {
         const HandlerStack stack;
         char error[512];
         const int signal = sigsetjmp(way_back, 1);
         is_in_shader = signal == 0;
-        const Outcome outcome =
-            signal == 0 ? run(bindings, first + static_cast<uint32_t>(begin), error, sizeof error) : Outcome::failed;
+        const Outcome outcome = signal == 0 ? run(bindings, static_cast<uint32_t>(begin), error, sizeof error) : Outcome::failed;
         is_in_shader = false;
         if (outcome != Outcome::failed) return;
         stop = true;

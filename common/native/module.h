@@ -38,6 +38,6 @@ std::string ray_tracer_name();
 
 // Runs workgroups on all processors. Interrupts of the program stop them. Throws UserError for what a checked shader finds, and
 // DeviceFailure if the code crashes.
-void run_groups(RunGroup run, Bindings bindings, uint32_t first, uint32_t end);
+void run_groups(RunGroup run, Bindings bindings, uint32_t count);
 
 }  // namespace lab::native

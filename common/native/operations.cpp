@@ -1,5 +1,4 @@
 // SPIR-V's functions as C++.
-#ifndef _WIN32
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include "native/writer.h"
@@ -148,4 +147,3 @@ std::string Writer::operation(const Instruction& instruction) {
 }
 
 }  // namespace lab::native
-#endif

@@ -1,4 +1,3 @@
-#ifndef _WIN32
 #include "native/program.h"
 
 #include <cstring>
@@ -315,4 +314,3 @@ void Program::move_inwards(Sequence& sequence) const {
 }
 
 }  // namespace lab::native
-#endif

@@ -6,10 +6,8 @@
 
 namespace lab::native {
 
-// `spirv` comes from compile_shader() with lines. The C++ has their numbers, by #line directives. Throws UserError for what this
-// translator does not know.
-std::string translate(const std::vector<uint32_t>& spirv);
-// The same for several invocations at once.
-std::string translate_for_lanes(const std::vector<uint32_t>& spirv);
+// `spirv` comes from compile_shader() with lines. The C++ has their numbers, by #line directives; `for_lanes` it runs several
+// invocations at once. Throws UserError for what this translator does not know.
+std::string translate(const std::vector<uint32_t>& spirv, bool for_lanes);
 
 }  // namespace lab::native

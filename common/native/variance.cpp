@@ -1,4 +1,3 @@
-#ifndef _WIN32
 #include "native/variance.h"
 
 #include <spirv/unified1/GLSL.std.450.h>
@@ -129,4 +128,3 @@ class Variance::Walk {
 Variance::Variance(const Program& program) { Walk(*this, program).run(); }
 
 }  // namespace lab::native
-#endif

@@ -6,7 +6,6 @@ namespace lab::native {
 
 class Variance {
   public:
-    Variance() = default;  // nothing varies
     explicit Variance(const Program& program);
 
     bool varies(Id id) const { return ids_.contains(id); }

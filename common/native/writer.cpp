@@ -1,4 +1,3 @@
-#ifndef _WIN32
 #include "native/writer.h"
 
 #include <spirv/unified1/GLSL.std.450.h>
@@ -350,4 +349,3 @@ std::string Writer::write() {
 }
 
 }  // namespace lab::native
-#endif

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <set>
 
 #include "files/file.h"
 #include "files/project_folder.h"
@@ -86,14 +85,6 @@ std::vector<std::string> chapter_folders() {
         if (std::filesystem::exists(entry.path() / "chapter.json")) names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     return names;
-}
-
-std::vector<std::string> course_chapters() {
-    std::vector<std::string> chapters;
-    std::set<std::string> titles;
-    for (const std::string& name : chapter_folders())
-        if (titles.insert(load_chapter(name).title).second) chapters.push_back(name);
-    return chapters;
 }
 
 Chapter load_chapter(const std::string& name) {

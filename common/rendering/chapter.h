@@ -52,9 +52,6 @@ struct Chapter {
 // Names of the folders in chapters/ that hold a chapter, sorted.
 std::vector<std::string> chapter_folders();
 
-// The same without copies made for experiments: of chapters with equal titles only the first.
-std::vector<std::string> course_chapters();
-
 // Loads the chapter in a folder of chapters/. Throws UserError if its chapter.json is missing or wrong, naming the key and what
 // is possible.
 Chapter load_chapter(const std::string& name);

@@ -36,10 +36,7 @@ Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_win
 }
 
 Binding Film::binding() const {
-    return {.index = BINDING_FILM,
-            .type = vk::DescriptorType::eStorageBufferDynamic,
-            .buffers = {{buffer_.handle(), 0, window_size_}},
-            .host = buffer_.mapped<std::byte>()};
+    return buffer_binding(BINDING_FILM, vk::DescriptorType::eStorageBufferDynamic, buffer_, window_size_);
 }
 
 FilmWindow Film::window_from(uint32_t block) const {

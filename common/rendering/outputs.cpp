@@ -26,7 +26,7 @@ void write_picture(const std::filesystem::path& file, const FilmImage& film, con
 
 // Keeps the last snapshot, and returns what was kept.
 static std::string keep(const FilmImage& film, const std::function<void()>& write) {
-    if (film.min_samples() == 0 && film.has_equal_sample_counts()) return ": there was nothing to write yet";
+    if (!film.exceeds(0)) return ": there was nothing to write yet";
     try {
         write();
     } catch (const UserError& unwritten) {

@@ -32,7 +32,7 @@ size_t value_of(const ChapterChoice& choice, const Options& options);
 // How the chapter's estimator finds light under these options.
 Strategy strategy_of(const Chapter& chapter, const Options& options);
 
-// The chapter's estimator, or what --view and --split-every-hit replace it with.
+// The chapter's estimator, or what --view replaces it with.
 Estimator make_estimator(const Chapter& chapter, const Options& options);
 
 // In one line, an upper bound for the light that a chapter without a path length limit loses beyond the safety limit. The

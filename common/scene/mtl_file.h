@@ -22,7 +22,6 @@ struct MtlMaterial {
 // makes a dielectric rough, unless it is below smallest_roughness, and an opaque material metal to the fraction Pm, for the rest
 // diffuse under a coat of index Ni (default 1.5), without Ks. A warning names keywords without effect. Textures are relative to
 // texture_folder. Throws UserError for numbers that are missing, not finite or out of range, such as Tf 0.
-// 0 included.
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& file, const std::filesystem::path& texture_folder,
                                   SourceFiles& files, std::vector<std::string>& warnings);
 

@@ -13,15 +13,10 @@ namespace lab {
 // Four children in 128 bytes = 8 texels: bounds as low/high rows of x, y and z, then references. A reference is the index of an
 // inner node, (triangle count << 28) | first triangle for a leaf, or 0 for no child.
 struct BvhNode {
-    std::array<std::array<std::array<float, 4>, 2>, 3> bounds;  // [axis][low, high][child]; no child: low > high
+    // [axis][low, high][child], padded by bvh_padding times the child's largest coordinate; no child: low > high
+    std::array<std::array<std::array<float, 4>, 2>, 3> bounds;
     std::array<uint32_t, 4> children;
     std::array<uint32_t, 4> padding;
-
-    // The child's bounds, padded by bvh_padding times their largest coordinate.
-    Bounds child_bounds(size_t child) const {
-        const auto& [x, y, z] = bounds;
-        return {{x[0][child], y[0][child], z[0][child]}, {x[1][child], y[1][child], z[1][child]}};
-    }
 };
 static_assert(sizeof(BvhNode) == 128);
 

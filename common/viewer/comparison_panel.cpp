@@ -51,7 +51,7 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
 }  // namespace
 
 std::string half_label(const Session& session, const Session& other) {
-    std::string label = std::filesystem::path(session.chapter().name).filename().string();
+    std::string label = session.chapter().name;
     std::replace(label.begin(), label.end(), '_', ' ');  // allows line breaks
     if (session.chapter().name != other.chapter().name) return label;
     const std::string flags = session.build().job.header.settings + " --", others = other.build().job.header.settings + " --";

@@ -252,7 +252,7 @@ void InspectionPanel::draw_hemisphere() {
 
 // Glass has none: it reflects and refracts into single directions.
 static bool has_brdf(const PathVertex& vertex, const Scene& scene) {
-    return vertex.is_hit && scene.materials[scene.triangle_materials[vertex.triangle]].refractive_index == 0;
+    return vertex.is_hit && scene.material_of(vertex.triangle).refractive_index == 0;
 }
 
 // The tree is the first of the light choices, so no define asks for it.

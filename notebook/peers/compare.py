@@ -9,8 +9,9 @@ import shutil
 import time
 from pathlib import Path
 
+from peers.machine import processor
 from peers.renderers import python_of, renderer_of
-from project import Parser, UserError, chapter_named, number, processor, read_json, scene_of, show_progress, write_json
+from project import Parser, UserError, chapter_named, number, read_json, scene_of, show_progress, write_json
 from references.images import find_references
 from report.measurement import Refused, digest_of_sources, new_case, run_case
 from tables.ages import stamped

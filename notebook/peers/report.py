@@ -8,10 +8,11 @@ With a name of your choice for DEVICE,
 from pathlib import Path
 
 from peers.cases import cpu_cases, peer_cases, study_cases, working_variants
+from peers.machine import find_device, processor
 from peers.renderers import CPU_VARIANTS, GPU_VARIANT, SAMPLERS
-from project import CHAPTERS, UserError, chapter_named, processor
+from project import CHAPTERS, UserError, chapter_named
 from report.make import chosen, make_report, new_parser, settings_of
-from report.measurement import Measurement, driver_of, find_device, report_cases
+from report.measurement import Measurement, driver_of, report_cases
 from tables.ages import stamped
 
 GOES_ON = True

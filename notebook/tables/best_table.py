@@ -1,6 +1,7 @@
 """For each scene, the chapter that reaches a given error in the least time."""
 from project import scene_of, table
-from report.numbers import errors, paired_ratio, with_interval
+from report.numbers import errors, paired_ratio
+from tables.cells import with_interval
 from tables.peer_table import gains_of
 from tables.records import load_records
 

@@ -3,7 +3,7 @@ import math
 from statistics import linear_regression, median
 
 from project import table
-from report.numbers import with_range
+from tables.cells import with_range
 
 UNITS = ["bytes", "KiB", "MiB", "GiB"]
 

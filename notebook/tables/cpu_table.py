@@ -1,6 +1,7 @@
 """The backends of a CPU and Mitsuba's variants, from ./lab notebook report --record notebook/records/cpu/DEVICE.json --peer mitsuba."""
 from project import scene_of, table
-from report.numbers import errors, paired_ratio, per_sample, short, with_interval
+from report.numbers import errors, paired_ratio, short
+from tables.cells import per_sample, with_interval
 
 BASE = "Mitsuba LLVM"
 

@@ -1,6 +1,7 @@
 """The tables of microfacets: what the ways to sample them cost, and what single scattering loses, from records of facet_record."""
 from project import table
-from report.numbers import Series, paired_ratio, with_interval
+from report.numbers import Series, paired_ratio
+from tables.cells import with_interval
 from tables.records import load_records
 
 WAYS_IN_WORDS = {"visible_normals": "visible normals", "normals": "any normals", "cosine": "the cosine"}

@@ -9,8 +9,8 @@ from docs.figure_plots import bytes_of, sheet_of
 from matplotlib import font_manager
 from PIL import Image, ImageDraw, ImageFont
 from project import Parser
-from report.numbers import per_sample
 from report.plots import LABEL
+from tables.cells import per_sample
 from tables.chapter_tables import kind_of
 from tables.records import load_records
 

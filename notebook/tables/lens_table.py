@@ -1,6 +1,7 @@
 """The table of chapter 12: what two separate points for pixel and lens cost, and the polar map, from the records of lens_points."""
 from project import table
-from report.numbers import Series, paired_ratio, with_interval
+from report.numbers import Series, paired_ratio
+from tables.cells import with_interval
 from tables.records import load_records
 
 

@@ -2,7 +2,8 @@
 import math
 
 from project import table
-from report.numbers import Series, paired_ratio, with_interval
+from report.numbers import Series, paired_ratio
+from tables.cells import with_interval
 from tables.records import load_records
 
 

@@ -1,6 +1,7 @@
 """The table of chapter 13: what light samples gain in fog, from the records of media_strategies."""
 from project import table
-from report.numbers import Series, paired_ratio, with_interval
+from report.numbers import Series, paired_ratio
+from tables.cells import with_interval
 from tables.records import load_records
 
 

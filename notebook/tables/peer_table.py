@@ -2,7 +2,8 @@
 import math
 
 from project import scene_of, table
-from report.numbers import TARGET_ERROR, short, with_interval
+from report.numbers import TARGET_ERROR, short
+from tables.cells import with_interval
 
 
 def gains_of(scene):

@@ -1,7 +1,8 @@
 """Our best chapter beside other renderers, from ./lab notebook renderers --record notebook/records/renderers/DEVICE.json."""
 from peers.compare import COUNTS, PEERS
 from project import scene_of, table
-from report.numbers import biases, errors, paired_ratio, runs_in_batches, short, with_interval
+from report.numbers import biases, errors, paired_ratio, runs_in_batches, short
+from tables.cells import with_interval
 
 CLOCKS = {"CPU time": "cpu_seconds", "wall time": "seconds"}
 

@@ -7,7 +7,7 @@ import hashlib
 import json
 import re
 
-from docs.page_plots import COLOURS, FONT, GREY, ROW, finish_axis, forest, legend_above, lines, new_figure, plain, thousands, with_name
+from docs.page_plots import COLOURS, FONT, GREY, bars, finish_axis, lines, new_figure, plain, with_name
 from matplotlib import pyplot, ticker
 from project import read_json, scene_of, write_bytes
 from report.numbers import Series, errors, paired_ratio, short
@@ -19,6 +19,8 @@ from tables.cpu_table import cpu_gains
 from tables.facet_tables import WAYS, WAYS_IN_WORDS, lost_by_degrees, sampling_cost
 from tables.records import RECORDS, load_records
 from tables.renderer_table import renderer_gains
+
+ROW = 19  # height of a row with bars, in pixels
 
 
 def devices(folder):
@@ -39,6 +41,25 @@ def without_cores(name, text):
 def note_on_cores(names):
     """A line below an axis on those devices that trace rays in software, where a legend has no room for it."""
     return "".join(without_cores(name, f"\n{name}: without ray tracing cores") for name in names)
+
+
+def forest(axis, rows, series):
+    """One row per name, with a bar for each series {name of the row: [value, low, high]}. A row of None is a gap."""
+    places = {name: -place for place, name in enumerate(rows) if name is not None}
+    for index, (label, values) in enumerate(series.items()):
+        offset = (index - (len(series) - 1) / 2) * -0.7 / len(series)
+        bars(axis, [values.get(name) for name in places], [place + offset for place in places.values()], index, label)
+    axis.set_yticks(list(places.values()), [name[-1] if isinstance(name, tuple) else name for name in places])
+    axis.set_ylim(0.4 - len(rows), 0.6)
+
+
+def legend_above(axis, columns, title=None):
+    """A legend above the axis."""
+    axis.legend(loc="lower center", bbox_to_anchor=(0.4, 1), ncols=columns, handletextpad=0.2, columnspacing=1, title=title)
+
+
+def thousands(value, _=None):
+    return next((f"{value / factor:g} {unit}" for factor, unit in ((1e6, "M"), (1e3, "k")) if value >= factor), f"{value:g}")
 
 
 def cut_off(axis, low=None, high=None):

@@ -11,8 +11,7 @@
             const place = renderer.layout.offsetOf("RenderParameters", "image_size"), size = [parameters[place], parameters[place + 1]];
             const translated = live.glsl.translate({ sources, chapter, defines: scene.defines, scene });
             let film;
-            const rendering = new Rendering(renderer, { linked: await renderer.compile(translated), scene, parameters, size,
-                                               hasSampleLoop: `chapters/${chapter}/sample_loop.glsl` in sources });
+            const rendering = new Rendering(renderer, { translated, linked: await renderer.compile(translated), scene, parameters, size });
             await rendering.render({ target: () => samples, look(latest) { film = latest; } });
             rendering.stop();
             await send(`/film/${chapter}/${picture.name}/${size.join("x")}`, Float32Array.from(film.sums, sum => sum / samples));

@@ -25,7 +25,7 @@ LINE = 100  # characters
 
 
 def sight(mean, error=0.001):
-    return Sight(mean, error * mean, 1.0, 0.1, 2.0, mean)
+    return Sight(mean, error * mean, 1.0, 0.1, 2.0)
 
 
 def seen(values, quantity=None, x=(20.0, 40.0, 60.0, 75.0), expected=None, error=0.001, **details):
@@ -137,7 +137,7 @@ class FindingsTest(unittest.TestCase):
             self.assertIn("light_1.json", diagnosis.next_step(3, Path("mine.glsl"), facts, sights, expected))
 
     def test_light_where_none_should_be_and_what_is_no_number_are_not_forgotten(self):
-        invalid = fact(Experiment("x", "light of a lamp", "", [Point({}, "a")]), [Sight(1.0, 0.1, 1.0, 0.1, 2.0, 1.0, invalid=3)], [sight(1.0)])
+        invalid = fact(Experiment("x", "light of a lamp", "", [Point({}, "a")]), [Sight(1.0, 0.1, 1.0, 0.1, 2.0, invalid=3)], [sight(1.0)])
         told = self.told(seen([2.0, 2.0, 0.3], expected=[0.5, 0.5, 0.0], subject="light of the sky"), invalid)
         self.assertEqual(sorted(each["text"].split(":")[0] for each in told),
                          ["2.00 ± 0.01 times as bright as it should be (as by a factor 2)", "infinite or not a number", "light where none should be"])
@@ -272,7 +272,7 @@ class SimilarNamesTest(unittest.TestCase):
         for values, fits, names in (([1.0, 2.0, 4.0, 8.0], True, ["brighter"]), ([1.0, 2.0, 4.0, 5.0], False, ["brighter"])):
             facts = {"angle": seen(values), "size": seen([2.0] * 3, name="size")}
             with mock.patch.object(diagnosis, "next_step"):
-                found = reason(3, facts, {}, known, False)
+                found = reason(facts, {}, known, False)
             self.assertEqual((found["fits"], [each["name"] for each in found["mistakes"]]), (fits, names))
 
     def test_a_student_reads_that_they_may_be_wrong(self):
@@ -440,7 +440,7 @@ class ExpectedTest(unittest.TestCase):
         with mock.patch.object(grading, "KNOWLEDGE", Path("/nowhere")):
             known = {"experiments": {}, "mistakes": grading.known_mistakes(3)}
         with mock.patch.object(diagnosis, "next_step"):
-            found = reason(3, facts, {}, known, False)
+            found = reason(facts, {}, known, False)
         self.assertEqual((found["mistakes"], found["fits"]), ([], False))
         self.assertRegex(found["facts"][0]["text"], "2.00 ± 0.01 times as bright")
 
@@ -449,7 +449,7 @@ class DecidingExperiments(unittest.TestCase):
     def verdict_with_noise(self, factor, is_of_noise=True):
         known = {key: [values] for key, values in {"mean": 0.5, "error": 0.001, "noise": 0.01, "noise_error": 0.0001, "rays": 3.0}.items()}
         of = Experiment("kept", "light", "why", [Point({}, "x")], decides=True, is_of_noise=is_of_noise)
-        is_noisy = diagnosis.is_noisy(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0, 0.5)], known)
+        is_noisy = diagnosis.is_noisy(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0)], known)
         return diagnosis.verdict_with("correct", {"is_beyond_doubt": False, "is_noisy": is_noisy})
 
     def test_noise_counts_where_an_experiment_is_about_it(self):

@@ -255,7 +255,7 @@ std::vector<uint32_t> run_natively(const native::Code& code) {
     bind(1, results);
     bind(2, numbers);
     bind(3, numbers);  // four pairs
-    native::run_groups(code.run, bindings, 0, group_count);
+    native::run_groups(code.run, bindings, group_count);
     return results;
 }
 

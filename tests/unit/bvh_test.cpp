@@ -25,6 +25,11 @@ void grow(Bounds& bounds, const Bounds& other) {
     bounds.grow(other.high);
 }
 
+Bounds child_bounds(const BvhNode& node, size_t child) {
+    const auto& [x, y, z] = node.bounds;
+    return {{x[0][child], y[0][child], z[0][child]}, {x[1][child], y[1][child], z[1][child]}};
+}
+
 // Visits the whole tree and checks what the traversal relies on.
 class TreeWalk {
   public:
@@ -42,7 +47,7 @@ class TreeWalk {
     double surface_area_cost() const {
         Bounds all;
         for (size_t slot = 0; slot < 4; ++slot)
-            if (bvh_.nodes[0].children[slot] != 0) grow(all, bvh_.nodes[0].child_bounds(slot));
+            if (bvh_.nodes[0].children[slot] != 0) grow(all, child_bounds(bvh_.nodes[0], slot));
         return 1 + cost_ / area(all);
     }
 
@@ -65,7 +70,7 @@ class TreeWalk {
         Bounds all;
         for (size_t slot = 0; slot < 4; ++slot) {
             const uint32_t child = node.children[slot];
-            const Bounds bounds = node.child_bounds(slot);
+            const Bounds bounds = child_bounds(node, slot);
             if (child == 0) {
                 EXPECT_GT(bounds.low.x, bounds.high.x) << "a ray might hit a child that is not there";
                 continue;

@@ -27,7 +27,7 @@ std::vector<uint32_t> run(const native::Code& code, size_t program_count) {
     bind(1, results);
     bind(2, table);
     bind(3, table);  // four pairs
-    native::run_groups(code.run, bindings, 0, group_count);
+    native::run_groups(code.run, bindings, group_count);
     return results;
 }
 
@@ -80,7 +80,7 @@ void main() {
     for (uint32_t i = 0; i < 16; ++i) elements[count - 1 - i] = {{0, 10 + i, 0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 0, 2}};
     native::Bindings bindings{};
     bindings.ranges[1] = {reinterpret_cast<std::byte*>(memory), elements.size_bytes()};
-    native::run_groups(code.run, bindings, 0, 1);
+    native::run_groups(code.run, bindings, 1);
     for (uint32_t i = 0; i < 16; ++i) EXPECT_EQ(elements[count - 1 - i].words[3], 15 + i);
     munmap(memory, elements.size_bytes());
 }

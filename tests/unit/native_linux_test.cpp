@@ -23,7 +23,7 @@ std::vector<float> run_shader(const std::string& code, const std::string& body) 
     std::vector<float> results(16, -1000);
     native::Bindings bindings{};
     bindings.ranges[1] = {reinterpret_cast<std::byte*>(results.data()), results.size() * sizeof(float)};
-    native::run_groups(native::load(compile_glsl(glsl)).run, bindings, 0, 1);
+    native::run_groups(native::load(compile_glsl(glsl)).run, bindings, 1);
     while (!results.empty() && results.back() == -1000) results.pop_back();
     return results;
 }
@@ -221,9 +221,9 @@ TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
              {"void main() {\n\nbarrier(); }", "test.glsl:3: the backend native does not know a function of this line"},
              {"layout(scalar, binding = 1) buffer Block { float x; };\nvoid main() { double y = x; x = float(y * y); }",
               "test.glsl:2: the backend native does not know numbers of other than 32 bits"}}) {
-        for (const auto translate : {native::translate, native::translate_for_lanes}) {
+        for (const bool for_lanes : {false, true}) {
             try {
-                translate(compile_glsl(glsl));
+                native::translate(compile_glsl(glsl), for_lanes);
                 ADD_FAILURE() << glsl;
             } catch (const UserError& error) {
                 EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
@@ -238,7 +238,7 @@ TEST(Native, ACopyOfAShaderHasItsOwnLines) {
     for (const char* name : {"first.comp", "second.comp"}) {
         const auto file = folder.write(name, "#version 460\nshared float x;\nvoid main() { x = 1.0; }\n");
         try {
-            native::translate(compile_shader({.file = file}, true));
+            native::translate(compile_shader({.file = file}, true), false);
             ADD_FAILURE();
         } catch (const UserError& error) {
             EXPECT_EQ(std::string(error.what()).find(file.generic_string() + ":3: "), 0u) << error.what();
@@ -261,9 +261,9 @@ TEST(Native, DeepNestingIsNoCrash) {
               (Numbers{7, 8, 2, 9}));
     const std::vector<uint32_t> deep = compile_glsl("layout(scalar, binding = 1) buffer Block { float x; };\nvoid main() {\n" +
                                                     nested("if (x > 1.0) {", "x = 2.0;", "}", 300) + "\n}");
-    for (const auto translate : {native::translate, native::translate_for_lanes}) {
+    for (const bool for_lanes : {false, true}) {
         try {
-            translate(deep);
+            native::translate(deep, for_lanes);
             ADD_FAILURE();
         } catch (const UserError& error) {
             EXPECT_EQ(std::string(error.what()).find("test.glsl:3: more than 256 levels of blocks"), 0u) << error.what();

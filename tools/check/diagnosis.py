@@ -130,7 +130,7 @@ def next_step(chapter, file, facts, sights, expected):
     return f"{f'./lab run {copy or chapter} {scene.relative_to(ROOT)} {point.options}'.rstrip()} shows {colour}{values}{where}"
 
 
-def reason(chapter, facts, sights, known, is_correct):
+def reason(facts, sights, known, is_correct):
     """What the facts say: what is wrong, each with a short text and its evidence, subjects that are right, and mistakes of the catalogue
     that fit or, if none fits, may fit."""
     told = [found.told() for found in findings(facts.values())]
@@ -153,7 +153,7 @@ def diagnose(chapter, file, settings, shader=None, is_correct=False):
     facts, sights = observe(chapter, settings, known["experiments"], is_deciding if is_correct else is_called_for)
     for seen in facts.values():
         seen.sentence = with_names_of(file, seen.sentence)
-    return reason(chapter, facts, sights, known, is_correct) | {
+    return reason(facts, sights, known, is_correct) | {
         "next": next_step(chapter, file, facts, sights, known["experiments"]), "seconds": round(time.monotonic() - started, 1)}
 
 

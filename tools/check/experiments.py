@@ -53,13 +53,12 @@ class Sight:
     noise: float  # variance of a single sample
     noise_error: float
     rays: float  # of a sample
-    typical: float  # median of the pixels
     invalid: int = 0  # samples that are infinite or not a number
 
 
 def known_sights(entry):
     """What the chapter's own shader shows, as a list of Sight, from lists in its file of assets/expected."""
-    return [Sight(*values, typical=values[0]) for values in zip(*(entry[key] for key in ("mean", "error", "noise", "noise_error", "rays")))]
+    return [Sight(*values) for values in zip(*(entry[key] for key in ("mean", "error", "noise", "noise_error", "rays")))]
 
 
 def merged(base, change):
@@ -99,7 +98,7 @@ def basis(normal):
     normal = np.array(normal, float) / np.linalg.norm(normal)
     tangent = np.cross([0.0, 0.0, 1.0] if abs(normal[2]) < 0.9 else [1.0, 0.0, 0.0], normal)
     tangent /= np.linalg.norm(tangent)
-    return tangent, np.cross(normal, tangent), normal
+    return tangent, np.cross(normal, tangent)
 
 
 def plate(says):
@@ -114,7 +113,7 @@ def plate(says):
     else:
         centre, normal = np.array(says["centre"], float), says["faces"]
     width, height = np.broadcast_to(says["size"], 2)
-    tangent, other, _ = basis(normal)
+    tangent, other = basis(normal)
     return [[centre + x * width / 2 * tangent + y * height / 2 * other for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]]
 
 
@@ -126,7 +125,7 @@ def box(says):
     for axis in range(3):
         for sign in (-1, 1):
             normal = sign * np.eye(3)[axis]
-            tangent, other, _ = basis(normal)
+            tangent, other = basis(normal)
             faces.append([centre + turn @ (size / 2 * (normal + x * tangent + y * other)) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     return faces
 
@@ -198,7 +197,7 @@ def look(image, report, samples, channel=None):
     variance = float(pixels.var(ddof=1))
     spread = float(np.std([block.var(ddof=1) for block in np.array_split(pixels, BLOCKS)], ddof=1) / math.sqrt(BLOCKS))
     return Sight(float(pixels.mean()), math.sqrt((variance + 2 * spread) / pixels.size), variance * samples, spread * samples,
-                 report["rows"][-1]["rays"] / samples / pixels.size, float(np.median(pixels)), report["invalid_samples"])
+                 report["rows"][-1]["rays"] / samples / pixels.size, report["invalid_samples"])
 
 
 def together(sights):
@@ -210,7 +209,7 @@ def together(sights):
     count = len(sights)
     spread = float(np.std([sight.mean for sight in sights], ddof=1)) if count > 1 else 0.0
     return Sight(mean("mean"), max(mean("error"), spread) / math.sqrt(count), mean("noise"), mean("noise_error") / math.sqrt(count),
-                 mean("rays"), mean("typical"), sum(sight.invalid for sight in sights))
+                 mean("rays"), sum(sight.invalid for sight in sights))
 
 
 def pictures(program, points, settings, seed, batch, repeats=1):

@@ -11,7 +11,6 @@ import json
 import os
 import shutil
 import sys
-from pathlib import Path
 
 from project import CHAPTERS, ROOT, Parser, UserError, number, program_file
 

@@ -6,7 +6,7 @@ GREY = "#787d83"
 # Blue, orange, purple, green, pink, teal, olive and red: visible on white and on black, and distinguishable by their markers. Grey is for
 # axes.
 COLOURS, MARKERS = ["#2f7de1", "#c96a00", "#9b62d6", "#2c8f4e", "#d6408f", "#0b93a3", "#8c7a00", "#d64545"], "osD^XvP*"
-WIDTH, ROW, FONT = 640, 19, 12  # pixels: width of a plot, height of a row with bars, font size
+WIDTH, FONT = 640, 12  # pixels: width of a plot, font size
 STYLE = {"svg.fonttype": "none", "svg.hashsalt": "lab", "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans", "Verdana"],
          "font.size": FONT, "figure.constrained_layout.w_pad": 0.16, "savefig.transparent": True, "legend.frameon": False, "legend.fontsize": FONT - 1} | {
              f"{name}color": GREY for name in ("text.", "axes.edge", "axes.label", "xtick.", "ytick.", "grid.")}
@@ -41,21 +41,6 @@ def lines(axis, x, values, index, label):
     axis.plot(x, [value[0] for value in values], color=COLOURS[index], marker=MARKERS[index], markersize=5, linewidth=1.2, label=label)
 
 
-def forest(axis, rows, series):
-    """One row per name, with a bar for each series {name of the row: [value, low, high]}. A row of None is a gap."""
-    places = {name: -place for place, name in enumerate(rows) if name is not None}
-    for index, (label, values) in enumerate(series.items()):
-        offset = (index - (len(series) - 1) / 2) * -0.7 / len(series)
-        bars(axis, [values.get(name) for name in places], [place + offset for place in places.values()], index, label)
-    axis.set_yticks(list(places.values()), [name[-1] if isinstance(name, tuple) else name for name in places])
-    axis.set_ylim(0.4 - len(rows), 0.6)
-
-
-def legend_above(axis, columns, title=None):
-    """A legend above the axis."""
-    axis.legend(loc="lower center", bbox_to_anchor=(0.4, 1), ncols=columns, handletextpad=0.2, columnspacing=1, title=title)
-
-
 def with_name(number):
     """A chapter as its number and name."""
     return f"{number} {description(CHAPTERS[number])['title'].partition(':')[0]}"
@@ -63,7 +48,3 @@ def with_name(number):
 
 def plain(value, _=None):
     return f"{value:,.0f}" if value >= 1 else f"{value:g}"
-
-
-def thousands(value, _=None):
-    return next((f"{value / factor:g} {unit}" for factor, unit in ((1e6, "M"), (1e3, "k")) if value >= factor), f"{value:g}")

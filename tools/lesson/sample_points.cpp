@@ -34,11 +34,9 @@ struct Inputs {
 // `count` points: `samples` of each pixel, pixel after pixel.
 std::vector<float> sample(const std::string& define, const std::string& chapter, uint32_t columns, uint32_t count,
                           uint32_t samples, uint32_t seed, const std::string& device_name) {
-    const Estimator estimator = estimator_of(load_chapter(chapter));
-    ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
-                        .defines = {define, "COLUMNS " + std::to_string(columns)},
-                        .named_includes = named_includes(estimator)};
-    source.defines.insert(source.defines.end(), estimator.defines.begin(), estimator.defines.end());
+    const ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
+                              .defines = {define, "COLUMNS " + std::to_string(columns)},
+                              .named_includes = named_includes(estimator_of(load_chapter(chapter)))};
     const Device device({.choice = device_name, .backends = all_backends});
     // A table of one triangle, the stub's second one, that always stands for itself.
     const Inputs inputs{seed_key(seed), 1, samples, {0, 1, 0xffffffffu, 0, 1.0f}};

@@ -124,12 +124,6 @@ def driver_of(program, device):
     return found[1] if found else "unknown"
 
 
-def find_device(program, settings):
-    """The name of the device that these settings select."""
-    tiny = new_case(ROOT / "assets/scenes/cornell_box.json", None, "which device?", program) | {"width": 8, "height": 8}
-    return run_case(tiny, settings, ["--samples", 1])["device"]
-
-
 def digest_of_sources(cases):
     """A digest of all sources that affect a run: when they change, a measurement starts over."""
     references = [ROOT / case["reference_file"] for case in cases if case["reference_file"]]

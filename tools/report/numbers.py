@@ -5,7 +5,6 @@ have a confidence of 95 %. They account for the spread of the runs and for the n
 all runs of a scene together.
 """
 import math
-from statistics import median
 from typing import NamedTuple
 
 import numpy as np
@@ -31,17 +30,6 @@ def short(value, digits=3):
         return f"{value:,}" if isinstance(value, int) else f"{value:.{digits}g}"
     decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
     return f"{value:,.{decimals}f}"
-
-
-def with_interval(values):
-    """The text for [value, low, high]; a single run has no interval and low = None."""
-    value, low, high = values
-    return short(value, 2) + ("" if low is None else f" ({short(low, 2)} – {short(high, 2)})")
-
-
-def with_range(values):
-    """The median of runs, with the smallest and largest value in brackets."""
-    return f"{median(values):.2f} ({min(values):.2f} – {max(values):.2f})"
 
 
 # ---------------------------------------------------------------------------------------------- intervals
@@ -124,11 +112,6 @@ def mean_of(rows, key):
     """The mean of a key over rows; None if a row lacks it."""
     values = [row.get(key) for row in rows]
     return None if None in values else sum(values) / len(values)
-
-
-def per_sample(case, key):
-    """The mean over the runs of the rays or seconds per sample of a pixel."""
-    return mean_of(last_rows(case["runs"]), key) / (case["samples"] * case["width"] * case["height"])
 
 
 def deviation(case):

@@ -41,10 +41,6 @@ live.Editor = (() => {
         return files.filter(file => !/^#include "[^"]*"\s*$/.test(live.sources[file]));  // not those that only name another
     }
 
-    async function transform(bytes, stream) {
-        return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
-    }
-
     return class Editor {
         // Calls changed() after each edit, and say(text) for what the reader should know.
         constructor(chapter, changed, say, keepsTexts) {
@@ -138,7 +134,8 @@ live.Editor = (() => {
         // The address of this page with the edited texts in its fragment, which browsers send to nobody.
         async link() {
             const texts = Object.fromEntries(this.edited.map(file => [file, this.texts[file]]));
-            const bytes = await transform(new TextEncoder().encode(JSON.stringify(texts)), new CompressionStream("gzip"));
+            const packed = new Blob([JSON.stringify(texts)]).stream().pipeThrough(new CompressionStream("gzip"));
+            const bytes = new Uint8Array(await new Response(packed).arrayBuffer());
             const code = btoa(Array.from(bytes, byte => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_");
             return `${location.href.split("#")[0]}#live=${code}`;
         }
@@ -147,8 +144,8 @@ live.Editor = (() => {
             const code = this.keepsTexts ? /^#live=([\w=-]+)$/.exec(location.hash)?.[1] : null;
             if (!code) return;
             try {
-                const bytes = Uint8Array.from(atob(code.replaceAll("-", "+").replaceAll("_", "/")), character => character.charCodeAt(0));
-                const texts = JSON.parse(new TextDecoder().decode(await transform(bytes, new DecompressionStream("gzip"))));
+                const bytes = await live.rendering.unpack(code.replaceAll("-", "+").replaceAll("_", "/"));
+                const texts = JSON.parse(new TextDecoder().decode(bytes));
                 const files = this.files.filter(file => typeof texts[file] === "string");
                 for (const file of files) this.texts[file] = texts[file];
                 if (files.length) this.open(files[0]);

@@ -204,7 +204,8 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
     const emptyLines = text => text.replace(/[^\n]/g, "");
 
     // Translates a chapter's program. `scene`: images as dump_arrays writes them; `named`: as finder() takes them.
-    // Returns the text, a function from its line numbers to places, and the places of loops.
+    // Returns the text, a function from its line numbers to places, the places of loops, and whether the chapter has a sample loop
+    // of its own, which renders several samples in a draw.
     function translate({ sources, chapter, named, defines, scene }) {
         const layout = new Layout(sources["shaders/interface.h"]);
         const { lines, places } = expand(sources, "shaders/engine/render.frag", finder(sources, chapter, named));
@@ -249,7 +250,8 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp usampler2D;\n" +
             ["BVH_IN_STORAGE_BUFFERS", ...defines].map(define => `#define ${define}\n`).join("") + PRELUDE;
         const headLines = head.split("\n").length - 1;
-        return { text: head + text, place: line => places[line - headLines - 1], loop: line => places[line - 1] };
+        const hasSampleLoop = places.some(({ file }) => file === `chapters/${chapter}/sample_loop.glsl`);
+        return { text: head + text, place: line => places[line - headLines - 1], loop: line => places[line - 1], hasSampleLoop };
     }
 
     // A compiler's message as "file:line: message (hint)", the first error only.

@@ -182,8 +182,7 @@ live.page = (() => {
             }
             const translated = live.glsl.translate({ sources, chapter, named, defines, scene });
             const started = performance.now(), linked = await this.renderer.compile(translated), compileTime = performance.now() - started;
-            const hasSampleLoop = !this.isView && `chapters/${chapter}/sample_loop.glsl` in sources;
-            return { rendering: new Rendering(this.renderer, { linked, scene, parameters, size, hasSampleLoop }), translated, chapter, compileTime };
+            return { rendering: new Rendering(this.renderer, { translated, linked, scene, parameters, size }), translated, chapter, compileTime };
         }
 
         // Renders a picture; look(film, state, verdict) is called at powers of two. Returns whether it came to its end.

@@ -157,8 +157,7 @@ void main() {
 
     // A picture of a scene with a compiled program.
     class Rendering {
-        // `hasSampleLoop`: whether the chapter has its own, which renders several samples in a draw.
-        constructor(renderer, { linked, scene, parameters, size, hasSampleLoop }) {  // `busy`: milliseconds of draws
+        constructor(renderer, { translated: { hasSampleLoop }, linked, scene, parameters, size }) {  // `busy`: milliseconds of draws
             Object.assign(this, { renderer, gl: renderer.gl, linked, size, hasSampleLoop, samples: 0, busy: 0, isFirstPass: true, isStopped: false });
             const { gl, layout } = renderer, { words } = scene, height = Math.ceil(words.length / 4 / WIDTH), texels = new Uint32Array(4 * WIDTH * height);
             texels.set(words);
@@ -308,5 +307,5 @@ void main() {
         }
     }
 
-    return { Renderer, Rendering, loadData, loadReference, unpackWords, pause };
+    return { Renderer, Rendering, loadData, loadReference, unpack, unpackWords, pause };
 })();
