@@ -8,7 +8,9 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
+from pathlib import Path
 
 from image_files import Exr
 from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest
@@ -47,6 +49,10 @@ class Tree:
         self.assertEqual(result.returncode, 0, f"{command}: {result.stdout[-2000:]}{result.stderr[-2000:]}")
         return result.stdout
 
+    @classmethod
+    def setUpClass(cls):
+        cls.built = Path(cls.enterClassContext(tempfile.TemporaryDirectory())) / COPY
+
     def setUp(self):
         super().setUp()
         self.tree = self.folder / "lab"
@@ -61,7 +67,12 @@ class Tree:
 
     def build(self):
         """The copy's program: compiled and linked by CMake, but with the framework that is already built. This also configures
-        the tests, which register the mistakes of all folders."""
+        the tests, which register the mistakes of all folders. It reads the shaders of the tree that it is in: once built, it is
+        copied to the others."""
+        program = self.tree / "build/bin" / COPY
+        if self.built.exists():
+            program.parent.mkdir(parents=True)
+            return shutil.copy(self.built, program)
         cache = (BINARIES.parent / "CMakeCache.txt").read_text()
         same = [f"-D{name}={re.search(rf'^{name}:.*=(.*)$', cache, re.MULTILINE)[1]}"
                 for name in ("CMAKE_BUILD_TYPE", "CMAKE_CXX_FLAGS", "CMAKE_CXX_COMPILER", "LAB_SANITIZE")]
@@ -74,7 +85,8 @@ class Tree:
             folder = re.search(r"-o (\S+)", command)[1]
             (self.tree / "build" / folder).parent.mkdir(parents=True, exist_ok=True)
             subprocess.run(command, shell=True, cwd=self.tree / "build", check=True)
-        return self.tree / "build/bin" / COPY
+        shutil.copy(program, self.built)
+        return program
 
     def rename(self, title="My choice of lights", **more):
         """With its own title, the chapter no longer counts as a copy."""

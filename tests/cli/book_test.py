@@ -1,6 +1,7 @@
 """./lab book: a site that a browser opens from disk without complaints."""
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -51,16 +52,27 @@ SEARCH = r"""new Promise((found, failed) => {
 
 
 class Site:
-    """The site, built once for a class of tests."""
+    """The site, built once for a class of tests, or by SiteTest for all of those that ctest runs."""
+
+    is_given = "LAB_TEST_SITE" in os.environ
 
     @classmethod
     def setUpClass(cls):
         if not shutil.which("mkdocs") or not Path("/usr/share/javascript/katex").exists():
             raise unittest.SkipTest("needs MkDocs and KaTeX, which ./lab book installs")
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.site = Path(folder.name).resolve() / "book"
-        subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", cls.site], check=True, stdout=subprocess.DEVNULL)
+        if "LAB_TEST_SITE" in os.environ:
+            cls.site = Path(os.environ["LAB_TEST_SITE"])
+        else:
+            cls.site = Path(cls.enterClassContext(tempfile.TemporaryDirectory())).resolve() / "book"
+        if not cls.is_given:
+            subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", cls.site], check=True, stdout=subprocess.DEVNULL)
+
+
+class SiteTest(Site, unittest.TestCase):
+    is_given = False
+
+    def test_starts_with_a_page(self):
+        self.assertTrue((self.site / "index.html").is_file())
 
 
 class BookTest(Site, unittest.TestCase):

@@ -1,6 +1,5 @@
 """A headless Chromium, controlled by its DevTools protocol through a pipe."""
 
-import base64
 import json
 import os
 import shutil
@@ -8,7 +7,6 @@ import subprocess
 import tempfile
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-TIMEOUT = 60  # seconds per page
 
 
 class Browser:
@@ -100,7 +98,3 @@ class Browser:
     def loaded(self):
         """The addresses of everything that the page requested."""
         return [event["params"]["request"]["url"] for event in self.events if event["method"] == "Network.requestWillBeSent"]
-
-    def screenshot(self, file):
-        data = self.call("Page.captureScreenshot", format="png")["data"]
-        file.write_bytes(base64.b64decode(data))

@@ -48,7 +48,7 @@ class EveryChapter(ProgramTest):
         for chapter in (chapter for chapter in CHAPTERS if description(chapter).get("dielectrics")):
             command = ["microfacets", *TINY, f"--report={self.folder}/report.json"]
             if description(chapter).get("microfacets"):
-                self.render(*command, program=BINARIES / chapter)
+                self.render(*command, program=BINARIES / chapter, environment=UNOPTIMISED)
             else:
                 self.assert_refused(command, "--report", "cannot render", r"microfacets\.json", program=BINARIES / chapter)
 

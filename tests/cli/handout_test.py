@@ -6,7 +6,9 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
+from pathlib import Path
 
 from program import BINARIES, PROJECT, TOOLS, ProgramTest
 
@@ -51,14 +53,24 @@ class EveryHandout_all(ProgramTest):
 
 
 class HandoutTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.trees = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+
     def handout(self, *arguments, **options):
         return handout(self.folder, *arguments, **options)
 
-    def test_the_tree_has_nothing_of_later_chapters_and_no_solution(self):
-        for number, (name, exercise) in enumerate(EXERCISES.items(), 1):
-            tree = self.folder / f"handout_{number}"
+    def tree(self, number):
+        """The handout of a chapter, to be read: it is written once for all tests."""
+        tree = self.trees / f"handout_{number}"
+        if not tree.exists():
             result = self.handout(number, tree)
             self.assertEqual(result.returncode, 0, result.stderr)
+        return tree
+
+    def test_the_tree_has_nothing_of_later_chapters_and_no_solution(self):
+        for number, (name, exercise) in enumerate(EXERCISES.items(), 1):
+            tree = self.tree(number)
             self.assertEqual(sorted(os.listdir(tree / "chapters")), CHAPTERS[:number])
             self.assertFalse((tree / "tests").exists() or (tree / ".git").exists())
             self.assertIn("TODO", (tree / "chapters" / name / exercise["file"]).read_text(encoding="utf-8"))
@@ -81,8 +93,7 @@ class HandoutTest(ProgramTest):
 
     def test_holds_the_slides_with_their_symbols_and_the_first_steps(self):
         for number in (1, 3):
-            tree = self.folder / f"handout_{number}"
-            self.assertEqual(self.handout(number, tree).returncode, 0)
+            tree = self.tree(number)
             slides, steps = ((tree / "docs" / name).read_text(encoding="utf-8") for name in ("slides.md", "first_steps.md"))
             self.assertIn("\n## Symbols\n", slides)
             self.assertIn("omega", slides)
@@ -138,16 +149,14 @@ Another is code of chapter 7.
 """))
 
     def test_no_link_leads_nowhere(self):
-        tree = self.folder / "handout"
-        self.assertEqual(self.handout(3, tree).returncode, 0)
+        tree = self.tree(3)
         links = [(page, link) for page in tree.rglob("*.md")
                  for link in re.findall(r"\]\(([^()\s#]+)[^()\s]*\)", page.read_text(encoding="utf-8")) if "://" not in link]
         self.assertGreater(len(links), 50)
         self.assertEqual([(page, link) for page, link in links if not (page.parent / link).exists()], [])
 
     def test_shaders_include_nothing_that_stays_out(self):
-        tree = self.folder / "handout"
-        self.assertEqual(self.handout(3, tree).returncode, 0)
+        tree = self.tree(3)
         shaders = [file for folder in ("shaders", "tools", "chapters") for file in (tree / folder).rglob("*")
                    if file.suffix in (".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".h")]
         includes = [(file, name) for file in shaders
@@ -158,8 +167,7 @@ Another is code of chapter 7.
                           not any((folder / name).exists() for folder in (file.parent, tree / "shaders", tree / "chapters", tree))], [])
 
     def test_pages_speak_of_what_is_there(self):
-        self.assertEqual(self.handout(len(CHAPTERS), "lab").returncode, 0)
-        for page in (self.folder / "lab").rglob("*.md"):
+        for page in self.tree(len(CHAPTERS)).rglob("*.md"):
             self.assertNotRegex(page.read_text(encoding="utf-8"), r"lab\s+(test|figures|handout|bug)\b|all\s+tests\s+named|NUMBER|FOLDER|SHADER", page)
 
     def test_its_pages_give_nothing_away(self):
@@ -179,11 +187,11 @@ Another is code of chapter 7.
         self.assertIn('data-chapter="03_', texts[site / f"chapters/{CHAPTERS[2]}/index.html"])
 
     def test_commands_that_need_the_tests_say_so(self):
-        self.assertEqual(self.handout(1, "lab").returncode, 0)
-        help_text = subprocess.run(["./lab"], cwd=self.folder / "lab", capture_output=True, text=True, timeout=20).stdout
+        tree = self.tree(1)
+        help_text = subprocess.run(["./lab"], cwd=tree, capture_output=True, text=True, timeout=20).stdout
         self.assertIn("  check N", help_text)
         self.assertNotIn("  handout", help_text)
-        result = subprocess.run(["./lab", "test"], cwd=self.folder / "lab", capture_output=True, text=True, timeout=20)
+        result = subprocess.run(["./lab", "test"], cwd=tree, capture_output=True, text=True, timeout=20)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"\Alab: this student's tree has no 'test'[^\n]*\n\Z")
 

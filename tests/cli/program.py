@@ -115,9 +115,6 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(code, 0, f"{arguments}: {err}")
         return out
 
-    def start_tool(self, *arguments, **options):
-        return self.start("-B", TOOLS, *arguments, program=sys.executable, **options)
-
     def run_tool(self, *arguments, **options):
         return self.run_program("-B", TOOLS, *arguments, program=sys.executable, **options)
 

@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Chapters, Splitting, testing::ValuesIn(chapters_that(sp
 TEST_P(Splitting, LowersTheVarianceAfterTheFirstHit) {
     std::vector<std::vector<double>> variances;
     for (const uint32_t s : splitting_factors)
-        variances.push_back(sample_variances(render_batches(view_of_boxes(), settings_of(GetParam(), s), 1024), 32));
+        variances.push_back(sample_variances(render_batches(view_of_boxes(), settings_of(GetParam(), s), 256), 8));
     const SplittingFit fit = fit_variances(variances);
     std::printf("  V_out %.4f, V_in %.4f, p of the fit %.2g; finds a variance that is off by %.1f %%\n", fit.outer.value,
                 fit.inner, fit.p_value, 100 * fit.smallest_detectable_misfit);

@@ -116,7 +116,7 @@ class BrdfSampling : public testing::TestWithParam<std::string> {
         return {{0, 0, 1}, direction(lobe.degrees * pi / 180, 0.7), material};
     }
 };
-INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_that(weights_lights)), chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, BrdfSampling, testing::ValuesIn(chapters_that(weights_lights)), bsdf_name);
 
 TEST_P(BrdfSampling, FollowsTheLobe) {
     // 1 - cos α increases from 0 with probability 1 - (cos α)^(n+1), and the azimuth about the mirror direction is uniform. For

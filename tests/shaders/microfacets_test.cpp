@@ -94,7 +94,7 @@ class MicrofacetSurface : public testing::TestWithParam<std::string> {
         expect_mean(what, estimate_mean(weights), expected, largest_error, comparisons);
     }
 };
-INSTANTIATE_TEST_SUITE_P(Chapters, MicrofacetSurface, testing::ValuesIn(chapters_that(handles_microfacets)), chapter_name);
+INSTANTIATE_TEST_SUITE_P(Chapters, MicrofacetSurface, testing::ValuesIn(chapters_that(handles_microfacets)), bsdf_name);
 
 // One channel by definition, for a surface with its normal along z; for glass the side of `out` is air.
 struct Definition {

@@ -1,7 +1,9 @@
 #include "support/bounce.h"
 
 #include <cstdio>
+#include <filesystem>
 
+#include "files/project_folder.h"
 #include "rendering/renderer.h"
 #include "support/render.h"
 
@@ -54,6 +56,11 @@ std::vector<Bounce> bounces_with_roulette(const std::string& chapter, float surv
     char define[40];
     std::snprintf(define, sizeof define, "SURVIVAL_CAP %.9g", survival_probability);
     return run_bounces(chapter, {.material = white_material()}, {0, 0}, seeds, seeds.size(), test_device(), {define});
+}
+
+std::string bsdf_name(const testing::TestParamInfo<std::string>& info) {
+    const bool is_own = std::filesystem::exists(project_folder() / "chapters" / info.param / "sample_bsdf.glsl");
+    return instance_name(chapter_name(info), is_own ? Run::always : Run::with_all);
 }
 
 }  // namespace lab

@@ -36,4 +36,8 @@ std::vector<Bounce> bounces_at(const std::string& chapter, const Surface& surfac
 std::vector<Bounce> bounces_with_roulette(const std::string& chapter, float survival_probability,
                                           const std::vector<RandomState>& seeds);
 
+// For INSTANTIATE_TEST_SUITE_P: names the instances after their chapters. Those that sample the BSDF by the file of an earlier
+// chapter run only with --all: what that file gets wrong, the test of the earlier chapter finds.
+std::string bsdf_name(const testing::TestParamInfo<std::string>& info);
+
 }  // namespace lab
