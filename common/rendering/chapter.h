@@ -20,6 +20,7 @@ struct ChapterOption {
 };
 
 // An option that the shader is compiled with: --facet-sampling becomes the define FACET_SAMPLING.
+// The default is not defined: the shader states it with #ifndef, so that it also compiles alone.
 struct ChapterChoice {
     std::string name;  // "--facet-sampling"
     std::string help;
@@ -31,7 +32,8 @@ struct ChapterChoice {
 // The contents of chapter.json, under the same names. Only the title is mandatory. It may also have "check", for ./lab check: the
 // "samples" of a run, the "references" whose scenes show what the shader can do, and those that the exercise's placeholder
 // passes; "exercise", for ./lab handout: the lines that a student fills in; "tests", see tests/support/chapters.h; and "measure",
-// for figures and tables, see tools/report/studies.py.
+// for figures and tables, see tools/report/studies.py. "options" are names of those that chapter.cpp knows, such as
+// "--survival-cap".
 struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help

@@ -132,7 +132,7 @@ class DocumentationTest(unittest.TestCase):
         for chapter in COURSE:  # chapters added by others may have different pages
             text = text_of(ROOT / "chapters" / chapter / "README.md")
             for part in ("\n    ./lab run ", "\n![", "\n<!-- measured: ", "\n<!-- code: ", "Symbols: [table](../../docs/slides.md#symbols)"):
-                self.assertIn(part, text, chapter)
+                self.assertTrue(part in text, f"{chapter}/README.md has no {part.strip()!r}, which pages with an exercise have")
             self.assertEqual([heading for heading in re.findall(r"^## (.*)$", text, re.MULTILINE) if heading in SECTIONS], SECTIONS, chapter)
             kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
             self.assertGreaterEqual(len(kinds), 5, chapter)

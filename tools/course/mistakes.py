@@ -67,7 +67,8 @@ def shader_of(chapter, record):
 def planted(chapter, mistake):
     """The bug that a record makes in a chapter's shaders."""
     file = shader_of(chapter, mistake)
-    what = f"{mistake['name']} in {file.relative_to(ROOT)}"
+    listed = own_shader(chapter).with_name("mistakes.json") if chapter else ENGINE
+    what = f"{mistake['name']} in {listed.relative_to(ROOT)} (correct or delete it): {file.name}"
     return Bug(chapter, mistake, file, plant(text_of(file), mistake["find"], mistake["replace"], what))
 
 

@@ -1,8 +1,8 @@
 """Reads "measure" in the chapter.json of each chapter: what figures, tables and reports measure of it.
 
 "picture", "thumbnail": the scenes of its pictures. "convergence_samples": samples of its curve in the plot of all chapters' errors.
-"compared_on": references on which the report's record compares it with the chapters before. "studies": on references, or on scenes
-without one, cases that vary an option, name -> options.
+"compared_on": references on which the report's record compares it with the chapters before. "studies": a list,
+in each "on", references or scenes without one, and "cases" that vary an option, name -> options.
 "figures": pictures made of tiles, see docs/figures.py. "samplers": for ./lab sample, see lesson/sample.py. "examples": tables of
 worked examples, with rows of a label, a statement and what is shown of its result. These three have names.
 """
