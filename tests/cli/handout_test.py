@@ -37,7 +37,7 @@ float later = 1.0;
 <!-- end of code -->
 """
 TEACHERS = ["mistakes.json", "solutions"]  # in a chapter's folder
-FOR_TEACHERS = ["chapters/03_next_event_estimation/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/lesson/bug.py", "tools/lesson/bugs.json"]
+FOR_TEACHERS = ["chapters/03_next_event_estimation/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/course/answers.py", "tools/docs/answers.json"]
 
 
 def handout(folder, *arguments, tools=TOOLS):
