@@ -144,14 +144,16 @@ bool Renderer::advance(uint32_t target_samples) {
     const std::span<uint32_t> counters = ray_counters_.mapped<uint32_t>();
     std::fill(counters.begin(), counters.end(), 0);
     const auto start = Clock::now();
-    const auto device_seconds = [&] {
+    std::optional<double> device_seconds;
+    double seconds = 0;
+    {
         const Watch watch(patience, [&] {
             remind_of_endless_loops(estimator_);
             return false;
         });
-        return tracer_->trace(steps_of_pass(count, window), count, window.offset());
-    }();
-    const double seconds = seconds_since(start);
+        device_seconds = tracer_->trace(steps_of_pass(count, window), count, window.offset());
+        seconds = seconds_since(start);
+    }
     if (!device_seconds) return true;  // finished samples are in the film
     device_seconds_ += *device_seconds;
     check_loops(counters, estimator_);

@@ -65,6 +65,7 @@ class Site:
         else:
             cls.site = Path(cls.enterClassContext(tempfile.TemporaryDirectory())).resolve() / "book"
         if not cls.is_given:
+            shutil.rmtree(cls.site, ignore_errors=True)  # what an interrupted run left
             subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", cls.site], check=True, stdout=subprocess.DEVNULL)
 
 
@@ -180,6 +181,7 @@ class BookInBrowser_all(Site, unittest.TestCase):
     def test_broken_pages_are_found(self):
         text = (self.site / "index.html").read_text(encoding="utf-8")
         page = self.site / "broken.html"
+        self.addCleanup(page.unlink)
         for broken, words in (('<a href="nowhere.html">', "nowhere.html"), ('<a href="docs/slides.html#nowhere">', "#nowhere"),
                               ("$x^2$", "formula"), (r'<span class="arithmatex">\(\frac{\)</span>', "formula"),
                               ('<img src="nothing.png">', "nothing.png"), ('<img src="http://example.org/a.png">', "from elsewhere"),

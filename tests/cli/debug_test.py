@@ -78,7 +78,7 @@ class AutomaticNativeTest(CopiedLab, ProgramTest):
         cls.measured = Path(cls.enterClassContext(tempfile.TemporaryDirectory())) / "cache"
 
     def automatic(self, chosen, **environment):
-        """Renders after a measurement that has found a backend to be the fastest. What it compiles is compiled once for all tests."""
+        """Renders after a measurement that has found a backend to be the fastest. Backends are measured once for all tests."""
         if self.measured.exists():
             shutil.copytree(self.measured, self.tree / "cache")
         self.assertEqual(self.render(backend="auto", **environment).returncode, 0)

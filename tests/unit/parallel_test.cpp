@@ -47,7 +47,7 @@ TEST(Watch, LooksUntilItHasSeenEnough) {
     EXPECT_EQ(looks, 3);
 }
 
-// One in a thousand waited forever in a program for Windows, as long as a stop token ended them.
+// One in a thousand waited forever in programs for Windows, as long as a stop token ended them. This finds that now and then.
 TEST(Watch, EndsBeforeItsPeriod) {
     std::atomic<int> looks = 0;
     for (int i = 0; i < 200; ++i) {

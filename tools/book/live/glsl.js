@@ -80,7 +80,7 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
             });
         };
         visit(main);
-        return { lines, places };
+        return { lines, places, files: seen };
     }
 
     // The structs of a text: {name: [[type, member, array size or undefined]]}.
@@ -208,7 +208,7 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
     // of its own, which renders several samples in a draw.
     function translate({ sources, chapter, named, defines, scene }) {
         const layout = new Layout(sources["shaders/interface.h"]);
-        const { lines, places } = expand(sources, "shaders/engine/render.frag", finder(sources, chapter, named));
+        const { lines, places, files } = expand(sources, "shaders/engine/render.frag", finder(sources, chapter, named));
         let text = lines.join("\n") + "\n";
         text = text.replace(/^[ \t]*#[ \t]*(version|extension|line)\b.*$/gm, "");
         text = limitLoops(text, line => places[line - 1].file.startsWith("chapters/") ? line : 0);
@@ -250,7 +250,7 @@ int bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >> uin
         const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp usampler2D;\n" +
             ["BVH_IN_STORAGE_BUFFERS", ...defines].map(define => `#define ${define}\n`).join("") + PRELUDE;
         const headLines = head.split("\n").length - 1;
-        const hasSampleLoop = places.some(({ file }) => file === `chapters/${chapter}/sample_loop.glsl`);
+        const hasSampleLoop = files.has(`chapters/${chapter}/sample_loop.glsl`);
         return { text: head + text, place: line => places[line - headLines - 1], loop: line => places[line - 1], hasSampleLoop };
     }
 
