@@ -6,8 +6,8 @@
 
 namespace lab::native {
 
-// `spirv` comes from compile_shader() with lines. The C++ has their numbers, by #line directives; `for_lanes` it runs several
-// invocations at once. Throws UserError for what this translator does not know.
+// `spirv` comes from compile_shader() with lines. The C++ has their numbers, by #line directives. With `for_lanes` it runs
+// several invocations at once. Throws UserError for what this translator does not know.
 std::string translate(const std::vector<uint32_t>& spirv, bool for_lanes);
 
 }  // namespace lab::native

@@ -54,23 +54,21 @@ SEARCH = r"""new Promise((found, failed) => {
 class Site:
     """The site, built once for a class of tests, or by SiteTest for all of those that ctest runs."""
 
-    is_given = "LAB_TEST_SITE" in os.environ
+    given = os.environ.get("LAB_TEST_SITE")
+    builds = given is None
 
     @classmethod
     def setUpClass(cls):
         if not shutil.which("mkdocs") or not Path("/usr/share/javascript/katex").exists():
             raise unittest.SkipTest("needs MkDocs and KaTeX, which ./lab book installs")
-        if "LAB_TEST_SITE" in os.environ:
-            cls.site = Path(os.environ["LAB_TEST_SITE"])
-        else:
-            cls.site = Path(cls.enterClassContext(tempfile.TemporaryDirectory())).resolve() / "book"
-        if not cls.is_given:
+        cls.site = Path(cls.given or cls.enterClassContext(tempfile.TemporaryDirectory())).resolve() / "book"
+        if cls.builds:
             shutil.rmtree(cls.site, ignore_errors=True)  # what an interrupted run left
             subprocess.run([sys.executable, "-B", TOOLS, "book", "--output", cls.site], check=True, stdout=subprocess.DEVNULL)
 
 
 class SiteTest(Site, unittest.TestCase):
-    is_given = False
+    builds = True
 
     def test_starts_with_a_page(self):
         self.assertTrue((self.site / "index.html").is_file())

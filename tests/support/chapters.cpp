@@ -1,7 +1,6 @@
 #include "support/chapters.h"
 
 #include <algorithm>
-#include <set>
 
 #include "error.h"
 #include "files/file.h"
@@ -17,14 +16,6 @@ nlohmann::json expectations(const std::string& chapter) {
 }
 
 }  // namespace
-
-std::vector<std::string> course_chapters() {
-    std::vector<std::string> chapters;
-    std::set<std::string> titles;
-    for (const std::string& name : chapter_folders())
-        if (titles.insert(load_chapter(name).title).second) chapters.push_back(name);
-    return chapters;
-}
 
 std::string chapter_named(const std::string& name) {
     const auto found = std::ranges::find_if(

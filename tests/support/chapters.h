@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "rendering/chapter.h"
+#include "support/course_chapters.h"
 
 namespace lab {
 
-// The chapters whose estimators are tested, in order: not copies made for experiments, which have the title of another one.
-std::vector<std::string> course_chapters();
+// The chapters whose estimators are tested.
 inline const std::vector<std::string> all_chapters = course_chapters();
 
 // The folder of the chapter with this name: chapter_named("cosine_sampling") for "cosine_sampling".
