@@ -53,6 +53,8 @@ SHARED_CONSTANT BINDING_DENSITIES = 26u;
 SHARED_CONSTANT BINDING_LIGHT_NODES = 27u;
 SHARED_CONSTANT BINDING_LIGHT_LEAVES = 28u;
 SHARED_CONSTANT BINDING_LIGHT_PLACES = 29u;
+SHARED_CONSTANT BINDING_BOUNDARY_PLACES = 32u;
+SHARED_CONSTANT BINDING_OVERLAPS = 33u;
 // Of the backend `native` alone. Macros leave the shaders of the others as they are.
 #define BINDING_WORLD_TRIANGLES 30u
 #define BINDING_FIRST_WORLD_TRIANGLES 31u
@@ -111,20 +113,21 @@ struct Medium {
     vec3 high;              // the opposite corner
 };
 
-// What becomes of the medium that a path is in where it meets an instance.
+// What becomes of the medium that a path is in where it meets a triangle.
 SHARED_CONSTANT BOUNDARY_NONE = 0u;   // a surface
 SHARED_CONSTANT BOUNDARY_GLASS = 1u;  // what its glass refracts gets to its other side
 SHARED_CONSTANT BOUNDARY_OPEN = 2u;   // no surface at all: everything goes on
 
-// What an instance does with the medium that a path is in, as constants above, and the media on its two sides.
+// Where a body ends, and the media on its two sides, see common/scene/bodies.h. A medium's index is also that of the body which it
+// fills: the smaller a body, the larger its index.
 struct Boundary {
-    uint kind;     // one of the constants above
-    uint inside;   // index into the media, behind its front
-    uint outside;  // the same before it
+    uint kind;           // one of the constants above
+    uint body;           // the one that ends here
+    uint behind;         // index into the media, behind its front
+    uint before;         // the same before it
+    uint first_overlap;  // of the bodies that may contain parts of it, but not all of it
+    uint end_overlaps;   // behind the last one
 };
-
-// Open boundaries that a shadow ray may cross; behind more of them there is no light.
-SHARED_CONSTANT MAX_CROSSED_BOUNDARIES = 64u;
 
 // One placement of a mesh in the world.
 struct Instance {

@@ -54,13 +54,13 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     } else {
         s = get_shading_data(hit, path.ray.direction);
         sides = get_sides(hit, path.ray.direction, path.medium);
-        path.throughput *= s.transmittance;
         path.distance += hit.distance;
         if (is_open_boundary(hit)) {  // nothing happens here
             path.ray = get_ray_from_surface(s, path.ray.direction);
             path.medium = sides.beyond;
             return true;
         }
+        path.throughput *= s.transmittance;
         float cos_light = dot(s.geometric_normal, s.out_direction);
         float light_density = path.is_light_sampled ? to_solid_angle(s.light_density, path.distance, cos_light) : 0.0;
         if (DISTANCE_SAMPLING == SAMPLES_ANGLES && path.segment.t_max > 0.0)

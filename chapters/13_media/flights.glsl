@@ -93,5 +93,6 @@ float get_transmittance_of(Medium medium, Ray ray, float t_max, inout uvec2 seed
 #ifdef FEATURE_DENSITIES
     if (has_grid(medium)) return track_transmittance(medium, ray, t_max, seed);
 #endif
-    return exp(-medium.extinction * t_max * length(ray.direction));
+    // Without an end t_max is so large that its product with a length may be infinite, and 0 times that is no number.
+    return medium.extinction > 0.0 ? exp(-medium.extinction * t_max * length(ray.direction)) : 1.0;
 }

@@ -42,14 +42,44 @@ struct Sides {
     uint beyond;
 };
 
+#ifdef FEATURE_BOUNDARIES
+// Those of a boundary, as if no other body overlapped with its own.
+Sides get_sides_of(Boundary boundary, Hit hit, vec3 ray_direction) {
+    bool is_front = dot(get_surface_point(hit).geometric_normal, ray_direction) < 0.0;
+    return is_front ? Sides(boundary.before, boundary.behind) : Sides(boundary.behind, boundary.before);
+}
+#endif
+
+#ifdef FEATURE_OVERLAPS
+// Whether a ray starts in a body: whether it leaves that before it enters it.
+bool starts_in(uint body, Ray ray) {
+    Hit hit;
+    while (trace_ray(ray, NO_LIMIT, hit)) {
+        Boundary boundary = get_boundary(hit.instance, hit.triangle);
+        if (boundary.kind != BOUNDARY_NONE && boundary.body == body)
+            return get_sides_of(boundary, hit, ray.direction).here == body;
+        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+    }
+    return false;
+}
+#endif
+
 // A ray knows its medium only from its path, or from the next boundary, as here. An opaque surface has the same on both sides.
 Sides get_sides(Hit hit, vec3 ray_direction, uint medium) {
     Sides sides = Sides(medium, medium);
 #ifdef FEATURE_BOUNDARIES
-    Boundary boundary = boundaries[hit.instance];
-    bool is_front = dot(get_surface_point(hit).geometric_normal, ray_direction) < 0.0;
-    if (boundary.kind != BOUNDARY_NONE)
-        sides = is_front ? Sides(boundary.outside, boundary.inside) : Sides(boundary.inside, boundary.outside);
+    Boundary boundary = get_boundary(hit.instance, hit.triangle);
+    if (boundary.kind == BOUNDARY_NONE) return sides;
+    sides = get_sides_of(boundary, hit, ray_direction);
+#ifdef FEATURE_OVERLAPS
+    // The smallest body around a point is there, which is the one with the largest index.
+    Ray ray = get_ray_from_surface(get_shading_data(hit, ray_direction), ray_direction);
+    for (uint i = boundary.first_overlap; i < boundary.end_overlaps; ++i) {
+        uint other = overlaps[i];
+        if (min(sides.here, sides.beyond) < other && starts_in(other, ray))
+            sides = Sides(max(sides.here, other), max(sides.beyond, other));
+    }
+#endif
 #endif
     return sides;
 }
@@ -62,7 +92,7 @@ uint get_side(Sides sides, ShadingData s, vec3 direction) {
 // Whether what a ray hits is no surface, but only the end of a medium.
 bool is_open_boundary(Hit hit) {
 #ifdef FEATURE_OPEN_BOUNDARIES
-    return boundaries[hit.instance].kind == BOUNDARY_OPEN;
+    return get_boundary(hit.instance, hit.triangle).kind == BOUNDARY_OPEN;
 #else
     return false;
 #endif
@@ -72,8 +102,8 @@ bool is_open_boundary(Hit hit) {
 uint find_medium(Ray ray) {
 #ifdef FEATURE_BOUNDARIES
     Hit hit;
-    for (uint i = 0u; i < MAX_CROSSED_BOUNDARIES && trace_ray(ray, NO_LIMIT, hit); ++i) {
-        if (boundaries[hit.instance].kind != BOUNDARY_NONE) return get_sides(hit, ray.direction, 0u).here;
+    while (trace_ray(ray, NO_LIMIT, hit)) {
+        if (get_boundary(hit.instance, hit.triangle).kind != BOUNDARY_NONE) return get_sides(hit, ray.direction, 0u).here;
         ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
     }
 #endif
@@ -85,9 +115,8 @@ float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
 #ifdef FEATURE_OPEN_BOUNDARIES
     float transmittance = 1.0;
     vec3 end = ray.origin + ray.direction;
-    for (uint i = 0u; i < MAX_CROSSED_BOUNDARIES; ++i) {
-        Hit hit;
-        if (!trace_ray(ray, t_max, hit)) return transmittance * get_transmittance_of(get_medium(medium), ray, t_max, seed);
+    Hit hit;
+    while (trace_ray(ray, t_max, hit)) {
         if (!is_open_boundary(hit)) return 0.0;
         transmittance *= get_transmittance_of(get_medium(medium), ray, hit.distance, seed);
         medium = get_sides(hit, ray.direction, medium).beyond;
@@ -95,7 +124,7 @@ float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
         // A ray that ends at a point still ends there.
         if (t_max < NO_LIMIT) ray.direction = end - ray.origin;
     }
-    return 0.0;
+    return transmittance * get_transmittance_of(get_medium(medium), ray, t_max, seed);
 #else
     return is_occluded(ray, t_max) ? 0.0 : get_transmittance_of(get_medium(medium), ray, t_max, seed);
 #endif

@@ -201,7 +201,7 @@ class Commands {
         check_outputs(options.run);
         const auto scene = build_ && build_->job.options.scene == options.scene
                                ? build_->job.scene
-                               : std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
+                               : load_scene_for(chapter_, options.scene);
         check_inputs(options.run, *scene);
         RenderJob job = make_job(chapter_, options, scene);
         print_warnings(chapter_, job);

@@ -6,6 +6,7 @@
 #include "error.h"
 #include "files/file.h"
 #include "rendering/settings.h"
+#include "scene/media.h"
 
 namespace lab {
 namespace {
@@ -39,6 +40,12 @@ void check_scene(const Chapter& chapter, const Scene& scene) {
 uint32_t next_sample_count(uint32_t samples, uint32_t target, double growth) {
     const double next = std::ceil(samples * std::clamp(growth, 1.125, 2.0));
     return static_cast<uint32_t>(std::clamp(next, samples + 1.0, static_cast<double>(target)));
+}
+
+std::shared_ptr<const Scene> load_scene_for(const Chapter& chapter, const SceneOptions& options) {
+    auto scene = std::make_shared<Scene>(load_scene(options.file, options.specular));
+    if (!chapter.media) leave_out_open_boundaries(*scene);
+    return scene;
 }
 
 RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_ptr<const Scene> scene) {

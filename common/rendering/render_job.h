@@ -24,6 +24,10 @@ struct RenderJob {
 // where a few bright samples decide, it would favour pictures that happen to have few of them so far.
 uint32_t next_sample_count(uint32_t samples, uint32_t target, double growth = 2);
 
+// Loads a scene as the chapter renders it: without the ends of media, which are no surfaces, if it knows no media. Throws
+// UserError.
+std::shared_ptr<const Scene> load_scene_for(const Chapter& chapter, const SceneOptions& options);
+
 // Prepares everything that needs no device, so that mistakes show early. Throws UserError for scenes that the chapter cannot
 // render, and for options that contradict each other or the run that --resume continues.
 RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_ptr<const Scene> scene);

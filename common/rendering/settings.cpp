@@ -40,6 +40,8 @@ double largest_albedo(const Scene& scene) {
             material.refractive_index > 0 || has_microfacets ? vec3(1) : material.diffuse_albedo + material.specular_albedo;
         largest = std::max({largest, albedo.r, albedo.g, albedo.b});
     }
+    for (const Medium& medium : scene.media)
+        if (medium.extinction > 0) largest = std::max({largest, medium.albedo.r, medium.albedo.g, medium.albedo.b});
     return largest;
 }
 
@@ -156,7 +158,7 @@ std::string safety_limit_text(const Scene& scene) {
                       safety_limit, std::max(std::pow(albedo, safety_limit + 1) / (1 - albedo), 1e-300));
     else
         std::snprintf(text, sizeof text,
-                      "up to %u bounces; a surface reflects everything at some angle, so light of more may be missing",
+                      "up to %u bounces; a surface or medium may scatter all light, so light of more may be missing",
                       safety_limit);
     return text;
 }

@@ -4,14 +4,10 @@
 #include <tuple>
 #include <utility>
 
-#include "scene/features.h"
-
 namespace lab {
 namespace {
 
 using Corners = std::array<std::array<float, 3>, 3>;
-
-constexpr size_t max_searched_triangles = 10'000'000;
 
 bool is_emissive(const Scene& scene, uint32_t triangle) { return scene.material_of(triangle).emission != vec3(0); }
 
@@ -28,13 +24,6 @@ struct Candidate {
     bool is_dark;
     uint32_t triangle;
     auto operator<=>(const Candidate&) const = default;
-};
-
-// An emissive triangle of an instance.
-struct PlacedLight {
-    Place place;
-    uint32_t instance;
-    uint32_t triangle;
 };
 
 }  // namespace
@@ -112,61 +101,6 @@ void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& 
         align(scene, a, b);
         scene.double_sided.emplace_back(a, b);
     }
-}
-
-std::vector<std::string> coincident_light_warnings(const Scene& scene, const std::vector<uint32_t>& lines) {
-    if (scene.instances.size() == 1 && !features_of(scene).dielectrics) return {};
-    std::vector<PlacedLight> lights;
-    Bounds bounds;
-    const auto for_each_triangle = [&](const auto& visit) {
-        size_t visited = 0;
-        for (uint32_t instance = 0; instance < scene.instances.size(); ++instance) {
-            const Mesh& mesh = scene.mesh_of(instance);
-            visited += mesh.triangle_count;
-            if (visited > max_searched_triangles) return;
-            for (const uint32_t triangle : mesh.triangles()) visit(instance, triangle);
-        }
-    };
-    for_each_triangle([&](uint32_t instance, uint32_t triangle) {
-        if (!is_emissive(scene, triangle)) return;
-        lights.push_back({get_place(scene, scene.instances[instance], triangle), instance, triangle});
-        for (const auto& [x, y, z] : lights.back().place.corners) bounds.grow({x, y, z});
-    });
-    // If lights in a place differ at all, the first and the last one do.
-    std::sort(lights.begin(), lights.end(), [&](const PlacedLight& a, const PlacedLight& b) {
-        const auto key = [&](const PlacedLight& light) {
-            const vec3 e = scene.material_of(light.triangle).emission;
-            return std::tuple(light.place, e.x, e.y, e.z, light.instance, light.triangle);
-        };
-        return key(a) < key(b);
-    });
-
-    std::vector<std::string> warnings;
-    const auto compare = [&](const PlacedLight& light, const Place& place, uint32_t instance, uint32_t triangle) {
-        const Material& emitter = scene.material_of(light.triangle);
-        const Material& other = scene.material_of(triangle);
-        const bool is_glass = (emitter.refractive_index > 0) != (other.refractive_index > 0);
-        const bool is_same = light.place.is_turned == place.is_turned && emitter.emission == other.emission;
-        if (!warnings.empty() || (instance == light.instance ? !is_glass : is_same && !is_glass)) return;
-        const auto name = [&](uint32_t owner, uint32_t index) {
-            return scene.mesh_of(owner).file + ":" + std::to_string(lines[index]);
-        };
-        warnings.push_back(name(light.instance, light.triangle) + ": emits, and lies in the same place as " +
-                           name(instance, triangle) + (is_glass ? ", of glass" : ", of another instance") +
-                           ": rays find either by chance, so that chapters may disagree; move one of them");
-    };
-    for_each_triangle([&](uint32_t instance, uint32_t triangle) {
-        const vec3 corner = scene.instances[instance].object_to_world * glm::vec4(scene.corner(triangle, 0), 1);
-        if (glm::any(glm::lessThan(corner, bounds.low)) || glm::any(glm::greaterThan(corner, bounds.high))) return;
-        const Place place = get_place(scene, scene.instances[instance], triangle);
-        const auto [begin, end] =
-            std::equal_range(lights.begin(), lights.end(), PlacedLight{place, 0, 0},
-                             [](const PlacedLight& a, const PlacedLight& b) { return a.place.corners < b.place.corners; });
-        if (begin == end) return;
-        compare(*begin, place, instance, triangle);
-        compare(*(end - 1), place, instance, triangle);
-    });
-    return warnings;
 }
 
 }  // namespace lab

@@ -21,9 +21,4 @@ Place get_place(const Scene& scene, const Instance& instance, uint32_t triangle)
 // that face opposite ways become a double-sided sheet.
 void resolve_coincident_lights(Scene& scene, Mesh& mesh, std::vector<uint32_t>& lines);
 
-// Returns a warning if chance still decides which triangle is hit: an emissive one coincides with a dielectric one, or with one
-// of another instance that differs in emission or orientation. `lines` has one entry per triangle. Examines the first ten million
-// triangles only.
-std::vector<std::string> coincident_light_warnings(const Scene& scene, const std::vector<uint32_t>& lines);
-
 }  // namespace lab

@@ -55,8 +55,7 @@ class Assembly {
           with_normals_(std::ranges::any_of(files, has_normals)),
           with_texture_coordinates_(std::ranges::any_of(files, has_textures)) {}
 
-    // Returns the line of each of the mesh's triangles.
-    std::vector<uint32_t> add(const ObjFile& obj) {
+    void add(const ObjFile& obj) {
         vertices_.clear();
         vertices_.reserve(obj.positions.size());
         Mesh mesh{obj.file, static_cast<uint32_t>(scene_.triangles.size())};
@@ -83,7 +82,6 @@ class Assembly {
             scene_.warnings.push_back(obj.file + ": " + std::to_string(dropped) + " triangles without area are left out");
         resolve_coincident_lights(scene_, mesh, lines);
         scene_.meshes.push_back(mesh);
-        return lines;
     }
 
   private:
@@ -210,13 +208,11 @@ class Assembly {
 
 }  // namespace
 
-std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene) {
+void assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene) {
     Assembly assembly(files, specular, sources, scene);
-    std::vector<uint32_t> lines;
-    for (const ObjFile& file : files) std::ranges::copy(assembly.add(file), std::back_inserter(lines));
+    for (const ObjFile& file : files) assembly.add(file);
     const auto is_smooth = [](const Microfacets& microfacets) { return microfacets.roughness == 0; };
     if (std::ranges::all_of(scene.microfacets, is_smooth)) scene.microfacets.clear();
-    return lines;
 }
 
 }  // namespace lab

@@ -37,7 +37,7 @@ ObjFile read_obj(const std::filesystem::path& file, const std::filesystem::path&
 
 // Fills the scene's vertices, triangles, materials, textures and meshes (one per file), and reads textures. Equal corners become
 // one vertex; triangles without area and materials without triangles are dropped; coincident lights are resolved. Throws
-// UserError for damaged textures and for files in which no triangle has an area. Returns each triangle's line in its file.
-std::vector<uint32_t> assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene);
+// UserError for damaged textures and for files in which no triangle has an area.
+void assemble_meshes(const std::vector<ObjFile>& files, bool specular, SourceFiles& sources, Scene& scene);
 
 }  // namespace lab

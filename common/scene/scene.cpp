@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "error.h"
 #include "image/image_checks.h"
-#include "scene/coincident_lights.h"
+#include "scene/bodies.h"
+#include "scene/contacts.h"
 #include "scene/features.h"
 #include "scene/media.h"
 #include "scene/obj_file.h"
@@ -27,17 +29,18 @@ Instance make_instance(const MeshPlacement& placement) {
 
 // Reads each mesh once with each of its materials, and places its instances.
 void load_meshes(const SceneDescription& description, bool specular, SourceFiles& sources, Scene& scene) {
-    std::map<std::pair<std::filesystem::path, std::filesystem::path>, uint32_t> mesh_of_files;
+    std::map<std::tuple<std::filesystem::path, std::filesystem::path, bool>, uint32_t> mesh_of_files;
     std::vector<ObjFile> files;
     for (const MeshPlacement& placement : description.meshes) {
         const auto [mesh, is_new] = mesh_of_files.try_emplace(
-            {placement.file.lexically_normal(), placement.materials.lexically_normal()}, static_cast<uint32_t>(files.size()));
+            {placement.file.lexically_normal(), placement.materials.lexically_normal(), placement.is_open},
+            static_cast<uint32_t>(files.size()));
         if (is_new) files.push_back(read_obj(placement.file, placement.materials, sources, scene.warnings));
         scene.instance_meshes.push_back(mesh->second);
     }
-    const std::vector<uint32_t> lines = assemble_meshes(files, specular, sources, scene);
+    assemble_meshes(files, specular, sources, scene);
+    for (const auto& [key, mesh] : mesh_of_files) scene.meshes[mesh].is_open = std::get<bool>(key);
     for (const MeshPlacement& placement : description.meshes) scene.instances.push_back(make_instance(placement));
-    for (std::string& warning : coincident_light_warnings(scene, lines)) scene.warnings.push_back(std::move(warning));
 }
 
 }  // namespace
@@ -110,7 +113,11 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
         }
     };
     load([&] { load_meshes(description, specular || description.specular, sources, scene); });
-    load([&] { add_media(description, sources, scene); });
+    std::vector<Body> bodies = find_bodies(scene);
+    turn_inside_out_glass(scene, bodies);
+    separate_contacts(scene, bodies);
+    nest_bodies(scene, bodies);
+    load([&] { add_media(description, bodies, sources, scene); });
     scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
 
     if (!description.light_probe.empty()) {
@@ -130,8 +137,8 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
     if (!std::isfinite(diagonal)) throw UserError(name + ": its coordinates are too large for 32-bit numbers");
     if (!description.has_camera && !scene.instances.empty()) scene.camera = framing_pose(bounds);
-    for (const auto& find_warnings : {dielectric_warnings, precision_warnings})
-        for (std::string& warning : find_warnings(scene)) scene.warnings.push_back(std::move(warning));
+    for (auto& warnings : {dielectric_warnings(scene, bodies), precision_warnings(scene)})
+        scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
     scene.hash = sources.hash();
     scene.sources = sources.names();
     return std::move(scene);

@@ -19,6 +19,7 @@ struct Mesh {
     uint32_t first_triangle = 0;
     uint32_t triangle_count = 0;
     uint32_t dielectric_count = 0;
+    bool is_open = false;  // it is no surface: only a medium ends there
 
     // Indices of all its triangles.
     auto triangles() const { return std::views::iota(first_triangle, first_triangle + triangle_count); }
@@ -72,9 +73,11 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<uint32_t> instance_meshes;  // per instance
-    std::vector<Medium> media;              // the first lies outside of all boundaries; empty if there is none but vacuum
+    std::vector<Medium> media;              // the first lies outside of all bodies; empty if there is none but vacuum
     std::vector<float> densities;           // of all media that have a grid
-    std::vector<Boundary> boundaries;       // per instance; empty if no medium ends anywhere
+    std::vector<Boundary> boundaries;       // of bodies; the first is none. Empty if no medium ends anywhere
+    std::vector<uint32_t> boundary_places;  // the index of a boundary: the sum of one entry per triangle and one per instance
+    std::vector<uint32_t> overlaps;         // media of bodies that overlap with others, which the boundaries of these know
     std::vector<Texture> textures;
 
     CameraPose camera;

@@ -1,7 +1,6 @@
 #include "scene/warnings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -12,9 +11,7 @@
 namespace lab {
 namespace {
 
-using Point = std::array<float, 3>;
-
-constexpr size_t max_triangles = 10'000'000, max_pairs = 10'000'000, max_glass_triangles = 1'000'000;
+constexpr size_t max_triangles = 10'000'000, max_pairs = 10'000'000;
 
 // The triangles of one material in one instance.
 struct Part {
@@ -30,6 +27,7 @@ std::vector<Part> parts_of(const Scene& scene) {
         const Mesh& mesh = scene.mesh_of(i);
         triangle_count += mesh.triangle_count;
         if (triangle_count > max_triangles) break;
+        if (mesh.is_open) continue;
         std::map<uint32_t, Bounds> bounds_of_material;
         for (const uint32_t triangle : mesh.triangles()) {
             Bounds& bounds = bounds_of_material[scene.triangle_materials[triangle]];
@@ -49,27 +47,6 @@ struct Nesting {
 
 bool is_inside(const Bounds& inner, const Bounds& outer) {
     return glm::all(glm::lessThan(outer.low, inner.low)) && glm::all(glm::lessThan(inner.high, outer.high));
-}
-
-// Counts edges where a mesh's dielectric surface ends, or where a front meets a back.
-size_t open_edge_count(const Scene& scene, const Mesh& mesh) {
-    if (mesh.dielectric_count > max_glass_triangles) return 0;
-    std::vector<std::pair<std::pair<Point, Point>, int>> edges;  // and +1 or -1 for the triangle's direction along it
-    for (const uint32_t triangle : mesh.triangles() | std::views::drop(mesh.triangle_count - mesh.dielectric_count))
-        for (int i = 0; i < 3; ++i) {
-            // Coincident vertices are one, whatever their normals.
-            const vec3 a = scene.corner(triangle, i) + 0.0f, b = scene.corner(triangle, (i + 1) % 3) + 0.0f;
-            const Point from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
-            edges.push_back({std::minmax(from, to), from < to ? 1 : -1});
-        }
-    std::sort(edges.begin(), edges.end());
-    size_t count = 0;
-    for (size_t i = 0; i < edges.size();) {
-        int sum = 0;
-        for (const auto edge = edges[i].first; i < edges.size() && edges[i].first == edge; ++i) sum += edges[i].second;
-        count += sum != 0;
-    }
-    return count;
 }
 
 constexpr double rounding = 0x1p-24;  // relative, of 32-bit numbers
@@ -107,7 +84,7 @@ void check_texture_coordinates(const Scene& scene, std::vector<std::string>& war
 
 }  // namespace
 
-std::vector<std::string> dielectric_warnings(const Scene& scene) {
+std::vector<std::string> dielectric_warnings(const Scene& scene, const std::vector<Body>& bodies) {
     if (!features_of(scene).dielectrics) return {};
     const std::vector<Part> parts = parts_of(scene);
     const auto is_dielectric = [&](const Part& part) { return scene.materials[part.material].refractive_index > 0; };
@@ -137,13 +114,13 @@ std::vector<std::string> dielectric_warnings(const Scene& scene) {
          "each is computed as if air surrounded it, so light bends by Ni against 1 between them, too");
     warn(enclosed_object, "an opaque object may lie inside the absorbing glass",
          "Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its way to the object");
-    for (const Mesh& mesh : scene.meshes) {
-        const size_t count = open_edge_count(scene, mesh);
-        if (count == 0) continue;
-        warnings.push_back(mesh.file + ": its glass is not closed: " + std::to_string(count) +
+    const auto is_leaky = [](const Body& body) { return !body.is_open && body.open_edges > 0; };
+    if (const auto leaky = std::ranges::find_if(bodies, is_leaky); leaky != bodies.end()) {
+        size_t count = 0;
+        for (const Body& body : bodies) count += body.instance == leaky->instance ? body.open_edges : 0;
+        warnings.push_back(scene.mesh_of(leaky->instance).file + ": its glass is not closed: " + std::to_string(count) +
                            " edges have one triangle, or join a front to a back; light that enters a single "
                            "sheet never leaves it and is divided by Ni²: give it a thickness");
-        break;
     }
     return warnings;
 }

@@ -1,13 +1,12 @@
 // Warnings about a scene: what its author probably did not intend, or what the renderer cannot compute.
 #pragma once
-#include "scene/scene.h"
+#include "scene/bodies.h"
 
 namespace lab {
 
 // One line per kind: a dielectric that may lie inside another, an opaque object that may lie inside absorbing glass (both judged
-// by bounding boxes), and glass whose surface is not closed. Examines the first ten million triangles and pairs only; glass of
-// more than a million triangles counts as closed.
-std::vector<std::string> dielectric_warnings(const Scene& scene);
+// by bounding boxes), and glass whose surface is not closed. Examines the first ten million triangles and pairs only.
+std::vector<std::string> dielectric_warnings(const Scene& scene, const std::vector<Body>& bodies);
 
 // One line each where 32-bit numbers are too coarse:
 // - for each mesh whose texture coordinates are so large that neighbouring floats are more than a texel apart;

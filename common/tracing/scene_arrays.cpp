@@ -32,7 +32,12 @@ SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_pro
         }
         if (!scene.boundaries.empty()) {
             add("boundaries of media", BINDING_BOUNDARIES, scene.boundaries);
+            add("places of these boundaries", BINDING_BOUNDARY_PLACES, scene.boundary_places);
             defines_.emplace_back("FEATURE_BOUNDARIES");
+        }
+        if (!scene.overlaps.empty()) {
+            add("bodies that overlap", BINDING_OVERLAPS, scene.overlaps);
+            defines_.emplace_back("FEATURE_OVERLAPS");
         }
         if (std::ranges::any_of(scene.boundaries, [](const Boundary& boundary) { return boundary.kind == BOUNDARY_OPEN; }))
             defines_.emplace_back("FEATURE_OPEN_BOUNDARIES");

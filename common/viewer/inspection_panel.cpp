@@ -91,9 +91,13 @@ void InspectionPanel::draw_controls(Session& session) {
         if (ImGui::Button(label.c_str())) session.change_for_verdict();
     }
     const auto& path = inspection_.path();
-    const bool has_point = path && !is_beside_ && !path->vertices.empty() && path->vertices.front().is_hit;
+    const auto is_seen = [&](const PathVertex& vertex) {
+        return !vertex.is_hit || !session.build().job.scene->mesh_of(vertex.instance).is_open;
+    };
+    const auto seen = path ? std::ranges::find_if(path->vertices, is_seen) : decltype(path->vertices.begin()){};
+    const bool has_point = path && !is_beside_ && seen != path->vertices.end() && seen->is_hit;
     if (session.chapter().lens && has_point && ImGui::Button("Focus on the point that was clicked"))
-        session.focus_on(path->vertices.front().position);
+        session.focus_on(seen->position);
     if (ImGui::CollapsingHeader("look inside")) {
         int overlay = static_cast<int>(overlay_.shown);
         ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));

@@ -88,7 +88,7 @@ void Session::start_build_if_needed() {
     options.run.resume.clear();
     work_.start([this, options, first, before = build_.get()] {
         auto scene = before->job.scene;
-        if (first == BuildStage::scene) scene = std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
+        if (first == BuildStage::scene) scene = load_scene_for(chapter_, options.scene);
         return make_window_build(device_, chapter_, make_job(chapter_, options, scene), first, before);
     });
 }

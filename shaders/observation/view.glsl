@@ -10,6 +10,15 @@ vec3 get_colour(uint id) {
 vec3 path_trace(Ray ray, inout uvec2 seed) {
     Hit hit;
     bool is_hit = trace_ray(ray, NO_LIMIT, hit);
+#ifdef FEATURE_OPEN_BOUNDARIES
+    float passed = 0.0;
+    while (is_hit && get_boundary(hit.instance, hit.triangle).kind == BOUNDARY_OPEN) {  // there is nothing to see
+        passed += hit.distance;
+        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+        is_hit = trace_ray(ray, NO_LIMIT, hit);
+    }
+    hit.distance += passed;
+#endif
 #ifdef VIEW_BVH_STEPS
     return vec3(traversal_steps);
 #endif

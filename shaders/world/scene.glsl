@@ -16,7 +16,7 @@ layout(scalar, set = 0, binding = BINDING_MATERIALS) readonly buffer Materials {
 #ifdef FEATURE_MICROFACETS
 layout(scalar, set = 0, binding = BINDING_MICROFACETS) readonly buffer MicrofacetsOfMaterials { Microfacets microfacets[]; };
 #endif
-// Media, the first of which lies outside of all boundaries.
+// Media, the first of which lies outside of all bodies.
 #ifdef FEATURE_MEDIA
 layout(scalar, set = 0, binding = BINDING_MEDIA) readonly buffer Media { Medium media[]; };
 #endif
@@ -24,9 +24,17 @@ layout(scalar, set = 0, binding = BINDING_MEDIA) readonly buffer Media { Medium 
 #ifdef FEATURE_DENSITIES
 layout(scalar, set = 0, binding = BINDING_DENSITIES) readonly buffer Densities { float densities[]; };
 #endif
-// What lies on the two sides of each instance.
+// What lies on the two sides of bodies.
 #ifdef FEATURE_BOUNDARIES
 layout(scalar, set = 0, binding = BINDING_BOUNDARIES) readonly buffer Boundaries { Boundary boundaries[]; };
+layout(scalar, set = 0, binding = BINDING_BOUNDARY_PLACES) readonly buffer BoundaryPlaces {
+    uint boundary_places[];  // a triangle's place in boundaries: the sum of one entry per triangle and one per instance
+};
+#endif
+#ifdef FEATURE_OVERLAPS
+layout(scalar, set = 0, binding = BINDING_OVERLAPS) readonly buffer Overlaps {
+    uint overlaps[];  // bodies that overlap with others, whose boundaries know where theirs begin
+};
 #endif
 #ifdef FEATURE_VERTEX_NORMALS
 layout(scalar, set = 0, binding = BINDING_NORMALS) readonly buffer Normals { vec3 normals[]; };
@@ -81,6 +89,12 @@ layout(scalar, set = 0, binding = BINDING_FIRST_WORLD_TRIANGLES) readonly buffer
 uint get_material_class(uint triangle) {
     bool is_dielectric = materials[triangle_materials[triangle]].refractive_index > 0.0;
     return is_dielectric ? MATERIAL_CLASS_DIELECTRIC : MATERIAL_CLASS_DIFFUSE;
+}
+#endif
+
+#ifdef FEATURE_BOUNDARIES
+Boundary get_boundary(uint instance, uint triangle) {
+    return boundaries[boundary_places[triangle] + boundary_places[uint(triangles.length()) + instance]];
 }
 #endif
 

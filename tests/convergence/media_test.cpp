@@ -22,9 +22,7 @@ Material surface(bool is_glass) {
 }
 // The medium fills the scene's only instance, whose surface is none or glass.
 Scene filled(Scene scene, const Medium& medium, bool is_glass = false) {
-    scene.media = {Medium{}, medium};
-    scene.boundaries = {{is_glass ? BOUNDARY_GLASS : BOUNDARY_OPEN, 1, 0}};
-    if (is_glass) scene.meshes[0].dielectric_count = scene.meshes[0].triangle_count;
+    fill(scene, medium, is_glass);
     return scene;
 }
 Scene in_fog(Scene scene, const Medium& medium) {
@@ -123,8 +121,7 @@ TEST(Media, ASlabScattersOnceAsItsPhaseFunctionSays) {
         scene.meshes = {slab, lamp};
         scene.instance_meshes = {0, 1};
         scene.instances.push_back(scene.instances[0]);
-        scene.media = {Medium{}, homogeneous_medium(1, vec3(static_cast<float>(albedo)), static_cast<float>(g))};
-        scene.boundaries = {{BOUNDARY_OPEN, 1, 0}, {BOUNDARY_NONE, 0, 0}};
+        fill(scene, homogeneous_medium(1, vec3(static_cast<float>(albedo)), static_cast<float>(g)));
         double expected = 0;
         constexpr int n = 200;
         for (int i = 0; i < n; ++i)

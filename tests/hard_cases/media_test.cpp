@@ -14,8 +14,7 @@ constexpr uint32_t samples = 4, max_path_length = 200;
 // A box of side 2 without a surface, filled with a medium, under a white sky.
 Scene filled_box(const Medium& medium, const vec3& from, const vec3& to) {
     Scene scene = make_scene({diffuse_material(vec3(0.5f))}, box_sides(vec3(-1), vec3(1), 0, Facing::outwards));
-    scene.media = {Medium{}, medium};
-    scene.boundaries = {{BOUNDARY_OPEN, 1, 0}};
+    fill(scene, medium);
     scene.background = vec3(1);
     scene.camera = {.position = from, .target = to, .up = {0.1f, 0.2f, 1}, .vertical_fov = 50};
     return scene;

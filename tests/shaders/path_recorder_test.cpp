@@ -180,8 +180,7 @@ Scene box_of_medium_below_a_lamp() {
     scene.meshes = {box, lamp};
     scene.instance_meshes = {0, 1};
     scene.instances.push_back(scene.instances[0]);
-    scene.media = {Medium{}, homogeneous_medium(1.5f, vec3(0.9f), 0.3f)};
-    scene.boundaries = {{BOUNDARY_OPEN, 1, 0}, {BOUNDARY_NONE, 0, 0}};
+    fill(scene, homogeneous_medium(1.5f, vec3(0.9f), 0.3f));
     scene.camera = {.position = {0, 0, 4}, .target = {0, 0, 0}, .vertical_fov = 40};
     return scene;
 }

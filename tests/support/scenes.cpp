@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "scene/media.h"
 #include "scene/microfacets.h"
 
 namespace lab {
@@ -38,6 +39,17 @@ Medium homogeneous_medium(float extinction, const vec3& albedo, float anisotropy
     medium.albedo = albedo;
     medium.anisotropy = anisotropy;
     return medium;
+}
+
+void fill(Scene& scene, const Medium& medium, bool is_glass, uint32_t instance) {
+    Mesh& mesh = scene.meshes[scene.instance_meshes[instance]];
+    mesh.is_open = !is_glass;
+    if (is_glass) mesh.dielectric_count = mesh.triangle_count;
+    std::vector<Body> bodies = find_bodies(scene);
+    nest_bodies(scene, bodies);
+    std::vector<Medium> media;
+    for (const Body& body : bodies) media.push_back(body.instance == instance ? medium : Medium{});
+    place_media(scene, bodies, Medium{}, media);
 }
 
 Scene make_scene(const std::vector<Material>& materials, const std::vector<Quad>& quads) {

@@ -13,6 +13,9 @@ Material diffuse_material(const vec3& albedo, const vec3& emission = vec3(0));
 // The same everywhere.
 Medium homogeneous_medium(float extinction, const vec3& albedo, float anisotropy = 0);
 
+// Fills an instance with a medium, behind its glass or with no surface at all. Other glass is clear.
+void fill(Scene& scene, const Medium& medium, bool is_glass = false, uint32_t instance = 0);
+
 // A parallelogram. Its front is the side that edge_u × edge_v points to.
 struct Quad {
     vec3 corner;

@@ -43,7 +43,7 @@ TEST_F(CoincidentLights, ThatFaceTheSameWayAreTheFirst) {
 
 TEST_F(CoincidentLights, ThatFaceOppositeWaysAreTwoSides) {
     const Scene scene = load_scene(mesh("a.obj",
-                                        "v 5 5 0\nusemtl wall\nf 1 2 5\nf 1 2 3\nusemtl wall\nf 1 2 3\n"
+                                        "v 5 5 1\nusemtl wall\nf 1 2 5\nf 1 2 3\nusemtl wall\nf 1 2 3\n"
                                         "usemtl lamp\nf 1 2 3\nusemtl bright\nf 3 2 4\n"));
     EXPECT_EQ(scene.warnings.size(), 1u);
     ASSERT_EQ(scene.triangles.size(), 3u);
@@ -68,23 +68,15 @@ TEST_F(CoincidentLights, OfDifferentInstancesAreNamed) {
     mesh("lamp.obj", "usemtl lamp\nf 1 2 3\n");
     mesh("bright.obj", "usemtl bright\nf 1 2 3\n");
     mesh("wall.obj", "usemtl wall\nf 1 2 3\n");
-    mesh("glass.obj", "usemtl lamp\nf 1 2 3\nusemtl glass\nf 3 2 1\n");
     const std::string lamp = R"({"file": "lamp.obj"})", bright = R"({"file": "bright.obj"})", wall = R"({"file": "wall.obj"})",
-                      glass = R"({"file": "glass.obj"})", mirrored = R"({"file": "lamp.obj", "scale": [1, 1, -1]})",
+                      mirrored = R"({"file": "lamp.obj", "scale": [1, 1, -1]})",
                       elsewhere = R"({"file": "bright.obj", "translation": [0, 0, 1]})";
-    EXPECT_TRUE(load(lamp + "," + elsewhere + "," + lamp).warnings.empty()) << "two copies are the same";
-    for (const std::string& other : {bright, wall, mirrored}) {
-        const auto warnings = load(lamp + "," + elsewhere + "," + other).warnings;
-        ASSERT_EQ(warnings.size(), 1u) << other;
-        EXPECT_PRED_FORMAT2(testing::IsSubstring, ".obj:7: emits, and lies in the same place as", warnings[0]);
-        EXPECT_PRED_FORMAT2(testing::IsSubstring, "lamp.obj:7", warnings[0]);
-        EXPECT_PRED_FORMAT2(testing::IsSubstring, ".obj:7, of another instance", warnings[0]);
-    }
+    const auto warnings = load(lamp + "," + elsewhere + "," + bright).warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_PRED_FORMAT2(testing::IsSubstring, "bright.obj: lies in the plane of", warnings[0]);
+    for (const std::string& other : {wall, mirrored})
+        EXPECT_TRUE(load(lamp + "," + elsewhere + "," + other).warnings.empty()) << "each is seen from its front";
     EXPECT_EQ(build_light_table(load(lamp + "," + mirrored)).triangles.size(), 2u) << "they face opposite ways";
-    EXPECT_EQ(build_light_table(load(lamp + "," + lamp)).triangles.size(), 1u);
-    const auto warnings = load(glass).warnings;
-    ASSERT_EQ(warnings.size(), 2u) << "the other is that a sheet is no closed glass";
-    EXPECT_PRED_FORMAT2(testing::IsSubstring, "glass.obj:9, of glass", warnings[0]);
 }
 
 }  // namespace

@@ -38,6 +38,12 @@ std::string open(const std::string& extinction, const std::string& keys = "") {
     return placed(R"("medium": {"extinction": )" + extinction + R"(, "albedo": 0.5, "boundary": "open"})" + keys);
 }
 
+// Of the first triangle of an instance.
+Boundary boundary_of(const Scene& scene, uint32_t instance) {
+    const auto place = [&](size_t i) { return scene.boundary_places.at(i); };
+    return scene.boundaries.at(place(scene.mesh_of(instance).first_triangle) + place(scene.triangles.size() + instance));
+}
+
 TEST_F(MediaFile, AreAbsentUnlessAsked) {
     const Scene scene = load(plain);
     EXPECT_TRUE(scene.media.empty());
@@ -71,20 +77,20 @@ TEST_F(MediaFile, KnowWhatLiesAroundThem) {
                  open("2", R"(, "scale": [-0.3, 0.3, 0.3])") + ", " + plain,
              R"(, "fog": {"extinction": 7, "albedo": 1})");
     const auto extinctions = [&](uint32_t instance) {
-        const Boundary& boundary = scene.boundaries.at(instance);
-        return std::pair(scene.media.at(boundary.inside).extinction, scene.media.at(boundary.outside).extinction);
+        const Boundary boundary = boundary_of(scene, instance);
+        return std::pair(scene.media.at(boundary.behind).extinction, scene.media.at(boundary.before).extinction);
     };
     EXPECT_EQ(extinctions(0), std::pair(3.0f, 2.0f));
     EXPECT_EQ(extinctions(1), std::pair(1.0f, 7.0f));
     EXPECT_EQ(extinctions(2), std::pair(4.0f, 7.0f));
     EXPECT_EQ(extinctions(3), std::pair(2.0f, 1.0f));
-    EXPECT_EQ(scene.boundaries[4].kind, BOUNDARY_NONE);
+    EXPECT_EQ(boundary_of(scene, 4).kind, BOUNDARY_NONE);
 }
 
 TEST_F(MediaFile, FillGlass) {
     const Scene scene = load(plain, R"(, "fog": {"extinction": 7, "albedo": 1})", glass);
-    EXPECT_EQ(scene.boundaries.at(0).kind, BOUNDARY_GLASS);
-    EXPECT_EQ(scene.media.at(scene.boundaries[0].inside).extinction, 0) << "clear glass displaces the fog";
+    EXPECT_EQ(boundary_of(scene, 0).kind, BOUNDARY_GLASS);
+    EXPECT_EQ(scene.media.at(boundary_of(scene, 0).behind).extinction, 0) << "clear glass displaces the fog";
 }
 
 TEST_F(MediaFile, ThatCannotBeAreRefused) {

@@ -109,14 +109,13 @@ TEST_F(DielectricWarnings, TellMaterialsOfOneMeshApart) {
 
 TEST_F(DielectricWarnings, AreNotForWhatIsComputed) {
     const std::string right_scenes[] = {
-        entry("clear", 2) + "," + entry("wall", 1),                            // opaque in clear glass
-        entry("wall", 5) + "," + entry("teal", 1),                             // glass in a room
-        entry("teal", 1) + "," + entry("clear", 1, 3),                         // side by side
-        entry("teal", 2) + "," + entry("clear", 1, 1.5),                       // partly inside
-        entry("teal", 1) + "," + entry("clear", 1) + "," + entry("clear", 1),  // in the same place
-        entry("wall", 2) + "," + entry("wall", 1),                             // no glass at all
-        entry("teal", 1) + "," + entry("wall", 1, 2),                          // touching
-        entry("clear", 1) + "," + entry("wall", 1, 1.5),                       // reaching into clear glass
+        entry("clear", 2) + "," + entry("wall", 1),       // opaque in clear glass
+        entry("wall", 5) + "," + entry("teal", 1),        // glass in a room
+        entry("teal", 1) + "," + entry("clear", 1, 3),    // side by side
+        entry("teal", 2) + "," + entry("clear", 1, 1.5),  // partly inside
+        entry("wall", 2) + "," + entry("wall", 1),        // no glass at all
+        entry("teal", 1) + "," + entry("wall", 1, 2),     // touching
+        entry("clear", 1) + "," + entry("wall", 1, 1.5),  // reaching into clear glass
     };
     for (const std::string& scene : right_scenes) EXPECT_TRUE(warnings(scene).empty()) << scene;
 }
@@ -127,7 +126,7 @@ TEST_F(DielectricWarnings, AreNotForTheGlassScene) {
 
 TEST_F(DielectricWarnings, EndEarlyInScenesOfManyInstances) {
     std::string meshes = entry("clear", 1);
-    for (int i = 0; i < 5000; ++i) meshes += "," + entry("clear", 1, i);
+    for (int i = 1; i < 5000; ++i) meshes += "," + entry("clear", 1, i);
     EXPECT_TRUE(warnings(meshes).empty());
 }
 

@@ -74,10 +74,8 @@ class ViewerTest : public testing::Test {
             if (*device_->surface()) break;
         }
         ASSERT_TRUE(*device_->surface());
-        const SceneOptions& scene = options.scene;
-        viewer_ = std::make_unique<Viewer>(
-            *window_, *device_, chapter_,
-            make_job(chapter_, options, std::make_shared<Scene>(load_scene(scene.file, scene.specular))));
+        viewer_ = std::make_unique<Viewer>(*window_, *device_, chapter_,
+                                           make_job(chapter_, options, load_scene_for(chapter_, options.scene)));
         glfwFocusWindow(window_->handle());
         run_frames(2);
     }

@@ -8,6 +8,7 @@
 #include "app/backends.h"
 #include "error.h"
 #include "platform.h"
+#include "rendering/render_job.h"
 #include "rendering/scene_reference.h"
 #include "rendering/settings.h"
 #include "tracing/bvh.h"
@@ -63,7 +64,8 @@ RenderParameters picture(const Chapter& chapter, const Scene& scene, Options opt
 }
 
 void dump(const std::string& file, const Chapter& chapter, const Options& options) {
-    const Scene scene = load_scene(options.scene.file, options.scene.specular);
+    const std::shared_ptr<const Scene> loaded = load_scene_for(chapter, options.scene);
+    const Scene& scene = *loaded;
     const RenderParameters parameters = picture(chapter, scene, options);
     const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets,
                              chapter.media, chapter.light_tree);

@@ -1,0 +1,285 @@
+// Which body is where: random bodies that are nested, touch, share faces, are mirrored or parts of one mesh, compared with what
+// their boxes say; and surfaces that lie in one place.
+#include "scene/bodies.h"
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "scene/contacts.h"
+#include "test_files.h"
+
+namespace lab {
+namespace {
+
+using glm::dvec3;
+using testing::IsSubstring;
+
+struct Box {
+    vec3 low, high;
+};
+
+bool contains(const Box& box, const dvec3& point) {
+    return glm::all(glm::lessThan(dvec3(box.low), point)) && glm::all(glm::lessThan(point, dvec3(box.high)));
+}
+
+float volume(const Box& box) {
+    const vec3 size = box.high - box.low;
+    return size.x * size.y * size.z;
+}
+
+// The corners and faces of a box. `first` is the index of its first corner, counted from 1.
+std::string box_text(const Box& box, int first, bool is_inside_out = false) {
+    std::string text;
+    for (int i = 0; i < 8; ++i)
+        text += "v " + std::to_string(i & 1 ? box.high.x : box.low.x) + " " + std::to_string(i & 2 ? box.high.y : box.low.y) +
+                " " + std::to_string(i & 4 ? box.high.z : box.low.z) + "\n";
+    for (const auto& face : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+        text += "f";
+        for (size_t i = 0; i < 4; ++i) text += " " + std::to_string(first + face[is_inside_out ? 3 - i : i]);
+        text += "\n";
+    }
+    return text;
+}
+
+// Random boxes: each is divided into boxes that touch it and each other, or contains smaller ones that do not.
+class RandomBoxes {
+  public:
+    explicit RandomBoxes(unsigned seed) : random_(seed) { divide({vec3(-8), vec3(8)}, 3); }
+    const std::vector<Box>& boxes() const { return boxes_; }
+
+  private:
+    int choose(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
+
+    void divide(const Box& box, int depth) {
+        const bool shrinks = choose(2) == 0;
+        const float margin = shrinks ? 0.25f : 0;
+        const Box inner{box.low + margin, box.high - margin};
+        boxes_.push_back(inner);
+        if (depth == 0 || glm::any(glm::lessThan(inner.high - inner.low, vec3(1.5f)))) return;
+        const int axis = choose(3);
+        Box half = inner;
+        half.high[axis] = 0.5f * (inner.low[axis] + inner.high[axis]);
+        divide(half, depth - 1);
+        half = {inner.low, inner.high};
+        half.low[axis] = 0.5f * (inner.low[axis] + inner.high[axis]);
+        if (choose(3) > 0) divide(half, depth - 1);
+    }
+
+    std::mt19937 random_;
+    std::vector<Box> boxes_;
+};
+
+// The medium around a point, as the next boundary on a ray has it, in double precision.
+uint32_t medium_by_ray(const Scene& scene, const dvec3& origin, const dvec3& direction) {
+    double nearest = INFINITY;
+    uint32_t medium = 0;
+    for (uint32_t instance = 0; instance < scene.instances.size(); ++instance)
+        for (const uint32_t triangle : scene.mesh_of(instance).triangles()) {
+            const dvec3 a = world_corner(scene, instance, triangle, 0), b = world_corner(scene, instance, triangle, 1),
+                        c = world_corner(scene, instance, triangle, 2);
+            dvec3 normal = glm::cross(b - a, c - a);
+            const double t = glm::dot(a - origin, normal) / glm::dot(direction, normal);
+            const dvec3 point = origin + t * direction;
+            const auto is_left_of = [&](const dvec3& p, const dvec3& q) {
+                return glm::dot(normal, glm::cross(q - p, point - p)) >= 0;
+            };
+            if (!(t > 0 && t < nearest && is_left_of(a, b) && is_left_of(b, c) && is_left_of(c, a))) continue;
+            nearest = t;
+            if (glm::determinant(glm::dmat3(mat3(scene.instances[instance].object_to_world))) < 0) normal = -normal;
+            const Boundary boundary = scene.boundaries.at(scene.boundary_places.at(triangle) +
+                                                          scene.boundary_places.at(scene.triangles.size() + instance));
+            medium = glm::dot(normal, direction) < 0 ? boundary.before : boundary.behind;
+        }
+    return medium;
+}
+
+class Bodies : public testing::Test {
+  protected:
+    Scene load(const std::string& meshes, const std::string& keys = "") const {
+        folder.write("all.mtl",
+                     "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl red\nKd 0.5 0 0\nnewmtl lamp\nKe 1 1 1\nnewmtl glass\nd 0\nNi 1.5\n");
+        return load_scene(folder.write("a.json", R"({"meshes": [)" + meshes + "]" + keys + "}"));
+    }
+    void write(const std::string& name, const std::string& text, const std::string& material = "grey") const {
+        folder.write(name, "mtllib all.mtl\nusemtl " + material + "\n" + text);
+    }
+    static std::string open(const std::string& file, double extinction = 1, const std::string& keys = "") {
+        return R"({"file": ")" + file + R"(", "medium": {"extinction": )" + std::to_string(extinction) +
+               R"(, "albedo": 0, "boundary": "open"})" + keys + "}";
+    }
+
+    TestFolder folder;
+};
+
+TEST_F(Bodies, AreTheSmallestAroundAPoint) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    size_t points = 0;
+    for (unsigned seed = 0; points < 100'000; ++seed) {
+        const std::vector<Box> boxes = RandomBoxes(seed).boxes();
+        // In any order; some are mirrored, some inside out, and every second scene has all in one mesh.
+        std::vector<size_t> order(boxes.size());
+        for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+        std::ranges::shuffle(order, random);
+        std::string meshes, together;
+        const bool is_one_mesh = seed % 2 == 1;
+        for (size_t k = 0; k < order.size(); ++k) {
+            const Box& box = boxes[order[k]];
+            const std::string file = "box" + std::to_string(k) + ".obj";
+            const bool is_inside_out = !is_one_mesh && random() % 4 == 0, is_mirrored = random() % 4 == 0;
+            const Box placed = is_mirrored ? Box{{-box.high.x, box.low.y, box.low.z}, {-box.low.x, box.high.y, box.high.z}} : box;
+            write(file, box_text(placed, 1, is_inside_out));
+            together += box_text(box, static_cast<int>(8 * k + 1), is_inside_out);
+            meshes +=
+                (k > 0 ? "," : "") + open(file, static_cast<double>(order[k] + 1), is_mirrored ? R"(, "scale": [-1, 1, 1])" : "");
+        }
+        write("together.obj", together);
+        const Scene scene = load(is_one_mesh ? open("together.obj") : meshes);
+        ASSERT_EQ(find_bodies(scene).size(), boxes.size()) << seed;
+        ASSERT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+        // The larger the index of a medium, the smaller its body: so volumes tell bodies of one mesh apart, as far as they
+        // differ.
+        for (int i = 0; i < 400; ++i, ++points) {
+            // A point beside a face, which others may touch.
+            const Box& box = boxes[random() % boxes.size()];
+            dvec3 point;
+            for (int axis = 0; axis < 3; ++axis)
+                point[axis] = glm::mix(double{box.low[axis]}, double{box.high[axis]}, uniform(random));
+            const int axis = static_cast<int>(random() % 3);
+            point[axis] = (random() % 2 ? box.low : box.high)[axis] + (random() % 2 ? 0.02 : -0.02);
+            const dvec3 direction(uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5);
+            std::optional<size_t> expected;
+            for (size_t k = 0; k < boxes.size(); ++k)
+                if (contains(boxes[k], point) && (!expected || volume(boxes[k]) <= volume(boxes[*expected]))) expected = k;
+            const uint32_t medium = medium_by_ray(scene, point, direction);
+            if (is_one_mesh)
+                ASSERT_EQ(medium == 0, !expected) << seed << ", " << i;
+            else
+                ASSERT_EQ(scene.media.at(medium).extinction, expected ? static_cast<float>(*expected + 1) : 0)
+                    << seed << ", " << i;
+        }
+    }
+    RecordProperty("points", static_cast<int>(points));
+}
+
+TEST_F(Bodies, OpaqueTrianglesBoundNothing) {
+    // A room with its walls inwards, a vase of glass and an opaque box, all in one mesh.
+    write("room.obj", box_text({vec3(-5), vec3(5)}, 1, true) + box_text({vec3(2), vec3(3)}, 9) + "usemtl glass\n" +
+                          box_text({vec3(-1), vec3(1)}, 17));
+    write("milk.obj", box_text({vec3(-0.5f), vec3(0.5f)}, 1), "glass");
+    const Scene scene = load(R"({"file": "room.obj"}, {"file": "milk.obj", "medium": {"extinction": 3, "albedo": 1}})",
+                             R"(, "fog": {"extinction": 7, "albedo": 1})");
+    ASSERT_EQ(scene.media.size(), 3u);
+    EXPECT_EQ(scene.media[1].extinction, 0) << "clear glass";
+    EXPECT_EQ(scene.media[2].extinction, 3);
+    const auto extinction_at = [&](const dvec3& point) {
+        return scene.media[medium_by_ray(scene, point, {0.1, -0.2, -1})].extinction;
+    };
+    EXPECT_EQ(extinction_at({0.1, 0.2, 4}), 7);
+    EXPECT_EQ(extinction_at({0.1, 0.2, 0.9}), 0);
+    EXPECT_EQ(extinction_at({0.1, 0.2, 0}), 3);
+}
+
+TEST_F(Bodies, ACavityInGlassIsFilledByWhatIsAroundTheGlass) {
+    write("hollow.obj", box_text({vec3(-2), vec3(2)}, 1) + box_text({vec3(-1), vec3(1)}, 9, true), "glass");
+    const Scene scene = load(R"({"file": "hollow.obj"})", R"(, "fog": {"extinction": 7, "albedo": 1})");
+    const auto extinction_at = [&](double z) { return scene.media[medium_by_ray(scene, {0.1, 0.2, z}, {0, 0, 1})].extinction; };
+    EXPECT_EQ(extinction_at(-3), 7);
+    EXPECT_EQ(extinction_at(-1.5), 0);
+    EXPECT_EQ(extinction_at(0), 7);
+    EXPECT_EQ(extinction_at(1.5), 0);
+    EXPECT_TRUE(std::ranges::none_of(scene.warnings, [](const std::string& note) { return note.find("turned") != note.npos; }));
+}
+
+TEST_F(Bodies, InsideOutGlassIsTurnedAround) {
+    write("a.obj", box_text({vec3(-1), vec3(1)}, 1, true), "glass");
+    const Scene scene = load(R"({"file": "a.obj"}, {"file": "a.obj", "translation": [5, 0, 0]})");
+    ASSERT_EQ(scene.warnings.size(), 2u);
+    EXPECT_PRED_FORMAT2(IsSubstring, "face inwards: turned around", scene.warnings[0]);
+    for (const Body& body : find_bodies(scene)) EXPECT_NEAR(body.volume, 8, 1e-6);
+}
+
+TEST_F(Bodies, HolesAndOverlapsAreNoted) {
+    const std::string box = box_text({vec3(0), vec3(2)}, 1);
+    write("hole.obj", box.substr(0, box.rfind("f ")));
+    write("box.obj", box);
+    write("bar.obj", box_text({{0.5f, 0.5f, -1}, {1, 1, 5}}, 1));
+    auto notes = load(open("hole.obj")).warnings;
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_PRED_FORMAT2(IsSubstring, "hole.obj: the boundary of its medium is not closed: it has 4 open edges", notes[0]);
+    notes = load(open("box.obj") + "," + open("bar.obj")).warnings;
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_PRED_FORMAT2(IsSubstring, "overlaps with", notes[0]);
+    EXPECT_PRED_FORMAT2(IsSubstring, "smaller one, ", notes[0]);
+    EXPECT_TRUE(notes[0].ends_with("bar.obj")) << notes[0];
+    EXPECT_TRUE(load(open("box.obj") + "," + open("box.obj", 1, R"(, "translation": [3, 0, 0])")).warnings.empty());
+}
+
+// The heights of all corners of an instance.
+std::vector<float> heights(const Scene& scene, uint32_t instance) {
+    std::vector<float> found;
+    for (const uint32_t triangle : scene.mesh_of(instance).triangles())
+        for (int i = 0; i < 3; ++i) found.push_back(static_cast<float>(world_corner(scene, instance, triangle, i).y));
+    std::ranges::sort(found);
+    return found;
+}
+
+const std::string floor_text = "v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\n";
+const std::string rug_text = "v -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3 4\n",
+                  rug_below_text = "v -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 4 3 2 1\n";
+
+TEST_F(Bodies, ThatTouchSomethingMoveInwards) {
+    write("floor.obj", floor_text);
+    write("box.obj", box_text({vec3(0), vec3(2)}, 1), "glass");
+    const Scene scene = load(R"({"file": "box.obj"}, {"file": "floor.obj"}, {"file": "box.obj", "translation": [0, 3, 0]})");
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_GT(heights(scene, 0).front(), 0);
+    EXPECT_LT(heights(scene, 0).front(), 1e-3);
+    EXPECT_EQ(heights(scene, 1).back(), 0) << "what is opaque stays";
+    EXPECT_EQ(heights(scene, 2).front(), 3) << "another placement of the mesh stays";
+}
+
+TEST_F(Bodies, OfWhichOneFillsTheOtherLieInside) {
+    write("box.obj", box_text({vec3(0), vec3(2)}, 1), "glass");
+    for (const bool is_first : {false, true}) {
+        const std::string glass = R"({"file": "box.obj"})", medium = open("box.obj", 3);
+        const Scene scene = load(is_first ? medium + "," + glass : glass + "," + medium);
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+        const uint32_t outer = is_first ? 1 : 0;
+        EXPECT_EQ(heights(scene, outer).front(), 0);
+        EXPECT_GT(heights(scene, 1 - outer).front(), 0);
+        EXPECT_LT(heights(scene, 1 - outer).back(), 2);
+        EXPECT_EQ(scene.media.at(2).extinction, 3);
+    }
+}
+
+TEST_F(Bodies, LampsInThePlaneOfSomethingMoveToTheirFront) {
+    write("floor.obj", floor_text);
+    write("up.obj", rug_text, "lamp");
+    write("down.obj", rug_below_text, "lamp");
+    const std::string floor = R"({"file": "floor.obj"})", up = R"({"file": "up.obj"})", down = R"({"file": "down.obj"})";
+    const Scene scene = load(up + "," + floor + "," + down);
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    EXPECT_GT(heights(scene, 0).front(), 0);
+    EXPECT_LT(heights(scene, 2).back(), 0);
+    EXPECT_EQ(heights(scene, 1).back(), 0);
+}
+
+TEST_F(Bodies, OpaqueSurfacesInOnePlaneAreShownInTheirOrder) {
+    write("floor.obj", floor_text);
+    write("rug.obj", rug_text, "red");
+    write("grey_rug.obj", rug_text);
+    write("crate.obj", box_text({vec3(0), vec3(2)}, 1), "red");
+    const std::string floor = R"({"file": "floor.obj"})", rug = R"({"file": "rug.obj"})";
+    const Scene scene = load(floor + "," + rug);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_PRED_FORMAT2(IsSubstring, "rug.obj: lies in the plane of", scene.warnings[0]);
+    EXPECT_GT(heights(scene, 1).front(), 0);
+    const Scene crate = load(floor + R"(, {"file": "crate.obj"})");
+    EXPECT_TRUE(crate.warnings.empty()) << "it stands on the floor: what is in one plane faces opposite ways";
+    EXPECT_EQ(heights(crate, 1).front(), 0);
+}
+
+}  // namespace
+}  // namespace lab
