@@ -121,8 +121,11 @@ float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
         transmittance *= get_transmittance_of(get_medium(medium), ray, hit.distance, seed);
         medium = get_sides(hit, ray.direction, medium).beyond;
         ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
-        // A ray that ends at a point still ends there.
-        if (t_max < NO_LIMIT) ray.direction = end - ray.origin;
+        if (t_max == NO_LIMIT) continue;
+        // A ray that ends at a point still ends there. If that is as close behind the boundary as rays start, it has.
+        vec3 rest = end - ray.origin;
+        if (dot(rest, ray.direction) <= 0.0) return transmittance;
+        ray.direction = rest;
     }
     return transmittance * get_transmittance_of(get_medium(medium), ray, t_max, seed);
 #else

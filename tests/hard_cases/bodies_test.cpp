@@ -169,7 +169,7 @@ TEST_F(BodiesOnAllBackends, DisappearUnderASky) {
             Scene scene = load(mesh + ", " + open("far.obj", "0.001", "1"), R"(, "background": {"radiance": 1})");
             if (has_probe) scene.light_probe = Image{8, 4, std::vector<float>(8 * 4 * 3, 1.0f)};
             scene.camera = {.position = {1, 2, 4}, .target = {0, 0, 0}, .vertical_fov = 40};
-            expect_mean(scene, 1, 2e-3);
+            expect_mean(scene, 1, has_probe ? 0.02 : 2e-3);  // light samples of a probe vary
         }
 }
 
