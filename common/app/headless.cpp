@@ -71,9 +71,6 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
-        // The limit is checked between dispatches, but a shader may never finish one.
-        constexpr double patience = 2;
-        if (options_.time_limit) interrupt_after(*options_.time_limit + patience);
         start_ = last_save_ = Clock::now();
         unmeasured_cpu_seconds_ = processor_seconds();
         try {
@@ -82,7 +79,7 @@ class HeadlessRender {
             // Only the last snapshot is left.
             write_after_failure(error, snapshot_, [&] { write_outputs(); });
         }
-        if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
+        if (!snapshot_.exceeds(0)) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
         remove_interrupt_handler();
         if (!options_.quiet)
@@ -92,20 +89,17 @@ class HeadlessRender {
     }
 
   private:
+    // Ends with a snapshot of everything that was rendered.
     void sample() {
         Progress progress(job_.samples, renderer_.samples(), options_.quiet);
         uint32_t done = snapshot_.min_samples();
-        while (done < job_.samples && !is_interrupted()) {
+        while (done < job_.samples) {
             const uint32_t next = next_sample_count(done, job_.samples, growth());
-            bool more = true;
-            while (more && !is_interrupted() && !is_time_over()) {
+            for (bool more = true; more;) {
+                if (is_interrupted() || is_time_over()) return take_snapshot();
                 more = renderer_.advance(next);
                 progress.update(renderer_.samples(), renderer_.rays());
                 save_if_due();
-            }
-            if (more) {
-                take_snapshot();
-                return;
             }
             done = next;
             add_row(done);

@@ -16,6 +16,7 @@
 #include "rendering/build.h"
 #include "rendering/settings.h"
 #include "scene/features.h"
+#include "tracing/limited_loops.h"
 #include "viewer/viewer.h"
 
 namespace lab {
@@ -204,6 +205,8 @@ class Commands {
                                : std::make_shared<Scene>(load_scene(options.scene.file, options.scene.specular));
         check_inputs(options.run, *scene);
         RenderJob job = make_job(chapter_, options, scene);
+        // A time limit is checked between dispatches, so that each of them has to end.
+        if (options.run.time_limit) job.estimator = with_limited_loops(std::move(job.estimator));
         print_warnings(chapter_, job);
         if (const auto window = open_window(chapter_, options, job.parameters.image_size);
             window && run_in_window(*window, chapter_, job))

@@ -1,6 +1,7 @@
 #include "gpu/device.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <set>
@@ -263,18 +264,18 @@ void Device::create_device() {
     timestamps_ = {device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)};
 }
 
-void Device::wait_for_fence() const {
+void Device::wait_for_fence(double patience) const {
     constexpr uint64_t nanoseconds = 50'000'000;  // between two looks for an interrupt
-    constexpr double patience = 3;                // seconds for a dispatch to end by itself
     std::optional<Clock::time_point> interrupted;
     while (device_.waitForFences(*fence_, true, nanoseconds) == vk::Result::eTimeout) {
         if (!interrupted && is_interrupted()) interrupted = Clock::now();
         if (interrupted && seconds_since(*interrupted) > patience)
-            throw EndlessWork("the shader did not end: does it have a loop without an end?");
+            throw EndlessWork("the device did not answer within " + std::to_string(std::lround(patience)) +
+                              " s: it is busy, or a loop of the shader does not end");
     }
 }
 
-double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
+double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record, double patience) const {
     const auto lock = lock_queue();
     command_buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     command_buffer_.resetQueryPool(*timestamps_, 0, 2);
@@ -287,7 +288,7 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
                                     vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
     command_buffer_.end();
     queue_.submit(vk::SubmitInfo({}, {}, *command_buffer_), *fence_);
-    wait_for_fence();
+    wait_for_fence(patience);
     device_.resetFences(*fence_);
     const auto [result, ticks] = timestamps_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t),
                                                                   vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);

@@ -90,7 +90,9 @@ DeviceTracer::DeviceTracer(const Device& device, std::span<const Binding> bindin
 
 std::optional<double> DeviceTracer::trace(std::span<const DispatchParameters> steps, uint32_t block_count,
                                           uint32_t film_offset) const {
-    return device_.submit([&](const vk::raii::CommandBuffer& commands) {
+    // A shader that has ended before probably will again: if not soon, then because the machine is busy.
+    constexpr double seconds_of_first = 3, seconds_of_later = 20;
+    const auto record_steps = [&](const vk::raii::CommandBuffer& commands) {
         for (const DispatchParameters& step : steps) {
             record(commands, step, block_count, film_offset);
             if (!adder_) continue;
@@ -98,7 +100,10 @@ std::optional<double> DeviceTracer::trace(std::span<const DispatchParameters> st
             adder_->record(commands, &step, block_count, film_offset);
             wait_for_writes(commands);
         }
-    });
+    };
+    const double seconds = device_.submit(record_steps, has_ended_ ? seconds_of_later : seconds_of_first);
+    has_ended_ = steps.back().target_samples > 0;
+    return seconds;
 }
 
 bool is_suitable(Backend backend, const Device& device, const Scene& scene) {
