@@ -57,7 +57,7 @@ class EndlessTest(CopiedLab, ProgramTest):
 
     def test_a_time_limit_waits_for_a_dispatch_that_takes_long(self):
         """As on a busy machine: each sample takes seconds, but its loop ends."""
-        self.shader.write_text(BODY.replace("for (;;)", "for (uint i = 0u; i < 10000u; ++i)"), encoding="utf-8")
+        self.shader.write_text(BODY.replace("for (;;)", "for (uint i = 0u; i < 60000u; ++i)"), encoding="utf-8")
         code, out, err = self.run_program("cornell_box", "--headless", "--width=128", "--height=128", "--samples=1000", "--backend=compute",
                                           "--time-limit=0.1", program=self.program)
         self.assertEqual(code, 0, err)
