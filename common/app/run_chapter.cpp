@@ -119,7 +119,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
     const RenderJob& job = build.job;
     std::cout << chapter.name << ", " << job.header.scene << ", " << size_text(job.parameters.image_size) << ", " << job.samples
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
-    if (chapter.unlimited_path_length && !job.options.light.max_path_length)
+    if (ends_at_safety_limit(chapter, *job.scene, job.options))
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
     if (const auto at_once = build.renderer->tracer().paths_at_once()) {
         const auto& [count, why_not_more] = *at_once;

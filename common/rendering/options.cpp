@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "files/project_folder.h"
+#include "rendering/settings.h"
 
 namespace lab {
 namespace {
@@ -34,7 +35,7 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
             meaning};
 }
 
-// "NAME=FILE" as the canonical path of the chapter's shader NAME, and FILE. The chapter may lack what it may override.
+// "NAME=FILE" as the canonical path of the chapter's shader NAME, and FILE. make_estimator() checks that the chapter reads it.
 std::pair<std::filesystem::path, std::filesystem::path> replacement(const Chapter& chapter, const std::string& text) {
     const size_t middle = std::min(text.find('='), text.size());
     const std::filesystem::path name = text.substr(0, middle), file = text.substr(std::min(middle + 1, text.size()));
@@ -42,11 +43,6 @@ std::pair<std::filesystem::path, std::filesystem::path> replacement(const Chapte
     const auto place = std::filesystem::weakly_canonical((name.has_parent_path() ? chapters : chapters / chapter.name) / name);
     std::error_code ignored;  // names that the file system refuses
     const auto is_file = [&](const auto& path) { return std::filesystem::is_regular_file(path, ignored); };
-    const auto is_override = [&](const char* room) { return is_file(project_folder() / "shaders" / room / name.filename()); };
-    if (name.extension() != ".glsl" || !(is_file(place) || is_override("world") || is_override("engine")))
-        throw UserError("--shader " + text + ": there is no shader " +
-                        in_quotes(place.lexically_relative(project_folder()).string()) +
-                        ": write NAME=FILE, with the name of one of the chapter's shaders");
     if (!is_file(file)) throw UserError("--shader " + text + ": there is no file " + in_quotes(file.string()));
     return {place, file};
 }
@@ -84,7 +80,8 @@ void add_options(CLI::App& app, const Chapter& chapter, Options& options, std::s
     whole("--seed", samples.seed, 0, max_count, "Chooses the random numbers");
     whole("--first-sample", samples.first_sample, 0, max_count, "Index of the first sample: splits a render into ranges");
     whole("--max-path-length", light.max_path_length, 0, path_length_limit,
-          "Bounces after which a path ends, 0 for emission only" + unless_given(defaults.max_path_length));
+          "Bounces after which a path ends, 0 for emission only" +
+              unless_given(chapter.unlimited_path_length ? safety_limit : defaults.max_path_length));
     whole("--only-path-length", light.only_path_length, 0, path_length_limit, "Show only light after exactly this many bounces");
     number("--target-error", run.target_error, 1e-12, 1e12, "a positive number",
            "Stop when the relative error is below this: 0.01 is 1 %");

@@ -7,6 +7,7 @@
 #include "image/image_checks.h"
 #include "scene/coincident_lights.h"
 #include "scene/features.h"
+#include "scene/lamp_warnings.h"
 #include "scene/media.h"
 #include "scene/obj_file.h"
 #include "scene/scene_file.h"
@@ -130,7 +131,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
     if (!std::isfinite(diagonal)) throw UserError(name + ": its coordinates are too large for 32-bit numbers");
     if (!description.has_camera && !scene.instances.empty()) scene.camera = framing_pose(bounds);
-    for (const auto& find_warnings : {dielectric_warnings, precision_warnings})
+    for (const auto& find_warnings : {dielectric_warnings, precision_warnings, lamp_warnings})
         for (std::string& warning : find_warnings(scene)) scene.warnings.push_back(std::move(warning));
     scene.hash = sources.hash();
     scene.sources = sources.names();
@@ -174,7 +175,10 @@ Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
     camera.right = vec3(tangent * width / height * right);
     camera.up = vec3(tangent * glm::cross(right, forward));
     camera.aperture_radius = 0.5f * pose.aperture_diameter;
-    camera.focus_distance = pose.focus_distance > 0 ? pose.focus_distance : static_cast<float>(distance);
+    // From here on a plane in focus is at infinity for the shader, which squares lengths in 32 bits.
+    const double farthest = 1e18 / glm::length(camera.forward + camera.right + camera.up);
+    camera.focus_distance =
+        static_cast<float>(std::min(pose.focus_distance > 0 ? double{pose.focus_distance} : distance, farthest));
     return camera;
 }
 

@@ -44,6 +44,7 @@ struct RenderDefaults {
     uint32_t height = 512;
     uint32_t samples = 64;
     uint32_t max_path_length = 8;
+    bool limits_paths = false;  // whether the scene itself asks for this length
 };
 
 struct CameraPose {

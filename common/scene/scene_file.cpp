@@ -148,6 +148,7 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     defaults.height = root.integer("height", 1, max_image_extent).value_or(defaults.height);
     defaults.samples = root.integer("samples", 1, max_count).value_or(defaults.samples);
     defaults.max_path_length = root.integer("max_path_length", 0, path_length_limit).value_or(defaults.max_path_length);
+    defaults.limits_paths = root.has("max_path_length");
     return result;
 }
 
