@@ -212,8 +212,8 @@ class HeadlessRender {
                     short_number(static_cast<double>(scene_backend_.bytes())).c_str(),
                     duration_text(scene_backend_.build_seconds()).c_str());
         if (error && shows_radiance)
-            std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n", 100 * error->rel_rmse,
-                        reference_ ? "against the reference" : "estimated");
+            std::printf("%-15s%.3g %% (root of the relative mean squared error, %s)\n", reference_ ? "error" : "noise",
+                        100 * error->rel_rmse, reference_ ? "against the reference" : "estimated; a bias does not show in it");
         if (snapshot_.invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());
         for (const auto& file : options_.outputs) std::printf("picture        %s\n", file.string().c_str());
         if (!options_.report.empty()) std::printf("report         %s\n", options_.report.string().c_str());

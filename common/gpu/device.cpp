@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <set>
@@ -104,6 +105,14 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device, std::span<con
     return description;
 }
 
+// What to do without a driver. Variables may hide those that are installed.
+std::string driver_advice() {
+    for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"})
+        if (const char* value = std::getenv(name))
+            return std::string("the variable ") + name + " is " + in_quotes(value) + ": unset it, or correct it";
+    return std::string("install ") + vulkan_driver;
+}
+
 vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, std::vector<const char*> extensions = {}) {
     const vk::ApplicationInfo application("path tracing lab", 1, nullptr, 0, VK_API_VERSION_1_2);
     std::vector<const char*> layers;
@@ -124,7 +133,7 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
     try {
         return {context, vk::InstanceCreateInfo(flags, &application, layers, extensions)};
     } catch (const vk::SystemError&) {
-        throw DeviceError(std::string("no Vulkan driver: install ") + vulkan_driver);
+        throw DeviceError("no Vulkan driver: " + driver_advice());
     }
 }
 
@@ -142,7 +151,7 @@ std::vector<vk::raii::PhysicalDevice> enumerate_devices(const vk::raii::Instance
         for (auto& device : vk::raii::PhysicalDevices(instance)) devices.push_back(std::move(device));
     } catch (const vk::SystemError&) {
     }
-    if (devices.empty()) throw DeviceError(std::string("no Vulkan device: install ") + vulkan_driver);
+    if (devices.empty()) throw DeviceError("no Vulkan device: " + driver_advice());
     return devices;
 }
 

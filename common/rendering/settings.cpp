@@ -21,6 +21,10 @@ uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Optio
     return std::max(options.light.max_path_length.value_or(scene.defaults.max_path_length), only);
 }
 
+uvec2 image_size_of(const Scene& scene, const Options& options) {
+    return {options.image.width.value_or(scene.defaults.width), options.image.height.value_or(scene.defaults.height)};
+}
+
 // The value of the chapter's option number i: as given, or its default.
 double value_of(const Chapter& chapter, size_t i, const Options& options) {
     return options.samples.chapter_values[i].value_or(chapter.options[i].default_value);
@@ -64,7 +68,14 @@ void check_replacements(const Estimator& chapter, const Replacements& replacemen
 
 CameraPose camera_of(const Chapter& chapter, const Scene& scene, const Options& options) {
     const CameraOptions& wanted = options.camera;
-    return {.position = wanted.position.value_or(scene.camera.position),
+    vec3 position = scene.camera.position;
+    const uvec2 size = image_size_of(scene, options);
+    if (scene.is_framed && size.x < size.y) {  // what fits between top and bottom also has to fit between left and right
+        const double half = glm::radians(0.5 * scene.camera.vertical_fov), tangent = std::tan(half) * size.x / size.y;
+        const double farther = std::sin(half) / std::sin(std::atan(tangent));
+        position = scene.camera.target + static_cast<float>(farther) * (position - scene.camera.target);
+    }
+    return {.position = wanted.position.value_or(position),
             .target = wanted.target.value_or(scene.camera.target),
             .up = wanted.up.value_or(scene.camera.up),
             .vertical_fov = wanted.vertical_fov.value_or(scene.camera.vertical_fov),
@@ -94,9 +105,7 @@ bool ends_at_safety_limit(const Chapter& chapter, const Scene& scene, const Opti
 }
 
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
-    const uvec2 image_size(options.image.width.value_or(scene.defaults.width),
-                           options.image.height.value_or(scene.defaults.height));
-    RenderParameters parameters = default_parameters(scene, camera_of(chapter, scene, options), image_size);
+    RenderParameters parameters = default_parameters(scene, camera_of(chapter, scene, options), image_size_of(scene, options));
     parameters.background = background_of(scene, options);
     parameters.seed_key = seed_key(options.samples.seed);
     parameters.first_sample = options.samples.first_sample;

@@ -128,9 +128,13 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     }
 
     const Bounds bounds = world_bounds(scene);
-    const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
-    if (!std::isfinite(diagonal)) throw UserError(name + ": its coordinates are too large for 32-bit numbers");
-    if (!description.has_camera && !scene.instances.empty()) scene.camera = framing_pose(bounds);
+    const double diagonal = scene.instances.empty() ? 0 : glm::distance(glm::dvec3(bounds.low), glm::dvec3(bounds.high));
+    if (!(diagonal < 1.8e19)) throw UserError(name + ": its coordinates are too large for 32-bit numbers");
+    if (diagonal > 0 && diagonal < 1e-18)
+        throw UserError(
+            name + ": it is smaller than 1e-18 units, so that squares of its lengths vanish in 32 bits: give it a larger scale");
+    scene.is_framed = !description.has_camera && !scene.instances.empty();
+    if (scene.is_framed) scene.camera = framing_pose(bounds);
     for (const auto& find_warnings : {dielectric_warnings, precision_warnings, lamp_warnings})
         for (std::string& warning : find_warnings(scene)) scene.warnings.push_back(std::move(warning));
     scene.hash = sources.hash();

@@ -79,6 +79,7 @@ struct Scene {
     std::vector<Texture> textures;
 
     CameraPose camera;
+    bool is_framed = false;            // the camera is framing_pose()
     vec3 background{0};                // radiance of a constant sky, or factor of the light probe
     std::optional<Image> light_probe;  // equirectangular, +Y up, image centre towards -Z
     float probe_rotation = 0;          // radians

@@ -34,8 +34,8 @@ const std::vector<std::filesystem::path>& replaceable_files();
 // Files for #include in shaders that run an estimator: "path_trace.glsl" is its own, and so may be those that can be replaced.
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator);
 
-// The places of the shaders that --shader can replace: those of chapters/ that a chapter's estimator includes, and what its folder
-// may bring.
+// The places of the shaders that --shader can replace: those of chapters/ that a chapter's estimator includes, and what its
+// folder may bring.
 std::set<std::filesystem::path> replaceable_places(const Estimator& estimator);
 
 // All files that an estimator is compiled from, with any backend.

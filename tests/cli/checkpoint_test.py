@@ -166,6 +166,16 @@ class Checkpoints(RenderTest):
         for other in others:
             self.assert_refused([*other, "--samples=8", "--resume=part.exr", "--output=new.exr"], r"part\.exr")
 
+    def test_what_differs_is_named_and_nothing_else(self):
+        self.picture("part", "--samples=4")
+        self.assert_refused([*self.command("--max-path-length=3", "--samples=8"), "--resume=part.exr", "--output=new.exr"],
+                            "settings '--max-path-length 8' against '--max-path-length 3'")
+
+    def test_a_merge_keeps_what_it_joins(self):
+        self.picture("a", "--samples=2")
+        self.picture("b", "--samples=2", "--first-sample=2")
+        self.assert_refused(["a.exr", "b.exr", "--output=./a.exr"], "would replace", program=MERGE)
+
     def test_a_truncated_checkpoint_is_refused(self):
         self.picture("part", "--samples=4")
         whole = (self.folder / "part.exr").read_bytes()
