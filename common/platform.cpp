@@ -1,9 +1,7 @@
 #include "platform.h"
 
-#include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
@@ -39,8 +37,8 @@ static std::string variable(const char* name) {
     return value ? value : "";
 }
 
-static std::atomic<int> interrupted = 0;  // by this signal
-static_assert(std::atomic<int>::is_always_lock_free, "a signal may come while it is read");
+static std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal may come while it is read");
 
 #ifdef _WIN32
 static constexpr std::array ending_signals{SIGINT, SIGTERM};
@@ -62,7 +60,7 @@ static bool repeats(int signal) { return signal == SIGHUP || signal == SIGXCPU; 
 #endif
 
 static void interrupt(int signal) {
-    interrupted = signal;
+    interrupted = true;
     if (!repeats(signal)) std::signal(signal, SIG_DFL);
 }
 
@@ -71,24 +69,12 @@ void install_interrupt_handler() {
         if (!is_ignored(signal)) std::signal(signal, interrupt);
 }
 
-void interrupt_after([[maybe_unused]] double seconds) {
-#ifndef _WIN32
-    std::signal(SIGALRM, interrupt);
-    alarm(static_cast<unsigned>(std::min(std::ceil(seconds), 1e9)));
-#endif
-}
-
 void remove_interrupt_handler() {
     for (const int signal : ending_signals)  // one that repeats may still come, and is no reason to die before the last word
         if (!is_ignored(signal) && !repeats(signal)) std::signal(signal, SIG_DFL);
-#ifndef _WIN32
-    alarm(0);
-    std::signal(SIGALRM, SIG_DFL);
-    if (interrupted == SIGALRM) interrupted = 0;
-#endif
 }
 
-bool is_interrupted() { return interrupted != 0; }
+bool is_interrupted() { return interrupted; }
 
 #ifdef __linux__
 std::vector<WindowSystem> window_systems() {

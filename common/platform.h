@@ -54,9 +54,7 @@ extern const char* const vulkan_driver;
 // program; a terminal that closes; a limit on processor time. What the caller has set to be ignored is still ignored.
 void install_interrupt_handler();
 bool is_interrupted();
-// Does the same after this many seconds, if the operating system can.
-void interrupt_after(double seconds);
-// From now on they end the program at once, and what interrupt_after() has done or would do is void.
+// From now on they end the program at once.
 void remove_interrupt_handler();
 
 }  // namespace lab

@@ -71,9 +71,6 @@ class HeadlessRender {
 
     void run() {
         install_interrupt_handler();
-        // The limit is checked between dispatches, but a shader may never finish one.
-        constexpr double patience = 2;
-        if (options_.time_limit) interrupt_after(*options_.time_limit + patience);
         start_ = last_save_ = Clock::now();
         unmeasured_cpu_seconds_ = processor_seconds();
         try {
@@ -82,7 +79,7 @@ class HeadlessRender {
             // Only the last snapshot is left.
             write_after_failure(error, snapshot_, [&] { write_outputs(); });
         }
-        if (renderer_.samples() == 0) throw UserError("stopped before the first sample: nothing was written");
+        if (!snapshot_.exceeds(0)) throw UserError("stopped before the first sample: nothing was written");
         write_outputs();
         remove_interrupt_handler();
         if (!options_.quiet)
@@ -92,20 +89,17 @@ class HeadlessRender {
     }
 
   private:
+    // Ends with a snapshot of everything that was rendered.
     void sample() {
         Progress progress(job_.samples, renderer_.samples(), options_.quiet);
         uint32_t done = snapshot_.min_samples();
-        while (done < job_.samples && !is_interrupted()) {
+        while (done < job_.samples) {
             const uint32_t next = next_sample_count(done, job_.samples, growth());
-            bool more = true;
-            while (more && !is_interrupted() && !is_time_over()) {
+            for (bool more = true; more;) {
+                if (is_interrupted() || is_time_over()) return take_snapshot();
                 more = renderer_.advance(next);
                 progress.update(renderer_.samples(), renderer_.rays());
                 save_if_due();
-            }
-            if (more) {
-                take_snapshot();
-                return;
             }
             done = next;
             add_row(done);
@@ -218,8 +212,8 @@ class HeadlessRender {
                     short_number(static_cast<double>(scene_backend_.bytes())).c_str(),
                     duration_text(scene_backend_.build_seconds()).c_str());
         if (error && shows_radiance)
-            std::printf("error          %.3g %% (root of the relative mean squared error, %s)\n", 100 * error->rel_rmse,
-                        reference_ ? "against the reference" : "estimated");
+            std::printf("%-15s%.3g %% (root of the relative mean squared error, %s)\n", reference_ ? "error" : "noise",
+                        100 * error->rel_rmse, reference_ ? "against the reference" : "estimated; a bias does not show in it");
         if (snapshot_.invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());
         for (const auto& file : options_.outputs) std::printf("picture        %s\n", file.string().c_str());
         if (!options_.report.empty()) std::printf("report         %s\n", options_.report.string().c_str());

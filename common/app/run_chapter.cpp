@@ -16,6 +16,7 @@
 #include "rendering/build.h"
 #include "rendering/settings.h"
 #include "scene/features.h"
+#include "tracing/limited_loops.h"
 #include "viewer/viewer.h"
 
 namespace lab {
@@ -118,7 +119,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
     const RenderJob& job = build.job;
     std::cout << chapter.name << ", " << job.header.scene << ", " << size_text(job.parameters.image_size) << ", " << job.samples
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
-    if (chapter.unlimited_path_length && !job.options.light.max_path_length)
+    if (ends_at_safety_limit(chapter, *job.scene, job.options))
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
     if (const auto at_once = build.renderer->tracer().paths_at_once()) {
         const auto& [count, why_not_more] = *at_once;
@@ -158,14 +159,30 @@ void debug_pixel(Build& build, uvec2 pixel) {
                 sum.b);
 }
 
+// One line for each option that was given but changes nothing.
+std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob& job) {
+    std::vector<std::string> unused;
+    const CameraOptions& camera = job.options.camera;
+    const bool has_focus = camera.focus_distance && (!job.options.image.view || job.options.image.view->name != "focus");
+    if (!chapter.lens && (asks_for_lens(job.options) || has_focus)) {
+        const char* option = camera.aperture_diameter ? "--aperture-diameter" : "--focus-distance";
+        unused.push_back(std::string(option) + " has no effect: " + chapter.name +
+                         " has a pinhole; use chapter 12, ./lab run 12");
+    } else if (has_focus && camera_of(chapter, *job.scene, job.options).aperture_diameter == 0) {
+        unused.push_back("--focus-distance has no effect on a pinhole: give --aperture-diameter, too");
+    }
+    if (job.options.scene.specular && !features_of(*job.scene).specular)
+        unused.push_back("--specular has no effect: no material of " + job.scene->file.string() + " has a Phong lobe (Ks)");
+    return unused;
+}
+
 // Prints what is worth knowing about the scene of a job. Throws UserError if a report would describe another picture.
 void print_warnings(const Chapter& chapter, const RenderJob& job) {
     std::vector<std::string> warnings = job.scene->warnings;
     const SceneFeatures features = features_of(*job.scene);
-    const std::pair<bool, const char*> left_out[] = {
-        {features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
-        {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"},
-        {features.media && !chapter.media, "media (fog, medium)"}};
+    const std::pair<bool, const char*> left_out[] = {{features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
+                                                     {features.lens && !chapter.lens, "lens (aperture diameter)"},
+                                                     {features.media && !chapter.media, "media (fog, medium)"}};
     for (const auto& [is_left_out, what] : left_out) {
         if (!is_left_out) continue;
         const std::string scene = job.scene->file.string(), use = ": use a chapter that can render it, see ./lab run";
@@ -173,6 +190,10 @@ void print_warnings(const Chapter& chapter, const RenderJob& job) {
             throw UserError("--report: " + chapter.name + " cannot render the " + what + " of " + scene + use);
         warnings.push_back(scene + ": " + chapter.name + " leaves out its " + what + use);
     }
+    for (std::string& warning : unused_options(chapter, job)) warnings.push_back(std::move(warning));
+    const bool has_light = features.area_lights || features.light_probe || background_of(*job.scene, job.options) != vec3(0);
+    if (!has_light && !job.options.image.view)
+        warnings.push_back(job.scene->file.string() + ": nothing emits light: give a material Ke, or use --background 1,1,1");
     for (const auto& warning : warnings)
         if (!job.options.run.quiet) std::cerr << "note: " << warning << "\n";
 }
@@ -204,6 +225,8 @@ class Commands {
                                : load_scene_for(chapter_, options.scene);
         check_inputs(options.run, *scene);
         RenderJob job = make_job(chapter_, options, scene);
+        // A time limit is checked between dispatches, so that each of them has to end.
+        if (options.run.time_limit) job.estimator = with_limited_loops(std::move(job.estimator));
         print_warnings(chapter_, job);
         if (const auto window = open_window(chapter_, options, job.parameters.image_size);
             window && run_in_window(*window, chapter_, job))

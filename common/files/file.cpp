@@ -120,6 +120,11 @@ void check_writable(const fs::path& file, const std::vector<std::string>& ending
     if (!writable) throw UserError(name + ": cannot be written: " + reason);
 }
 
+fs::path expand_home(const fs::path& path) {
+    const std::string name = path.string();
+    return name.starts_with("~/") ? user_folder() / name.substr(2) : path;
+}
+
 std::string printable(std::string_view text) {
     std::string result(text);
     std::replace_if(

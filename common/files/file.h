@@ -26,6 +26,9 @@ void write_file(const std::filesystem::path& file, std::span<const std::string_v
 // An existing file keeps its contents.
 void check_writable(const std::filesystem::path& file, const std::vector<std::string>& endings);
 
+// A path whose ~/ at the start stands for the user's home folder.
+std::filesystem::path expand_home(const std::filesystem::path& path);
+
 // The text with every control character replaced by '?'.
 std::string printable(std::string_view text);
 

@@ -137,6 +137,23 @@ FilmFile read_film(const std::filesystem::path& file) {
     return film;
 }
 
+// The options of one line of settings that the other lacks.
+static std::string options_beyond(const std::string& settings, const std::string& other) {
+    const auto options_of = [](const std::string& line) {
+        std::vector<std::string> options;
+        for (size_t begin = 0, end = 0; begin < line.size(); begin = end + 1) {
+            end = std::min(line.find(" --", begin), line.size());
+            options.push_back(line.substr(begin, end - begin));
+        }
+        return options;
+    };
+    const std::vector<std::string> others = options_of(other);
+    std::string beyond;
+    for (const std::string& option : options_of(settings))
+        if (std::ranges::find(others, option) == others.end()) beyond += (beyond.empty() ? "" : " ") + option;
+    return beyond;
+}
+
 void require_same_render(const FilmFile& a, const FilmFile& b, const std::string& name_a, const std::string& name_b) {
     const auto require = [&](const std::string& what, const std::string& value_a, const std::string& value_b) {
         if (value_a != value_b)
@@ -146,7 +163,8 @@ void require_same_render(const FilmFile& a, const FilmFile& b, const std::string
     require("size", size_text({a.image.width, a.image.height}), size_text({b.image.width, b.image.height}));
     require("chapter", a.header.chapter, b.header.chapter);
     require("seed", std::to_string(a.header.seed), std::to_string(b.header.seed));
-    require("settings", a.header.settings, b.header.settings);
+    require("settings", options_beyond(a.header.settings, b.header.settings),
+            options_beyond(b.header.settings, a.header.settings));
     require("scene hash", a.header.scene_hash, b.header.scene_hash);
     require("shader hash", a.header.estimator_hash, b.header.estimator_hash);
 }

@@ -1,6 +1,8 @@
 #include "gpu/device.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <set>
@@ -103,6 +105,14 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device, std::span<con
     return description;
 }
 
+// What to do without a driver. Variables may hide those that are installed.
+std::string driver_advice() {
+    for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"})
+        if (const char* value = std::getenv(name))
+            return std::string("the variable ") + name + " is " + in_quotes(value) + ": unset it, or correct it";
+    return std::string("install ") + vulkan_driver;
+}
+
 vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, std::vector<const char*> extensions = {}) {
     const vk::ApplicationInfo application("path tracing lab", 1, nullptr, 0, VK_API_VERSION_1_2);
     std::vector<const char*> layers;
@@ -123,7 +133,7 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
     try {
         return {context, vk::InstanceCreateInfo(flags, &application, layers, extensions)};
     } catch (const vk::SystemError&) {
-        throw DeviceError(std::string("no Vulkan driver: install ") + vulkan_driver);
+        throw DeviceError("no Vulkan driver: " + driver_advice());
     }
 }
 
@@ -141,7 +151,7 @@ std::vector<vk::raii::PhysicalDevice> enumerate_devices(const vk::raii::Instance
         for (auto& device : vk::raii::PhysicalDevices(instance)) devices.push_back(std::move(device));
     } catch (const vk::SystemError&) {
     }
-    if (devices.empty()) throw DeviceError(std::string("no Vulkan device: install ") + vulkan_driver);
+    if (devices.empty()) throw DeviceError("no Vulkan device: " + driver_advice());
     return devices;
 }
 
@@ -263,18 +273,18 @@ void Device::create_device() {
     timestamps_ = {device_, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)};
 }
 
-void Device::wait_for_fence() const {
+void Device::wait_for_fence(double patience) const {
     constexpr uint64_t nanoseconds = 50'000'000;  // between two looks for an interrupt
-    constexpr double patience = 3;                // seconds for a dispatch to end by itself
     std::optional<Clock::time_point> interrupted;
     while (device_.waitForFences(*fence_, true, nanoseconds) == vk::Result::eTimeout) {
         if (!interrupted && is_interrupted()) interrupted = Clock::now();
         if (interrupted && seconds_since(*interrupted) > patience)
-            throw EndlessWork("the shader did not end: does it have a loop without an end?");
+            throw EndlessWork("the device did not answer within " + std::to_string(std::lround(patience)) +
+                              " s: it is busy, or a loop of the shader does not end");
     }
 }
 
-double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {
+double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>& record, double patience) const {
     const auto lock = lock_queue();
     command_buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     command_buffer_.resetQueryPool(*timestamps_, 0, 2);
@@ -287,7 +297,7 @@ double Device::submit(const std::function<void(const vk::raii::CommandBuffer&)>&
                                     vk::MemoryBarrier(vk::AccessFlagBits::eMemoryWrite, vk::AccessFlagBits::eHostRead), {}, {});
     command_buffer_.end();
     queue_.submit(vk::SubmitInfo({}, {}, *command_buffer_), *fence_);
-    wait_for_fence();
+    wait_for_fence(patience);
     device_.resetFences(*fence_);
     const auto [result, ticks] = timestamps_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t),
                                                                   vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);

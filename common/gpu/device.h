@@ -78,8 +78,8 @@ class Device {
     std::unique_lock<std::mutex> lock_queue() const { return std::unique_lock(queue_mutex_); }
 
     // Records and submits commands, waits for them, and returns the seconds they took on the device. Throws EndlessWork if they
-    // do not end after an interrupt (see platform.h).
-    double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
+    // do not end within `patience` seconds after an interrupt (see platform.h).
+    double submit(const std::function<void(const vk::raii::CommandBuffer&)>& record, double patience = 3) const;
 
     // Messages so far from the validation layers and the driver; empty without validation.
     const std::vector<std::string>& validation_messages() const { return messages_.validation; }
@@ -93,7 +93,7 @@ class Device {
     };
     static VkBool32 receive_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
-    void wait_for_fence() const;
+    void wait_for_fence(double patience) const;
     void choose_queue_family();
     void create_device();
     void load_pipeline_cache();

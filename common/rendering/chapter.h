@@ -40,7 +40,7 @@ struct Chapter {
     std::string default_scene = "cornell_box";  // in assets/scenes
     std::vector<Strategy> strategies = {};      // of --strategy, the default first; if none, only bounces find light
     bool light_probe_sampling = false;          // light samples also go to a light probe
-    bool unlimited_path_length = false;         // regardless of the scene; --max-path-length still limits it
+    bool unlimited_path_length = false;         // unless the scene or --max-path-length limits it
     bool dielectrics = false;                   // whether its estimator handles them
     bool microfacets = false;                   // likewise for rough metal, plastic and glass (Pr)
     bool lens = false;                          // has a camera with an aperture

@@ -6,10 +6,21 @@
 #include <sstream>
 
 #include "error.h"
+#include "files/file.h"
 #include "files/project_folder.h"
+#include "rendering/settings.h"
 
 namespace lab {
 namespace {
+
+// For transform(): a shell leaves the ~ of --output=~/a.png as it is.
+CLI::Validator path_from_home() {
+    return {[](std::string& path) {
+                path = expand_home(path).string();
+                return std::string();
+            },
+            "", "home"};
+}
 
 // Accepts finite numbers in [low, high]; CLI11 alone would also accept nan and inf.
 CLI::Validator within(double low, double high, const std::string& meaning) {
@@ -34,7 +45,7 @@ CLI::Validator whole_number(uint32_t low, uint32_t high) {
             meaning};
 }
 
-// "NAME=FILE" as the canonical path of the chapter's shader NAME, and FILE. The chapter may lack what it may override.
+// "NAME=FILE" as the canonical path of the chapter's shader NAME, and FILE. make_estimator() checks that the chapter reads it.
 std::pair<std::filesystem::path, std::filesystem::path> replacement(const Chapter& chapter, const std::string& text) {
     const size_t middle = std::min(text.find('='), text.size());
     const std::filesystem::path name = text.substr(0, middle), file = text.substr(std::min(middle + 1, text.size()));
@@ -42,11 +53,6 @@ std::pair<std::filesystem::path, std::filesystem::path> replacement(const Chapte
     const auto place = std::filesystem::weakly_canonical((name.has_parent_path() ? chapters : chapters / chapter.name) / name);
     std::error_code ignored;  // names that the file system refuses
     const auto is_file = [&](const auto& path) { return std::filesystem::is_regular_file(path, ignored); };
-    const auto is_override = [&](const char* room) { return is_file(project_folder() / "shaders" / room / name.filename()); };
-    if (name.extension() != ".glsl" || !(is_file(place) || is_override("world") || is_override("engine")))
-        throw UserError("--shader " + text + ": there is no shader " +
-                        in_quotes(place.lexically_relative(project_folder()).string()) +
-                        ": write NAME=FILE, with the name of one of the chapter's shaders");
     if (!is_file(file)) throw UserError("--shader " + text + ": there is no file " + in_quotes(file.string()));
     return {place, file};
 }
@@ -84,7 +90,8 @@ void add_options(CLI::App& app, const Chapter& chapter, Options& options, std::s
     whole("--seed", samples.seed, 0, max_count, "Chooses the random numbers");
     whole("--first-sample", samples.first_sample, 0, max_count, "Index of the first sample: splits a render into ranges");
     whole("--max-path-length", light.max_path_length, 0, path_length_limit,
-          "Bounces after which a path ends, 0 for emission only" + unless_given(defaults.max_path_length));
+          "Bounces after which a path ends, 0 for emission only" +
+              unless_given(chapter.unlimited_path_length ? safety_limit : defaults.max_path_length));
     whole("--only-path-length", light.only_path_length, 0, path_length_limit, "Show only light after exactly this many bounces");
     number("--target-error", run.target_error, 1e-12, 1e12, "a positive number",
            "Stop when the relative error is below this: 0.01 is 1 %");
@@ -94,19 +101,21 @@ void add_options(CLI::App& app, const Chapter& chapter, Options& options, std::s
     place("--camera-up", camera.up, "What it holds upwards");
     number("--vertical-fov", camera.vertical_fov, 1e-6, 179.999, "an angle between 0 and 180 degrees",
            "Angle between the picture's top and bottom in degrees");
-    number("--aperture-diameter", camera.aperture_diameter, 0, 1e30, "a length (finite and not negative)",
+    number("--aperture-diameter", camera.aperture_diameter, 0, 1e18, "a length from 0 to 1e18",
            "Diameter of the lens, 0 for a pinhole");
-    number("--focus-distance", camera.focus_distance, 1e-30, 1e30, "a positive length",
+    number("--focus-distance", camera.focus_distance, 1e-30, 1e30, "a positive length (1e18 is infinity)",
            "From the lens to the plane in focus; default: the scene's, or else where the target is");
     vector("--background", light.background, 0, "a radiance (finite and not negative)", "R,G,B",
            "Radiance of the sky; with a light probe its factor");
     app.add_flag("--specular", scene.specular, "Use the Phong lobe Ks, Ns of the materials");
     app.add_option("--view", view, "Show something else than radiance")->check(CLI::IsMember(view_names));
-    app.add_option("--output", run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")->allow_extra_args(false);
+    app.add_option("--output", run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
+        ->allow_extra_args(false)
+        ->transform(path_from_home());
     number("--exposure", appearance.exposure, -100, 100, "a number from -100 to 100", "Brightness of PNG and JPG in stops");
-    app.add_option("--reference", run.reference, "EXR to compare with");
-    app.add_option("--report", run.report, "Error against samples and seconds (.json or .csv)");
-    app.add_option("--resume", run.resume, "EXR of an earlier run to continue");
+    app.add_option("--reference", run.reference, "EXR to compare with")->transform(path_from_home());
+    app.add_option("--report", run.report, "Error against samples and seconds (.json or .csv)")->transform(path_from_home());
+    app.add_option("--resume", run.resume, "EXR of an earlier run to continue")->transform(path_from_home());
     number("--save-every", run.save_every, 1e-3, 1e9, "a positive number of seconds", "Write the outputs every so many seconds");
     app.add_option("--backend", run.backend, "How rays are traced")->check(CLI::IsMember(backends));
     whole("--max-threads-per-pixel", estimator.max_threads_per_pixel, 1, max_count,
@@ -185,7 +194,7 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
 std::filesystem::path find_scene(const std::string& name) {
     std::error_code ignored;  // names that the file system refuses are reported on reading
     const std::filesystem::path file = name;
-    if (file.has_extension() || file.has_parent_path() || std::filesystem::exists(file, ignored)) return file;
+    if (file.has_extension() || file.has_parent_path() || std::filesystem::is_regular_file(file, ignored)) return file;
     std::string names;
     for (const auto& shipped : shipped_scenes()) {
         if (shipped.stem() == name) return shipped;
@@ -230,6 +239,7 @@ std::optional<Options> parse_options(const Chapter& chapter, std::span<const Bac
     Options options;
     std::string scene = chapter.default_scene, view;
     CLI::App app(chapter.title, chapter.name);
+    app.footer("Exit codes: 0 done, 1 bad input or usage, 2 no usable device, 3 device lost or out of memory.");
     app.set_version_flag("--version", chapter.name + " " LAB_VERSION);
     app.add_option("scene", scene, "Scene file (.json or .obj) or the name of one in assets/scenes")->capture_default_str();
     std::vector<std::string> names{"auto"};

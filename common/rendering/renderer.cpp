@@ -1,8 +1,10 @@
 #include "rendering/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <utility>
 
 #include "clock.h"
 #include "files/project_folder.h"
@@ -22,10 +24,10 @@ constexpr uint32_t samples_per_group = 20;
 
 constexpr std::chrono::seconds patience(10);
 
-// Says that a dispatch takes very long, since its shader may never end.
+// Says that a dispatch takes very long. Its shader may never end.
 void remind_of_endless_loops(const Estimator& estimator) {
     const auto& file = estimator.observed.empty() ? estimator.file : estimator.observed;
-    std::fprintf(stderr, "note: no sample for %d s: if a loop of %s does not end, Ctrl-C stops the program\n",
+    std::fprintf(stderr, "note: no sample for %d s: the device is busy, or a loop of %s does not end; Ctrl-C stops the program\n",
                  static_cast<int>(patience.count()), file.string().c_str());
 }
 
@@ -138,6 +140,10 @@ bool Renderer::advance(uint32_t target_samples) {
     const double fitting = std::max(blocks_per_dispatch_ / step, 1.0);
     const uint32_t group_limit = device_->limits().maxComputeWorkGroupCount[0];
     const FilmWindow window = film_.window_from(next_block_);
+    // Some drivers compile a shader when it first runs. A dispatch without samples lets them, so that the next one is measured
+    // alone.
+    if (!std::exchange(is_compiled_, true))
+        tracer_->trace(std::array{DispatchParameters{next_block_, 1, 0, 0, window.first_pixel}}, 1, window.offset());
     const uint32_t count = static_cast<uint32_t>(
         std::min({fitting, static_cast<double>(group_limit), static_cast<double>(window.end_block - next_block_)}));
 
@@ -154,10 +160,10 @@ bool Renderer::advance(uint32_t target_samples) {
         device_seconds = tracer_->trace(steps_of_pass(count, window), count, window.offset());
         seconds = seconds_since(start);
     }
-    if (!device_seconds) return true;  // finished samples are in the film
-    device_seconds_ += *device_seconds;
     check_loops(counters, estimator_);
     for (const uint32_t counter : counters.first(RAY_COUNTER_COUNT)) rays_ += counter;
+    if (!device_seconds) return true;  // finished samples are in the film
+    device_seconds_ += *device_seconds;
 
     // Blocks differ in cost, so the rate follows the last dispatch, and grows by a bounded factor.
     const double work = static_cast<double>(count) * step;

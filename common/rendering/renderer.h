@@ -60,6 +60,7 @@ class Renderer {
     Film film_;
     std::unique_ptr<Tracer> tracer_;
 
+    bool is_compiled_ = false;  // by the driver
     double dispatch_seconds_ = 0.1;
     double blocks_per_dispatch_ = 64;  // times samples; adapts to the device's speed
     uint32_t finished_samples_ = 0;    // of every pixel

@@ -12,17 +12,17 @@
 namespace lab {
 namespace {
 
-// Even unlimited paths end here: a sample must finish in bounded time.
-constexpr uint32_t safety_limit = 10000;
-
 uint32_t max_path_length(const Chapter& chapter, const Scene& scene, const Options& options) {
     const uint32_t only = options.light.only_path_length.value_or(0);
     if (options.light.max_path_length && only > *options.light.max_path_length)
         throw UserError("--only-path-length " + std::to_string(only) + " is above --max-path-length " +
                         std::to_string(*options.light.max_path_length) + ": the picture would be black");
-    uint32_t length = scene.defaults.max_path_length;
-    if (chapter.unlimited_path_length) length = safety_limit;
-    return std::max(options.light.max_path_length.value_or(length), only);
+    if (ends_at_safety_limit(chapter, scene, options)) return safety_limit;
+    return std::max(options.light.max_path_length.value_or(scene.defaults.max_path_length), only);
+}
+
+uvec2 image_size_of(const Scene& scene, const Options& options) {
+    return {options.image.width.value_or(scene.defaults.width), options.image.height.value_or(scene.defaults.height)};
 }
 
 // The value of the chapter's option number i: as given, or its default.
@@ -45,11 +45,39 @@ double largest_albedo(const Scene& scene) {
     return largest;
 }
 
+// Throws UserError if the chapter would not read one of the shaders that --shader names.
+void check_replacements(const Estimator& chapter, const Replacements& replacements) {
+    if (replacements.empty()) return;
+    std::set<std::filesystem::path> places = replaceable_places(chapter);
+    Estimator replaced = chapter;
+    replaced.replacements = replacements;
+    places.merge(replaceable_places(replaced));
+    const auto chapters = std::filesystem::weakly_canonical(project_folder() / "chapters");
+    for (const auto& [wanted, file] : replacements) {
+        if (places.contains(wanted)) continue;
+        std::string names;
+        for (const auto& place : places) {
+            const bool is_own = place.parent_path() == std::filesystem::weakly_canonical(chapter.file).parent_path();
+            names +=
+                (names.empty() ? "" : ", ") + (is_own ? place.filename() : place.lexically_relative(chapters)).generic_string();
+        }
+        throw UserError("--shader: the chapter does not read " + in_quotes(wanted.lexically_relative(chapters).generic_string()) +
+                        ": write NAME=FILE, where NAME is one of " + names);
+    }
+}
+
 }  // namespace
 
 CameraPose camera_of(const Chapter& chapter, const Scene& scene, const Options& options) {
     const CameraOptions& wanted = options.camera;
-    return {.position = wanted.position.value_or(scene.camera.position),
+    vec3 position = scene.camera.position;
+    const uvec2 size = image_size_of(scene, options);
+    if (scene.is_framed && size.x < size.y) {  // what fits between top and bottom also has to fit between left and right
+        const double half = glm::radians(0.5 * scene.camera.vertical_fov), tangent = std::tan(half) * size.x / size.y;
+        const double farther = std::sin(half) / std::sin(std::atan(tangent));
+        position = scene.camera.target + static_cast<float>(farther) * (position - scene.camera.target);
+    }
+    return {.position = wanted.position.value_or(position),
             .target = wanted.target.value_or(scene.camera.target),
             .up = wanted.up.value_or(scene.camera.up),
             .vertical_fov = wanted.vertical_fov.value_or(scene.camera.vertical_fov),
@@ -73,10 +101,13 @@ bool asks_for_sky(const Options& options) { return options.light.background.valu
 
 bool asks_for_lens(const Options& options) { return options.camera.aperture_diameter.value_or(0) > 0; }
 
+bool ends_at_safety_limit(const Chapter& chapter, const Scene& scene, const Options& options) {
+    return chapter.unlimited_path_length && !options.light.max_path_length && !scene.defaults.limits_paths &&
+           options.light.only_path_length.value_or(0) <= safety_limit;
+}
+
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options) {
-    const uvec2 image_size(options.image.width.value_or(scene.defaults.width),
-                           options.image.height.value_or(scene.defaults.height));
-    RenderParameters parameters = default_parameters(scene, camera_of(chapter, scene, options), image_size);
+    RenderParameters parameters = default_parameters(scene, camera_of(chapter, scene, options), image_size_of(scene, options));
     parameters.background = background_of(scene, options);
     parameters.seed_key = seed_key(options.samples.seed);
     parameters.first_sample = options.samples.first_sample;
@@ -128,6 +159,7 @@ Estimator estimator_of(const Chapter& chapter) { return {project_folder() / "cha
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
     const auto shared = project_folder() / "shaders";
     Estimator estimator = estimator_of(chapter);
+    check_replacements(estimator, options.estimator.shaders);
     estimator.replacements = options.estimator.shaders;
     if (const auto& pixel = options.run.debug_pixel)
         estimator.defines.push_back("ONLY_PIXEL uvec2(" + std::to_string(pixel->x) + "u, " + std::to_string(pixel->y) + "u)");

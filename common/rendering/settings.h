@@ -14,6 +14,11 @@ vec3 background_of(const Scene& scene, const Options& options);
 bool asks_for_sky(const Options& options);
 bool asks_for_lens(const Options& options);  // --aperture-diameter, likewise
 
+// Even paths that nothing else limits end here: a sample must finish in bounded time.
+inline constexpr uint32_t safety_limit = 10000;
+// Whether they do: the chapter has Russian roulette, and neither the scene nor an option limits the length.
+bool ends_at_safety_limit(const Chapter& chapter, const Scene& scene, const Options& options);
+
 // Throws UserError for options that contradict each other.
 RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, const Options& options);
 

@@ -73,7 +73,8 @@ const json& JsonObject::array(const char* key) const {
 
 std::optional<double> JsonObject::number(const char* key) const {
     if (!has(key)) return std::nullopt;
-    if (!is_number(value_.at(key))) fail(key, "must be a number");
+    if (!value_.at(key).is_number()) fail(key, "must be a number");
+    if (!is_number(value_.at(key))) fail(key, "is beyond 3.4e38, the largest number of 32 bits");
     return value_.at(key).get<double>();
 }
 
@@ -81,7 +82,7 @@ std::optional<vec3> JsonObject::vector(const char* key) const {
     if (!has(key)) return std::nullopt;
     const json& list = value_.at(key);
     if (!list.is_array() || list.size() != 3 || !std::all_of(list.begin(), list.end(), is_number))
-        fail(key, "must be three numbers: [x, y, z]");
+        fail(key, "must be three numbers of 32 bits: [x, y, z]");
     return vec3(list[0].get<float>(), list[1].get<float>(), list[2].get<float>());
 }
 

@@ -9,6 +9,7 @@
 #include "scene/bodies.h"
 #include "scene/contacts.h"
 #include "scene/features.h"
+#include "scene/lamp_warnings.h"
 #include "scene/media.h"
 #include "scene/obj_file.h"
 #include "scene/scene_file.h"
@@ -134,10 +135,14 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     }
 
     const Bounds bounds = world_bounds(scene);
-    const float diagonal = scene.instances.empty() ? 0 : glm::distance(bounds.low, bounds.high);
-    if (!std::isfinite(diagonal)) throw UserError(name + ": its coordinates are too large for 32-bit numbers");
-    if (!description.has_camera && !scene.instances.empty()) scene.camera = framing_pose(bounds);
-    for (auto& warnings : {dielectric_warnings(scene, bodies), precision_warnings(scene)})
+    const double diagonal = scene.instances.empty() ? 0 : glm::distance(glm::dvec3(bounds.low), glm::dvec3(bounds.high));
+    if (!(diagonal < 1.8e19)) throw UserError(name + ": its coordinates are too large for 32-bit numbers");
+    if (diagonal > 0 && diagonal < 1e-18)
+        throw UserError(
+            name + ": it is smaller than 1e-18 units, so that squares of its lengths vanish in 32 bits: give it a larger scale");
+    scene.is_framed = !description.has_camera && !scene.instances.empty();
+    if (scene.is_framed) scene.camera = framing_pose(bounds);
+    for (auto& warnings : {dielectric_warnings(scene, bodies), precision_warnings(scene), lamp_warnings(scene)})
         scene.warnings.insert(scene.warnings.end(), warnings.begin(), warnings.end());
     scene.hash = sources.hash();
     scene.sources = sources.names();
@@ -181,7 +186,10 @@ Camera make_camera(const CameraPose& pose, uint32_t width, uint32_t height) {
     camera.right = vec3(tangent * width / height * right);
     camera.up = vec3(tangent * glm::cross(right, forward));
     camera.aperture_radius = 0.5f * pose.aperture_diameter;
-    camera.focus_distance = pose.focus_distance > 0 ? pose.focus_distance : static_cast<float>(distance);
+    // From here on a plane in focus is at infinity for the shader, which squares lengths in 32 bits.
+    const double farthest = 1e18 / glm::length(camera.forward + camera.right + camera.up);
+    camera.focus_distance =
+        static_cast<float>(std::min(pose.focus_distance > 0 ? double{pose.focus_distance} : distance, farthest));
     return camera;
 }
 

@@ -45,6 +45,7 @@ struct RenderDefaults {
     uint32_t height = 512;
     uint32_t samples = 64;
     uint32_t max_path_length = 8;
+    bool limits_paths = false;  // whether the scene itself asks for this length
 };
 
 struct CameraPose {
@@ -81,6 +82,7 @@ struct Scene {
     std::vector<Texture> textures;
 
     CameraPose camera;
+    bool is_framed = false;            // the camera is framing_pose()
     vec3 background{0};                // radiance of a constant sky, or factor of the light probe
     std::optional<Image> light_probe;  // equirectangular, +Y up, image centre towards -Z
     float probe_rotation = 0;          // radians

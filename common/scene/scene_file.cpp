@@ -50,14 +50,14 @@ MediumDescription read_medium(const JsonObject& entry, const std::filesystem::pa
     const auto density = entry.text("density");
     if (density) read_box(entry, medium);
     if (!density && entry.has("box")) entry.fail("box", "needs a \"density\"");
-    return {medium, density ? folder / *density : ""};
+    return {medium, density ? folder / to_path(*density) : ""};
 }
 
 // Scale acts on points first, so it is the last factor.
 MeshPlacement read_placement(const JsonObject& entry, const std::filesystem::path& folder) {
     MeshPlacement placement;
-    placement.file = folder / entry.required("file", entry.text("file"));
-    if (const auto materials = entry.text("materials")) placement.materials = folder / *materials;
+    placement.file = folder / to_path(entry.required("file", entry.text("file")));
+    if (const auto materials = entry.text("materials")) placement.materials = folder / to_path(*materials);
     if (entry.has("medium")) {
         const JsonObject medium = entry.object("medium", {"extinction", "albedo", "anisotropy", "density", "box", "boundary"});
         placement.medium = read_medium(medium, folder);
@@ -87,7 +87,8 @@ CameraPose read_camera(const JsonObject& camera) {
     if (!(vertical_fov > 0 && vertical_fov < 180)) camera.fail("vertical_fov", "must be above 0 and below 180 degrees");
     pose.vertical_fov = static_cast<float>(vertical_fov);
     pose.aperture_diameter = static_cast<float>(camera.number("aperture_diameter").value_or(0));
-    if (pose.aperture_diameter < 0) camera.fail("aperture_diameter", "must not be negative");
+    if (!(pose.aperture_diameter >= 0 && pose.aperture_diameter <= 1e18f))
+        camera.fail("aperture_diameter", "must be from 0 to 1e18");
     if (const auto focus = camera.number("focus_distance")) {
         pose.focus_distance = static_cast<float>(*focus);
         if (!(pose.focus_distance > 0)) camera.fail("focus_distance", "must be above 0");
@@ -109,7 +110,7 @@ void read_background(const JsonObject& background, const std::filesystem::path& 
             if (background.has(key)) background.fail(key, "needs a \"light_probe\"");
         result.scene.background = read_radiance_value(background, "radiance", vec3(0));
     } else {
-        result.light_probe = folder / background.required("light_probe", background.text("light_probe"));
+        result.light_probe = folder / to_path(background.required("light_probe", background.text("light_probe")));
         result.scene.background = read_radiance_value(background, "intensity", vec3(1));
         const double degrees = background.number("rotation_degrees").value_or(0);
         result.scene.probe_rotation = static_cast<float>(glm::radians(std::fmod(degrees, 360.0)));
@@ -148,6 +149,7 @@ SceneDescription read_scene_file(const std::filesystem::path& file, SourceFiles&
     defaults.height = root.integer("height", 1, max_image_extent).value_or(defaults.height);
     defaults.samples = root.integer("samples", 1, max_count).value_or(defaults.samples);
     defaults.max_path_length = root.integer("max_path_length", 0, path_length_limit).value_or(defaults.max_path_length);
+    defaults.limits_paths = root.has("max_path_length");
     return result;
 }
 

@@ -26,6 +26,7 @@ class DeviceTracer : public Tracer {
 
     const Device& device_;
     std::optional<ComputeKernel> adder_;  // of the samples of shared pixels to the film
+    mutable bool has_ended_ = false;      // with samples
 };
 
 // A scene's tree and the tracers for it. Backends add their shaders.

@@ -1,10 +1,13 @@
 #include "tracing/tracer.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "error.h"
 #include "files/file.h"
 #include "files/project_folder.h"
+#include "scene/json_object.h"
 #include "tracing/backends.h"
 
 namespace lab {
@@ -32,25 +35,42 @@ std::map<std::filesystem::path, std::filesystem::path> files_of(std::initializer
 
 }  // namespace
 
+const std::vector<std::filesystem::path>& replaceable_files() {
+    static const std::vector<std::filesystem::path> files = [] {
+        const auto list = project_folder() / "shaders/replaceable.json";
+        const auto names = parse_json(list.string(), read_file(list, 1 << 16)).get<std::vector<std::string>>();
+        return std::vector<std::filesystem::path>(names.begin(), names.end());
+    }();
+    return files;
+}
+
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator) {
-    const auto own_or_default = [&](const std::filesystem::path& own, const char* room) {
+    const auto own_or_default = [&](const std::filesystem::path& folder, const std::filesystem::path& file) {
+        const auto own = folder / file.filename();
         const bool is_there =
             std::filesystem::exists(own) || estimator.replacements.contains(std::filesystem::weakly_canonical(own));
-        return is_there ? own : project_folder() / "shaders" / room / own.filename();
+        return is_there ? own : project_folder() / "shaders" / file;
     };
     const bool is_observed = !estimator.observed.empty();
     const auto chapter = (is_observed ? estimator.observed : estimator.file).parent_path();
-    std::map<std::string, std::filesystem::path> names{
-        {"path_trace.glsl", estimator.file},
-        {"brdf.glsl", own_or_default(chapter / "brdf.glsl", "world")},
-        {"camera.glsl", own_or_default(chapter / "camera.glsl", "world")},
-        {"random_words.glsl", own_or_default(chapter / "random_words.glsl", "world")},
-        {"sample_loop.glsl", own_or_default(estimator.file.parent_path() / "sample_loop.glsl", "engine")}};
+    std::map<std::string, std::filesystem::path> names{{"path_trace.glsl", estimator.file}};
+    for (const auto& file : replaceable_files()) names[file.filename().string()] = own_or_default(chapter, file);
     if (is_observed) {
         names["observed.glsl"] = estimator.observed;
-        names["observed_sample_loop.glsl"] = own_or_default(chapter / "sample_loop.glsl", "engine");
+        names["observed_sample_loop.glsl"] =
+            std::exchange(names["sample_loop.glsl"], own_or_default(estimator.file.parent_path(), "engine/sample_loop.glsl"));
     }
     return names;
+}
+
+std::set<std::filesystem::path> replaceable_places(const Estimator& estimator) {
+    std::set<std::filesystem::path> places;
+    for (const auto& file : replaceable_files())
+        places.insert(std::filesystem::weakly_canonical(estimator.file.parent_path() / file.filename()));
+    const auto chapters = std::filesystem::weakly_canonical(project_folder() / "chapters");
+    for (const auto& [place, file] : files_of({"engine/render_samples.glsl"}, estimator))
+        if (*place.lexically_relative(chapters).begin() != "..") places.insert(place);
+    return places;
 }
 
 ShaderSource shader_source(const std::string& name, const GpuScene& scene, const Estimator& estimator) {
@@ -90,7 +110,9 @@ DeviceTracer::DeviceTracer(const Device& device, std::span<const Binding> bindin
 
 std::optional<double> DeviceTracer::trace(std::span<const DispatchParameters> steps, uint32_t block_count,
                                           uint32_t film_offset) const {
-    return device_.submit([&](const vk::raii::CommandBuffer& commands) {
+    // A shader that has ended before probably will again: if not soon, then because the machine is busy.
+    constexpr double seconds_of_first = 3, seconds_of_later = 20;
+    const auto record_steps = [&](const vk::raii::CommandBuffer& commands) {
         for (const DispatchParameters& step : steps) {
             record(commands, step, block_count, film_offset);
             if (!adder_) continue;
@@ -98,7 +120,10 @@ std::optional<double> DeviceTracer::trace(std::span<const DispatchParameters> st
             adder_->record(commands, &step, block_count, film_offset);
             wait_for_writes(commands);
         }
-    });
+    };
+    const double seconds = device_.submit(record_steps, has_ended_ ? seconds_of_later : seconds_of_first);
+    has_ended_ = steps.back().target_samples > 0;
+    return seconds;
 }
 
 bool is_suitable(Backend backend, const Device& device, const Scene& scene) {

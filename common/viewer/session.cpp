@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "error.h"
+#include "platform.h"
 #include "rendering/outputs.h"
 #include "rendering/settings.h"
 #include "tracing/limited_loops.h"
@@ -233,10 +234,12 @@ std::optional<double> Session::relative_error() const {
 void Session::save(const std::vector<std::filesystem::path>& files) {
     if (samples() < 1) {  // closed right away, or while the camera moved
         begin(1);
-        while (build_->renderer->advance(1)) {
+        while (build_->renderer->advance(1) && !is_interrupted()) {
         }
     }
-    write(files, build_->renderer->film().read(), header(seconds_));
+    const FilmImage film = build_->renderer->film().read();
+    if (!film.exceeds(0)) throw UserError("stopped before the first sample: nothing was written");
+    write(files, film, header(seconds_));
 }
 
 void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmHeader& header) const {

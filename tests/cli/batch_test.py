@@ -122,7 +122,7 @@ class BatchTest(ProgramTest):
         self.program = self.write("program", OBEYING.format(python=sys.executable))
         self.program.chmod(0o755)
 
-    def run_in(self, batch, name, timeout=60):
+    def run_in(self, batch, name, timeout=300):
         """The process that rendered a picture, or the exit code and the error of one that failed."""
         process = batch.run([self.program], [self.folder / name], timeout)
         return int((self.folder / name).read_text()) if process.returncode == 0 else (process.returncode, process.stderr.strip())

@@ -4,7 +4,7 @@ import json
 import re
 
 from image_files import Exr
-from program import BINARIES, PROJECT, QUAD_MTL, UNOPTIMISED, ProgramTest, RenderTest
+from program import BINARIES, PROJECT, QUAD_JSON, QUAD_MTL, UNOPTIMISED, ProgramTest, RenderTest
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").iterdir() if path.is_dir())
 TINY = ["--width=16", "--height=16", "--samples=2", "--backend=compute"]
@@ -121,6 +121,10 @@ class ChapterOptions(ProgramTest):
         program = BINARIES / CHAPTERS[4]
         self.assertRegex(self.render("quad.json", *TINY, program=program), r"up to 10000 bounces; .* below \de-\d+")
         self.assertNotIn("bounces", self.render("quad.json", *TINY, "--max-path-length=3", program=program))
+        self.assertRegex(self.render("--help", program=program), r"--max-path-length (?s:.)*?or\s+else\s+10000")
+        self.write("short.json", QUAD_JSON.replace('{', '{"max_path_length": 3,', 1))
+        self.assertNotIn("bounces", self.render("short.json", *TINY, "--output=short.exr", program=program))
+        self.assertIn("--max-path-length 3 ", Exr(self.folder / "short.exr").text("settings"))
         for material in ("d 0", "Pr 0.5", "Pr 0.5\nPm 1"):  # what reflects everything at grazing angles
             self.write("quad.mtl", QUAD_MTL + material + "\n")
             self.assertRegex(self.render("quad.json", *TINY, program=BINARIES / CHAPTERS[10]), r"up to 10000 bounces; .* may be missing")

@@ -132,7 +132,7 @@ class InterruptedCompilerTest(CopiedLab, ProgramTest):
                 with self.start(*self.SIZE, "--backend=native", environment=environment, program=self.program, prepare=os.setsid) as process:
                     self.wait_for(self.folder / "started", process)
                     os.killpg(process.pid, number) if to_all else process.send_signal(number)
-                    process.communicate(timeout=20)
+                    process.communicate(timeout=300)
                 self.assertEqual(process.returncode, -number)
                 self.assertEqual(list((self.tree / "cache/path_tracing_lab").glob("native-*")), [])
                 (self.folder / "started").unlink()
@@ -146,7 +146,7 @@ class InterruptedCompilerTest(CopiedLab, ProgramTest):
         for _ in range(3):
             with self.start(*self.SIZE, "--backend=native", environment=environment, program=self.program,
                             prepare=let_the_compiler_run_first) as process:
-                process.communicate(timeout=20)
+                process.communicate(timeout=300)
             self.assertEqual(process.returncode, -signal.SIGTERM)
 
 
@@ -308,7 +308,7 @@ class NativeFailures_all(CopiedLab, ProgramTest):
         code = self.shader.read_text(encoding="utf-8")
         self.shader.write_text(code.replace(old, old + "        while (throughput.x > 0.0) throughput.y += 1.0;\n"), encoding="utf-8")
         process = self.render("--time-limit=1")
-        self.assert_error(process, 1, "stopped before the first sample")
+        self.assert_error(process, 1, "path_trace.glsl:13: this loop, or one around it, does not end")
 
     def test_a_crash_keeps_what_was_written(self):
         self.assertEqual(self.render().returncode, 0)

@@ -208,7 +208,7 @@ class DocumentedRendersTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "assets").symlink_to(ROOT / "assets")
             for words in complete:
-                result = subprocess.run(small_render(words, renders[words]), cwd=folder, capture_output=True, text=True, timeout=60,
+                result = subprocess.run(small_render(words, renders[words]), cwd=folder, capture_output=True, text=True, timeout=300,
                                         env=os.environ | UNOPTIMISED)
                 command = f"{renders[words].relative_to(ROOT)}: ./lab run {' '.join(words)}"
                 self.assertEqual(result.returncode, 0, f"{command}: {result.stderr}")

@@ -21,7 +21,6 @@ BODY = """vec3 path_trace(Ray ray, inout uvec2 seed) {
     return radiance;
 }
 """
-SOON = 15  # seconds, of which the programs wait 3 for the shader
 
 
 class EndlessTest(CopiedLab, ProgramTest):
@@ -31,14 +30,11 @@ class EndlessTest(CopiedLab, ProgramTest):
 
     def end(self, process, number):
         process.send_signal(number)
-        start = time.monotonic()
         try:
-            _, err = process.communicate(timeout=60)
+            return process.communicate(timeout=300)[1]
         except subprocess.TimeoutExpired:
             process.kill()
-            self.fail(f"still running 60 s after {number}")
-        self.assertLess(time.monotonic() - start, SOON)
-        return err
+            self.fail(f"still running long after {number}")
 
     def test_a_signal_ends_a_render_whose_shader_does_not_end(self):
         for backend, number, code in (("compute", signal.SIGTERM, 3), ("pipeline", signal.SIGINT, 3), ("native", signal.SIGTERM, 1)):
@@ -46,16 +42,27 @@ class EndlessTest(CopiedLab, ProgramTest):
                                                            f"--backend={backend}", program=self.program) as process:
                 self.assertIn(f"backend {backend}", process.stdout.readline())
                 note = process.stderr.readline()  # after some seconds
-                self.assertRegex(note, rf"\Anote: no sample for \d+ s: if a loop of \S+{SHADER} does not end, Ctrl-C stops")
+                self.assertRegex(note, rf"\Anote: no sample for \d+ s: the device is busy, or a loop of \S+{SHADER} does not end; Ctrl-C stops")
                 err = self.end(process, number)
-                self.assertRegex(err, r"(?m)^error: [^\n]*nothing[^\n]*\n\Z")
+                answer = "" if backend == "native" else r"[^\n]*did not answer within 3 s: it is busy, or a loop"
+                self.assertRegex(err, rf"(?m)^error: {answer}[^\n]*nothing[^\n]*\n\Z")
                 self.assertEqual(process.returncode, code)
 
-    def test_a_time_limit_ends_it(self):
-        start = time.monotonic()
-        code, _, err = self.run_program("quad.json", *self.SIZE, "--backend=compute", "--time-limit=1", program=self.program)
-        self.assertEqual((code, err.count("\n")), (3, 1), err)
-        self.assertLess(time.monotonic() - start, SOON)
+    def test_a_time_limit_ends_it_and_names_the_loop(self):
+        for backend in ("compute", "pipeline", "native"):
+            with self.subTest(backend=backend):
+                code, _, err = self.run_program("quad.json", *self.SIZE, f"--backend={backend}", "--time-limit=1", program=self.program)
+                self.assertEqual(code, 1)
+                self.assertRegex(err, rf"\Aerror: \S+{SHADER}:3: this loop, or one around it, does not end[^\n]*\n\Z")
+
+    def test_a_time_limit_waits_for_a_dispatch_that_takes_long(self):
+        """As on a busy machine: each sample takes seconds, but its loop ends."""
+        self.shader.write_text(BODY.replace("for (;;)", "for (uint i = 0u; i < 60000u; ++i)"), encoding="utf-8")
+        code, out, err = self.run_program("cornell_box", "--headless", "--width=128", "--height=128", "--samples=1000", "--backend=compute",
+                                          "--time-limit=0.1", program=self.program)
+        self.assertEqual(code, 0, err)
+        self.assertNotIn("error", err)
+        self.assertRegex(out, "(?m)^samples .*stopped early")
 
     @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
     def test_the_window_closes_and_says_why_it_writes_nothing(self):
@@ -65,7 +72,7 @@ class EndlessTest(CopiedLab, ProgramTest):
             time.sleep(5)  # it has met the loop
             self.assertIsNone(process.poll())
             subprocess.run(["kill", "-TERM", str(window)], check=True)
-            _, err = process.communicate(timeout=SOON)
+            _, err = process.communicate(timeout=300)
         self.assertRegex(err, rf"\Aerror: \S+{SHADER}:3: this loop, or one around it, does not end[^\n]*\n\Z")
         self.assertFalse((self.folder / "a.exr").exists())
 

@@ -106,7 +106,7 @@ class FailingDevice(RenderTest):
         with self.start(*command, environment={**FAULT_LAYER, "FAULT_LOSE_DEVICE_AFTER": "50"}) as process:
             self.wait_for(file, process)
             remove(file.parent)
-            _, err = process.communicate(timeout=60)
+            _, err = process.communicate(timeout=300)
         self.assertEqual(process.returncode, 3, err)
         self.assertRegex(err, r"error: [^\n]*Lost[^\n]*a\.exr: cannot be written[^\n]*\n\Z")
 
@@ -226,6 +226,6 @@ class Surroundings(RenderTest):
             self.wait_for(file, process)
             remove(file.parent)
             process.send_signal(signal.SIGINT)
-            _, err = process.communicate(timeout=60)
+            _, err = process.communicate(timeout=300)
         self.assertEqual(process.returncode, 1, err)
         self.assertRegex(err, r"error: [^\n]*a\.exr: cannot be written: No such file or directory\n\Z")

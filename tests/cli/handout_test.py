@@ -188,10 +188,10 @@ Another is code of chapter 7.
 
     def test_commands_that_need_the_tests_say_so(self):
         tree = self.tree(1)
-        help_text = subprocess.run(["./lab"], cwd=tree, capture_output=True, text=True, timeout=20).stdout
+        help_text = subprocess.run(["./lab"], cwd=tree, capture_output=True, text=True, timeout=300).stdout
         self.assertIn("  check N", help_text)
         self.assertNotIn("  handout", help_text)
-        result = subprocess.run(["./lab", "test"], cwd=tree, capture_output=True, text=True, timeout=20)
+        result = subprocess.run(["./lab", "test"], cwd=tree, capture_output=True, text=True, timeout=300)
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"\Alab: this student's tree has no 'test'[^\n]*\n\Z")
 

@@ -140,7 +140,7 @@ class LongReports_all(Reports, ProgramTest):
         with self.start_report(*arguments) as process:
             self.wait_for_runs(process, len(first) + 1)
             process.terminate()
-            _, err = process.communicate(timeout=60)
+            _, err = process.communicate(timeout=300)
         self.assertEqual(process.returncode, 1)
         self.assertIn("interrupted: the same command goes on", err)
         self.assertNotIn("Traceback", err)

@@ -94,7 +94,7 @@ class Report(RenderTest):
     def test_the_program_prints_the_errors_of_the_report(self):
         out = self.render(*self.command("--samples=32"), "--output=a.exr", "--report=a.json")
         row = json.loads((self.folder / "a.json").read_text())["rows"][-1]
-        self.assertEqual(f"{100 * row['rel_rmse']:.3g}", re.search(r"^error +([\d.]+) %", out, re.MULTILINE)[1])
+        self.assertEqual(f"{100 * row['rel_rmse']:.3g}", re.search(r"^noise +([\d.]+) %", out, re.MULTILINE)[1])
         deviation = float(re.search(r"^mean radiance .* ± ([\d.e-]+) ", out, re.MULTILINE)[1])
         self.assertAlmostEqual(deviation / math.sqrt(row["mse"] / (24 * 20)), 1, delta=0.01)
         # The same without a report; and neither slows down users who do not ask for it.

@@ -109,12 +109,17 @@ class ShaderFiles(ProgramTest):
                                 re.escape(name), 'must not contain " or')
 
     def test_a_name_or_a_file_that_is_not_there(self):
-        chapter = "no shader \"chapters/01_uniform_sampling"
-        for given, words in (("nothing.glsl=mine/path_trace.glsl", f"{chapter}/nothing.glsl\": write NAME=FILE"),
-                             ("03_nothing/path_trace.glsl=mine/path_trace.glsl", "no shader \"chapters/03_nothing/path_trace.glsl\""),
-                             ("chapter.json=quad.json", f"{chapter}/chapter.json\""), ("path_trace.glsl", 'no file ""'),
-                             ("path_trace.glsl=nothing.glsl", 'no file "nothing.glsl"'), ("path_trace.glsl=mine", 'no file "mine"')):
+        for given, words in (("path_trace.glsl", 'no file ""'), ("path_trace.glsl=nothing.glsl", 'no file "nothing.glsl"'),
+                             ("path_trace.glsl=mine", 'no file "mine"')):
             self.assert_refused(["quad.json", f"--shader={given}", "--output=no.exr"], f"--shader {given}: there is {words}")
+
+    def test_what_the_chapter_does_not_read_cannot_be_replaced(self):
+        self.write("wrong.glsl", "not GLSL")
+        for name, place in (("nothing.glsl", "01_uniform_sampling/nothing.glsl"), ("lights.glsl", "01_uniform_sampling/lights.glsl"),
+                            ("chapter.json", "01_uniform_sampling/chapter.json"), ("03_nothing/path_trace.glsl",) * 2,
+                            ("14_many_lights/light_tree.glsl",) * 2, ("../shaders/world/lights.glsl",) * 2):
+            self.assert_refused(["quad.json", f"--shader={name}=wrong.glsl", "--output=no.exr"],
+                                f'the chapter does not read "{place}": write NAME=FILE, where NAME is one of brdf.glsl, camera.glsl, path_trace')
 
     def test_another_shader_is_another_estimator(self):
         """Wherever its file is: what it rendered goes on with the same text, but not with the chapter's own shader."""

@@ -140,7 +140,7 @@ class Wayland_all(ProgramTest):
             return process.poll() is not None
 
         self.wait_until("closed", close)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=300)
         self.assertEqual((process.returncode, err), (0, ""))
         self.assertGreater(Exr(self.folder / "a.exr").mean()[0], 0)
 

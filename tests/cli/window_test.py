@@ -40,7 +40,7 @@ class Windows(ProgramTest):
                                    stderr=subprocess.PIPE, text=True,
                                    env={name: value for name, value in variables.items() if value is not None})
         os.close(theirs)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=300)
         os.close(ours)
         return process.returncode, err
 

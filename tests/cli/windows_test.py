@@ -146,7 +146,7 @@ class WindowsPrograms_all(RenderTest):
         with self.start("quad.json", "--samples=4000000000", "--save-every=0.2", "--output=a.exr") as process:
             self.wait_for(self.folder / "a.exr", process)
             process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=60)
+            out, err = process.communicate(timeout=300)
         self.assertEqual(process.returncode, 0, err)
         self.assertIn("--resume", out)
 
@@ -180,7 +180,7 @@ class WindowsPrograms_all(RenderTest):
             shader.write_text(text[:begin] + " if (true) return vec3(0, 0.5, 0);" + text[begin:], encoding="utf-8")
             self.wait_for_colour(lambda red, green, blue: green > 100 and red + blue == 0, "the edited shader does not show")
             process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=60)
+            out, err = process.communicate(timeout=300)
         self.assertEqual((process.returncode, err), (0, ""))
         self.assertIn("01_uniform_sampling.exr", out)
 

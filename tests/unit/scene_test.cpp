@@ -184,6 +184,8 @@ TEST_F(SceneFile, WrongValuesNameTheirKey) {
         {R"({"meshes": [], "width": 2.5})", "\"width\""},
         {R"({"meshes": [], "width": "512"})", R"("width" in the scene must be a number)"},
         {R"({"meshes": [], "samples": -1})", "\"samples\""},
+        {R"({"meshes": [], "background": {"radiance": 1e39}})", R"("radiance" in "background" is beyond 3.4e38)"},
+        {R"({"meshes": [{"file": ".\\a.obj", "scale": 1e-30}]})", "smaller than 1e-18 units"},
         {R"({"meshes": [], "samples": 1e300})", "\"samples\""},
         {R"({"meshes": [], "max_path_length": true})", "\"max_path_length\""},
         {R"({"meshes": [], "specular": 1})", R"("specular" in the scene must be true or false)"},

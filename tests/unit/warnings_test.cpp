@@ -179,5 +179,29 @@ TEST_F(PrecisionWarnings, TellHowNarrowAFieldOfViewIs) {
     EXPECT_NE(narrow.front().find("rounded to 1.7 of a pixel"), std::string::npos) << narrow.front();
 }
 
+// A lamp above a floor, between them the camera.
+TEST(LampWarnings, TellThatAllLampsFaceAway) {
+    const TestFolder folder;
+    folder.write("a.mtl", "newmtl lamp\nKe 1 1 1\nnewmtl floor\nKd 0.5 0.5 0.5\n");
+    const auto warnings = [&](const std::string& faces, const std::string& scale = "1") {
+        folder.write(
+            "a.obj",
+            "mtllib a.mtl\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nv -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nusemtl floor\n"
+            "f 5 6 7 8\nusemtl lamp\n" +
+                faces);
+        return load_scene(folder.write("a.json", R"({"meshes": [{"file": "a.obj", "scale": )" + scale +
+                                                     R"(}], "camera": {"position": [0, 1, 6], "target": [0, 1, 0]}})"))
+            .warnings;
+    };
+    EXPECT_TRUE(warnings("f 1 2 3 4\n").empty());
+    EXPECT_TRUE(warnings("f 1 2 3 4\n", "[-1, 1, 1]").empty());
+    EXPECT_TRUE(warnings("f 1 2 3\nf 4 3 1\n").empty());
+    for (const char* scale : {"1", "[1, 1, -1]"}) {
+        const auto away = warnings("f 4 3 2 1\n", scale);
+        ASSERT_EQ(away.size(), 1u);
+        EXPECT_NE(away.front().find("a.json: its lamps face away"), std::string::npos) << away.front();
+    }
+}
+
 }  // namespace
 }  // namespace lab

@@ -123,8 +123,9 @@ def replacements(chapter, file, shader=None):
     *others, _ = graded_together(chapter, file)
     own = {shader_named(chapter, other) or ROOT / "chapters" / chapter / other.name: other for other in others}
     places = own | {shader or shader_like(chapter, file): file}
-    # What neither the chapter nor the framework has is included by these files only, and found beside them.
-    return [word for place, source in places.items() if place.exists() or any(ROOT.glob(f"shaders/*/{place.name}"))
+    # What the chapter neither has nor may bring is included by these files only, and found beside them.
+    replaceable = {Path(name).name for name in read_json(ROOT / "shaders/replaceable.json")}
+    return [word for place, source in places.items() if place.exists() or place.name in replaceable
             for word in replacement(place, source)]
 
 
