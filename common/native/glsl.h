@@ -245,6 +245,7 @@ struct Builtins {
     static auto upper_half(const auto& a, const auto& b) {  // of a product
         return each([](auto x, auto y) { return static_cast<decltype(x)>(wide(x) * wide(y) >> 32); }, a, b);
     }
+    static auto rest(const auto& x) { return x - glm::trunc(x); }
     static auto fraction(const auto& x) {
         decltype(each([](float) { return 0; }, x)) exponent;
         return glm::frexp(x, exponent);

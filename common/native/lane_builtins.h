@@ -80,7 +80,7 @@ struct Builtins : native::Builtins {
     LAB_ALONE(determinant) LAB_ALONE(inverse) LAB_ALONE(quotient) LAB_ALONE(remainder) LAB_ALONE(packHalf2x16)
     LAB_ALONE(unpackHalf2x16) LAB_ALONE(packUnorm4x8) LAB_ALONE(unpackUnorm4x8) LAB_ALONE(packUnorm2x16)
     LAB_ALONE(unpackUnorm2x16) LAB_ALONE(packSnorm4x8) LAB_ALONE(unpackSnorm4x8) LAB_ALONE(packSnorm2x16)
-    LAB_ALONE(unpackSnorm2x16) LAB_ALONE(carry) LAB_ALONE(borrow) LAB_ALONE(fraction) LAB_ALONE(exponent)
+    LAB_ALONE(unpackSnorm2x16) LAB_ALONE(carry) LAB_ALONE(borrow) LAB_ALONE(rest) LAB_ALONE(fraction) LAB_ALONE(exponent)
     LAB_VECTOR(sin, LAB_LIBMVEC(v_sinf)(z...)) LAB_VECTOR(cos, LAB_LIBMVEC(v_cosf)(z...)) LAB_VECTOR(exp, LAB_LIBMVEC(v_expf)(z...))
     LAB_VECTOR(tan, LAB_LIBMVEC(v_tanf)(z...)) LAB_VECTOR(atan, arc_tangent(z...))
     LAB_VECTOR(log, LAB_LIBMVEC(v_logf)(z...)) LAB_VECTOR(pow, LAB_LIBMVEC(vv_powf)(z...)) LAB_VECTOR(sqrt, square_root(z...))

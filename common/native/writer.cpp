@@ -177,7 +177,7 @@ void Writer::execute(const Instruction& instruction) {
         const std::string name = "modf__" + std::to_string(instruction.id);
         out("const auto " + name + " = " + value(operands[2]) + "; ");
         store(pointer_to(operands[3]), "lab__::Builtins::trunc(" + name + ")");
-        return give(instruction, "(" + name + " - lab__::Builtins::trunc(" + name + "))", false);
+        return give(instruction, "lab__::Builtins::rest(" + name + ")", false);
     }
     const bool changes_memory = is_atomic(instruction.op);
     const std::string text = operation(instruction);
