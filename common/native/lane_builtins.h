@@ -154,12 +154,12 @@ struct Builtins : native::Builtins {
 
         template <typename C, typename A, typename B>
         LAB_INLINE static auto select(const C& condition, const A& a, const B& b) {
-        if constexpr (is_varying<C> && size_of<C> == 1)
+        if constexpr (!is_varying<C> && std::is_same_v<A, B> && (size_of<C> == 1 || !is_varying<A>))
+            return Plain::select(condition, a, b);
+        else if constexpr (is_varying<C> && size_of<C> == 1)
             return lanes::select(condition, a, b);
         else if constexpr (is_varying<C> || size_of<C> > 1)
             return each([](const Mask& c, const auto& y, const auto& z) { return lanes::select(c, y, z); }, condition, a, b);
-        else if constexpr (std::is_same_v<A, B>)
-            return condition ? a : b;
         else
             return condition ? varying(a) : varying(b);
     }

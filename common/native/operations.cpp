@@ -126,7 +126,7 @@ std::string Writer::operation(const Instruction& instruction) {
         }
         case spv::OpVectorExtractDynamic: {
             const std::string vector = value(operands[0]);
-            return vector + "[" + value(operands[1]) + "]";
+            return vector + "[" + checked_index(type_of(operands[0]), operands[1]) + "]";
         }
         case spv::OpVectorShuffle: {
             std::string indices;
