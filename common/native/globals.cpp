@@ -178,7 +178,9 @@ std::string Writer::resources(Id variable) {
     if (kind(type) != spv::OpTypeStruct) {
         const std::string name = fresh_name(program_.name(variable), variable);
         names_[variable] = "this->" + name;
-        if (!has_kind(type, spv::OpTypeImage)) program_.fail(program_.definition(variable), "'" + program_.name(variable) + "'");
+        const bool is_list = kind(type) == spv::OpTypeArray || kind(type) == spv::OpTypeRuntimeArray;
+        if (kind(is_list ? program_.definition(type).operands[0] : type) != spv::OpTypeImage)
+            program_.fail(program_.definition(variable), "'" + program_.name(variable) + "'");
         return kind(type) == spv::OpTypeImage
                    ? "const lab__::Texture& " + name + " = lab__::get<lab__::Texture>(" + bindings + binding + ", 0);\n"
                    : "lab__::Span<lab__::Texture> " + name + " = lab__::get_array<lab__::Texture>(" + bindings + binding +

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/glm.hpp>
-#include <source_location>
 #include <type_traits>
 
 #include "bindings.h"
@@ -15,19 +14,32 @@ using namespace glm;  // for names of types alone: a shader's functions are thos
 
 inline constexpr int invocations_at_once = 1;
 
+// The line that uses what has this as its last parameter: std::source_location, which clang 14 lacks.
+struct Place {
+    const char* file;
+    int line;
+    static constexpr Place here(const char* file = __builtin_FILE(), int line = __builtin_LINE()) { return {file, line}; }
+
+    template <typename... T>
+    [[noreturn]] void fail(const char* format, T... what) const {
+        Failed failed;
+        const int length = std::snprintf(failed.text, sizeof failed.text, "%s:%d: ", file, line);
+        if (length < static_cast<int>(sizeof failed.text))
+            std::snprintf(failed.text + length, sizeof failed.text - static_cast<size_t>(length), format, what...);
+        throw failed;
+    }
+};
+
 // An index of an array. Where shaders are checked it knows the line that uses it.
 #ifdef LAB_CHECKED
 struct Index {
     int64_t value;
-    std::source_location place;
+    Place place;
     template <typename T>
-    constexpr Index(T index, std::source_location place = std::source_location::current()) : value(index), place(place) {}
+    constexpr Index(T index, Place place = Place::here()) : value(index), place(place) {}
     constexpr size_t in(size_t size) const {
         if (value >= 0 && value < static_cast<int64_t>(size)) return static_cast<size_t>(value);
-        Failed failed;
-        std::snprintf(failed.text, sizeof failed.text, "%s:%u: index %lld of an array of %zu elements", place.file_name(),
-                      static_cast<unsigned>(place.line()), static_cast<long long>(value), size);
-        throw failed;
+        place.fail("index %lld of an array of %zu elements", static_cast<long long>(value), size);
     }
 };
 #else
@@ -38,6 +50,12 @@ struct Index {
     constexpr size_t in(size_t) const { return value; }
 };
 #endif
+
+// An index of a vector or a matrix of so many parts.
+template <int size>
+constexpr int within(Index i) {
+    return static_cast<int>(i.in(size));
+}
 
 template <typename T, size_t size>
 struct Array {
@@ -114,13 +132,9 @@ T changed(T x, const F& change) {
 }
 
 // Whole numbers may be divided by 0 where shaders are not checked: GLSL leaves the result open.
-inline void check_divisor([[maybe_unused]] bool is_zero, [[maybe_unused]] const std::source_location& place) {
+inline void check_divisor([[maybe_unused]] bool is_zero, [[maybe_unused]] Place place) {
 #ifdef LAB_CHECKED
-    if (!is_zero) return;
-    Failed failed;
-    std::snprintf(failed.text, sizeof failed.text, "%s:%u: a division by 0", place.file_name(),
-                  static_cast<unsigned>(place.line()));
-    throw failed;
+    if (is_zero) place.fail("a division by 0");
 #endif
 }
 
@@ -183,7 +197,7 @@ struct Builtins {
             return each([](bool c, auto x, auto y) { return c ? x : y; }, condition, a, b);
     }
     template <typename T>
-    static constexpr T quotient(const T& a, const T& b, const std::source_location& place = std::source_location::current()) {
+    static constexpr T quotient(const T& a, const T& b, Place place = Place::here()) {
         return each(
             [&](auto x, auto y) {
                 check_divisor(y == 0, place);
@@ -193,7 +207,7 @@ struct Builtins {
     }
     // GLSL leaves the sign open.
     template <typename T>
-    static constexpr T remainder(const T& a, const T& b, const std::source_location& place = std::source_location::current()) {
+    static constexpr T remainder(const T& a, const T& b, Place place = Place::here()) {
         return each(
             [&](auto x, auto y) {
                 check_divisor(y == 0, place);
@@ -245,6 +259,7 @@ struct Builtins {
     static auto upper_half(const auto& a, const auto& b) {  // of a product
         return each([](auto x, auto y) { return static_cast<decltype(x)>(wide(x) * wide(y) >> 32); }, a, b);
     }
+    static auto rest(const auto& x) { return x - glm::trunc(x); }
     static auto fraction(const auto& x) {
         decltype(each([](float) { return 0; }, x)) exponent;
         return glm::frexp(x, exponent);
@@ -279,9 +294,13 @@ struct Builtins {
     }
 
     static ivec2 textureSize(const Texture& texture) { return {texture.width, texture.height}; }
-    static vec4 texelFetch(const Texture& texture, ivec2 position) {
-        const Index index(position.x < 0 || position.x >= texture.width ? -1 : position.y * int64_t{texture.width} + position.x);
-        const size_t i = 4 * index.in(static_cast<size_t>(texture.width) * texture.height);
+    static vec4 texelFetch(const Texture& texture, ivec2 position, [[maybe_unused]] Place place = Place::here()) {
+#ifdef LAB_CHECKED
+        if (position.x < 0 || position.x >= texture.width || position.y < 0 || position.y >= texture.height)
+            place.fail("texel %d,%d of an image of %d x %d", position.x, position.y, texture.width, texture.height);
+#endif
+        const size_t i =
+            4 * (static_cast<size_t>(position.y) * static_cast<size_t>(texture.width) + static_cast<size_t>(position.x));
         if (texture.is_float) {
             const float* texel = static_cast<const float*>(texture.texels) + i;
             return {texel[0], texel[1], texel[2], texel[3]};

@@ -80,7 +80,7 @@ struct Builtins : native::Builtins {
     LAB_ALONE(determinant) LAB_ALONE(inverse) LAB_ALONE(quotient) LAB_ALONE(remainder) LAB_ALONE(packHalf2x16)
     LAB_ALONE(unpackHalf2x16) LAB_ALONE(packUnorm4x8) LAB_ALONE(unpackUnorm4x8) LAB_ALONE(packUnorm2x16)
     LAB_ALONE(unpackUnorm2x16) LAB_ALONE(packSnorm4x8) LAB_ALONE(unpackSnorm4x8) LAB_ALONE(packSnorm2x16)
-    LAB_ALONE(unpackSnorm2x16) LAB_ALONE(carry) LAB_ALONE(borrow) LAB_ALONE(fraction) LAB_ALONE(exponent)
+    LAB_ALONE(unpackSnorm2x16) LAB_ALONE(carry) LAB_ALONE(borrow) LAB_ALONE(rest) LAB_ALONE(fraction) LAB_ALONE(exponent)
     LAB_VECTOR(sin, LAB_LIBMVEC(v_sinf)(z...)) LAB_VECTOR(cos, LAB_LIBMVEC(v_cosf)(z...)) LAB_VECTOR(exp, LAB_LIBMVEC(v_expf)(z...))
     LAB_VECTOR(tan, LAB_LIBMVEC(v_tanf)(z...)) LAB_VECTOR(atan, arc_tangent(z...))
     LAB_VECTOR(log, LAB_LIBMVEC(v_logf)(z...)) LAB_VECTOR(pow, LAB_LIBMVEC(vv_powf)(z...)) LAB_VECTOR(sqrt, square_root(z...))
@@ -154,12 +154,12 @@ struct Builtins : native::Builtins {
 
         template <typename C, typename A, typename B>
         LAB_INLINE static auto select(const C& condition, const A& a, const B& b) {
-        if constexpr (is_varying<C> && size_of<C> == 1)
+        if constexpr (!is_varying<C> && std::is_same_v<A, B> && (size_of<C> == 1 || !is_varying<A>))
+            return Plain::select(condition, a, b);
+        else if constexpr (is_varying<C> && size_of<C> == 1)
             return lanes::select(condition, a, b);
         else if constexpr (is_varying<C> || size_of<C> > 1)
             return each([](const Mask& c, const auto& y, const auto& z) { return lanes::select(c, y, z); }, condition, a, b);
-        else if constexpr (std::is_same_v<A, B>)
-            return condition ? a : b;
         else
             return condition ? varying(a) : varying(b);
     }

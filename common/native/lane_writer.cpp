@@ -87,7 +87,7 @@ std::string LaneWriter::atomic(const std::string& name, Id pointer, const std::s
 std::string LaneWriter::fetch(const Instruction& instruction) {
     const Pointer texture = pointer_to(instruction.operands[0]);
     const std::string text = is_memory(texture) ? reference(texture) : place(texture);
-    return "lab__::Builtins::texelFetch(active__, " + text + ", " + value(instruction.operands[1]) + ")";
+    return "lab__::Builtins::texelFetch(active__, " + text + ", " + texel(instruction) + ")";
 }
 std::string LaneWriter::operation(const Instruction& instruction) {
     if (instruction.op == spv::OpVectorExtractDynamic && variance_.varies(instruction.operands[1])) {

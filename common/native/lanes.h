@@ -29,7 +29,7 @@ struct Lanes {
     Lanes() = default;
     template <typename U>
     requires std::is_arithmetic_v<U> LAB_INLINE Lanes(U x)
-        : raw(Raw{} + static_cast<Word>(std::is_same_v<T, bool> ? -static_cast<Word>(x != 0) : static_cast<Word>(x))) {}
+        : raw(static_cast<Word>(std::is_same_v<T, bool> ? -static_cast<Word>(x != 0) : static_cast<Word>(x)) - Raw{}) {}
     template <typename U>
     LAB_INLINE Lanes(const Lanes<U>& x) {
         if constexpr (std::is_same_v<T, U>)
@@ -140,6 +140,7 @@ struct VaryingOf<mat<n, m, float, q>> {
 template <typename T, size_t size>
 struct VaryingOf<Array<T, size>> {
     using type = Array<typename VaryingOf<T>::type, size>;
+    static_assert(sizeof(type) < 1 << 20, "an array of this size fits on the stack for one path only");
 };
 template <typename T>
 requires is_varying<T>

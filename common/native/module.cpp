@@ -84,17 +84,20 @@ fs::path find_compiler() {
 fs::path header_folder() { return project_folder() / "common"; }
 
 std::vector<std::string> compiler_arguments() {
-    std::vector<std::string> arguments{"-std=c++20",          "-shared", "-fPIC",
-                                       "-fvisibility=hidden", "-fwrapv", "-fno-finite-loops",
-                                       "-ffp-contract=off",   "-w",      "-I" + header_folder().string()};
+    std::vector<std::string> arguments{
+        "-std=c++20",        "-shared", "-fPIC",    "-fvisibility=hidden",          "-fwrapv", "-fno-finite-loops",
+        "-ffp-contract=off", "-w",      "-DNDEBUG", "-I" + header_folder().string()};
     if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
     if (mode == Mode::fast)  // in one large function, structs need not be copied from one to the next, nor to and from memory
-        arguments.insert(arguments.end(), {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-DNDEBUG",
-                                           "-finline-limit=4000", "--param=large-function-growth=2000",
-                                           "--param=inline-unit-growth=1000", "--param=sra-max-scalarization-size-Ospeed=8192"});
+        arguments.insert(arguments.end(), {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-finline-limit=4000",
+                                           "--param=large-function-growth=2000", "--param=inline-unit-growth=1000",
+                                           "--param=sra-max-scalarization-size-Ospeed=8192"});
     if (wished_lanes() == "8" && why_no_lanes().empty()) arguments.emplace_back("-mno-avx512f");
-    if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-g", "-DNDEBUG"});
+    if (mode == Mode::debug) arguments.insert(arguments.end(), {"-O0", "-g"});
     if (mode == Mode::checked) arguments.insert(arguments.end(), {"-O1", "-g", "-DLAB_CHECKED", "-fsanitize=undefined"});
+#ifdef __linux__
+    if (mode == Mode::checked) arguments.emplace_back("-lubsan");  // GCC's, as clang brings none into a library
+#endif
     return arguments;
 }
 

@@ -12,7 +12,7 @@ constexpr const char* extended[] = {
     "", "round", "roundEven", "trunc", "abs", "abs", "sign", "sign", "floor", "ceil", "fract", "radians", "degrees", "sin", "cos",
     "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "atan", "pow", "exp", "log", "exp2", "log2",
     "sqrt", "inversesqrt", "determinant", "inverse", "", "", "min", "min", "min", "max", "max", "max", "clamp", "clamp",
-    "clamp", "mix", "mix", "step", "smoothstep", "fma", "", "frexp", "ldexp", "packSnorm4x8", "packUnorm4x8", "packSnorm2x16",
+    "clamp", "mix", "mix", "step", "smoothstep", "fma", "", "", "ldexp", "packSnorm4x8", "packUnorm4x8", "packSnorm2x16",
     "packUnorm2x16", "packHalf2x16", "", "unpackSnorm2x16", "unpackUnorm2x16", "unpackHalf2x16", "unpackSnorm4x8",
     "unpackUnorm4x8", "", "length", "distance", "cross", "normalize", "faceforward", "reflect", "refract", "findLSB", "findMSB",
     "findMSB"};
@@ -47,6 +47,9 @@ const std::map<spv::Op, std::pair<const char*, const char*>> pairs{{spv::OpUMulE
                                                                    {spv::OpSMulExtended, {" * ", "upper_half"}},
                                                                    {spv::OpIAddCarry, {" + ", "carry"}},
                                                                    {spv::OpISubBorrow, {" - ", "borrow"}}};
+// The same of GLSL.std.450. Newer compilers write ModfStruct, where older ones pass a variable for the second result.
+const std::map<uint32_t, std::pair<const char*, const char*>> extended_pairs{{GLSLstd450ModfStruct, {"rest", "trunc"}},
+                                                                             {GLSLstd450FrexpStruct, {"fraction", "exponent"}}};
 const std::map<spv::Op, std::string> atomics{{spv::OpAtomicIAdd, "atomicAdd"},
                                              {spv::OpAtomicSMin, "atomicMin"},
                                              {spv::OpAtomicUMin, "atomicMin"},
@@ -91,11 +94,11 @@ std::string Writer::operation(const Instruction& instruction) {
     switch (instruction.op) {
         case spv::OpExtInst: {
             const uint32_t number = operands[1];
+            const std::string parts = "(" + values(2) + ")";
+            if (const auto found = extended_pairs.find(number); found != extended_pairs.end())
+                return type + "{" + builtin + found->second.first + parts + ", " + builtin + found->second.second + parts + "}";
             const std::string name = number < std::size(extended) ? extended[number] : "";
             if (name.empty()) program_.fail(instruction, "a function of this line");
-            const std::string parts = "(" + values(2) + ")";
-            if (number == GLSLstd450FrexpStruct)
-                return type + "{" + builtin + "fraction" + parts + ", " + builtin + "exponent" + parts + "}";
             return builtin + name + parts;
         }
         case spv::OpConvertFToS:
@@ -123,7 +126,7 @@ std::string Writer::operation(const Instruction& instruction) {
         }
         case spv::OpVectorExtractDynamic: {
             const std::string vector = value(operands[0]);
-            return vector + "[" + value(operands[1]) + "]";
+            return vector + "[" + checked_index(type_of(operands[0]), operands[1]) + "]";
         }
         case spv::OpVectorShuffle: {
             std::string indices;

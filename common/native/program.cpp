@@ -28,10 +28,14 @@ class TreeBuilder {
                         all.variables.push_back(instruction.id);
                         break;
                     case spv::OpVariable:
-                        if (operands.size() > 1)
+                        if (operands.size() > 1 && program_.definition(operands[1]).op == spv::OpConstantComposite) {
                             program_.tables[instruction.id] = operands[1];
-                        else
-                            all.variables.push_back(instruction.id);
+                            break;
+                        }
+                        all.variables.push_back(instruction.id);
+                        if (operands.size() > 1)
+                            all.statements.push_back(
+                                {.instruction = {.op = spv::OpStore, .operands = {instruction.id, operands[1]}}});
                         break;
                     case spv::OpSelectionMerge:
                         merge = operands[0];
@@ -172,6 +176,7 @@ Program::Program(const std::vector<uint32_t>& words) {
         read(instruction, function, blocks, block);
     }
     if (local_size == 0) fail({}, "workgroups of more than one dimension");
+    check_declarations();
 }
 
 std::string Program::first_use(Id declared) const {
@@ -220,13 +225,18 @@ void Program::read(Instruction& instruction, Function*& function, Blocks& blocks
             break;
         case spv::OpNoLine:
             break;
-        case spv::OpExtInstImport:  // of GLSL.std.450: there is no other
+        case spv::OpExtInstImport:
+            names_[instruction.id] = text_of(rest);
             break;
         case spv::OpEntryPoint:
             main = operands[1];
             break;
+        case spv::OpExecutionModeId:
+            has_unknown_mode_ = true;
+            break;
         case spv::OpExecutionMode:
-            if (operands[1] != spv::ExecutionModeLocalSize) break;
+            has_unknown_mode_ |= operands[1] != spv::ExecutionModeLocalSize;
+            if (has_unknown_mode_) break;
             local_size = operands[3] == 1 && operands[4] == 1 ? operands[2] : 0;
             break;
         case spv::OpFunction:
@@ -249,6 +259,8 @@ void Program::read(Instruction& instruction, Function*& function, Blocks& blocks
             break;
         default:
             if (function) {
+                check(instruction);
+                if (instruction.op == spv::OpFunctionCall) arguments_.insert(operands.begin() + 1, operands.end());
                 for (const Id used : ids_in(instruction))
                     first_uses_.try_emplace(used, Instruction{.file = file_, .line = line_});
                 first_uses_.try_emplace(instruction.type, Instruction{.file = file_, .line = line_});
@@ -269,8 +281,8 @@ Program::Access Program::first_access(const Sequence& sequence, Id variable) con
         if (statement.value == variable) return Access::read;
         if (std::find(ids.begin(), ids.end(), variable) != ids.end()) {
             const bool is_stored = instruction.op == spv::OpStore && ids[0] == variable;
-            const bool is_argument = instruction.op == spv::OpFunctionCall && name(variable) == "param";  // glslang's own
-            return is_stored || is_argument ? Access::set : Access::read;
+            const bool is_passed = instruction.op == spv::OpFunctionCall && is_argument(variable);
+            return is_stored || is_passed ? Access::set : Access::read;
         }
         size_t count = 0;
         for (const Sequence& part : statement.parts) {

@@ -87,7 +87,12 @@ class Program {
         const auto found = definitions_.find(id);
         return found != definitions_.end() && found->second.op >= spv::OpConstantTrue && found->second.op <= spv::OpConstantNull;
     }
-    uint32_t number(Id constant) const { return definition(constant).operands.at(0); }
+    uint32_t number(Id constant) const {
+        const Instruction& found = definition(constant);
+        if (found.op != spv::OpConstant && found.op != spv::OpSpecConstant)
+            fail(found, "constants that are computed from specialisation constants");
+        return found.operands.at(0);
+    }
     // The type of a value, a variable or a parameter, and what a pointer points to.
     Id type_of(Id id) const { return types_.at(id); }
     Id pointee(Id pointer_type) const { return definition(pointer_type).operands.at(1); }
@@ -114,6 +119,8 @@ class Program {
         const auto found = decorations_.find({id, member, decoration});
         return found == decorations_.end() ? -1 : found->second;
     }
+    // Variables that glslang makes for arguments. No others are passed to functions.
+    bool is_argument(Id variable) const { return arguments_.contains(variable); }
     bool is_block(Id structure) const { return decoration(structure, spv::DecorationBlock) >= 0; }
     std::set<std::string> names() const {
         std::set<std::string> all;
@@ -130,6 +137,8 @@ class Program {
 
   private:
     void read(Instruction& instruction, Function*& function, Blocks& blocks, Id& block);
+    void check(const Instruction& instruction) const;
+    void check_declarations() const;
     enum class Access { none, set, read };
     Access first_access(const Sequence& sequence, Id variable) const;
     void move_inwards(Sequence& sequence) const;
@@ -145,6 +154,8 @@ class Program {
     std::map<std::pair<Id, uint32_t>, std::string> member_names_;
     std::map<std::tuple<Id, int64_t, spv::Decoration>, int64_t> decorations_;
     std::map<Id, Instruction> first_uses_;  // in functions
+    std::set<Id> arguments_;
+    bool has_unknown_mode_ = false;
     Id file_ = 0;
     uint32_t line_ = 0;
 };

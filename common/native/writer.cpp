@@ -26,6 +26,7 @@ std::string spelled(const std::string& name) {
         "template", "this", "thread_local", "throw", "try", "typedef", "typeid", "typename", "union", "unsigned", "using",
         "va_arg", "va_copy", "va_end", "va_start", "virtual", "volatile", "wchar_t", "xor", "xor_eq"};
     // clang-format on
+    if (name.find("__") != std::string::npos) return "own__" + name;  // GLSL's compiler only warns of it
     return words.contains(name) ? name + "__" : name;
 }
 
@@ -45,7 +46,14 @@ Pointer Writer::pointer_to(Id id) const {
 }
 std::string Writer::step(const std::string& text, const Pointer& pointer, size_t index) {
     const Id type = pointer.types[index], at = pointer.indices[index];
-    return text + (kind(type) == spv::OpTypeStruct ? "." + field(type, program_.number(at)) : "[" + value(at) + "]");
+    if (kind(type) == spv::OpTypeStruct) return text + "." + field(type, program_.number(at));
+    return text + "[" + checked_index(type, at) + "]";
+}
+// GLM does not check the indices of vectors and matrices as arrays do, and glslang has checked constants.
+std::string Writer::checked_index(Id type, Id at) {
+    const bool has_fixed_size = kind(type) == spv::OpTypeVector || kind(type) == spv::OpTypeMatrix;
+    if (program_.is_constant(at) || !has_fixed_size) return value(at);
+    return "lab__::within<" + std::to_string(program_.definition(type).operands[1]) + ">(" + value(at) + ")";
 }
 std::string Writer::place(const Pointer& pointer, size_t end) {
     size_t next = 0;
@@ -124,9 +132,14 @@ void Writer::store(const Pointer& pointer, const std::string& text) {
 std::string Writer::atomic(const std::string& name, Id pointer, const std::string& operands) {
     return "lab__::Builtins::" + name + "(" + place(pointer_to(pointer)) + ", " + operands + ")";
 }
+// Where an image is read: the position, and from texelFetchOffset() what is added to it.
+std::string Writer::texel(const Instruction& instruction) {
+    const auto& operands = instruction.operands;
+    const std::string position = value(operands[1]);
+    return operands.size() < 5 ? position : "(" + position + " + " + value(operands[4]) + ")";
+}
 std::string Writer::fetch(const Instruction& instruction) {
-    return "lab__::Builtins::texelFetch(" + place(pointer_to(instruction.operands[0])) + ", " + value(instruction.operands[1]) +
-           ")";
+    return "lab__::Builtins::texelFetch(" + place(pointer_to(instruction.operands[0])) + ", " + texel(instruction) + ")";
 }
 // Statements.
 void Writer::execute(const Instruction& instruction) {
@@ -177,7 +190,7 @@ void Writer::execute(const Instruction& instruction) {
         const std::string name = "modf__" + std::to_string(instruction.id);
         out("const auto " + name + " = " + value(operands[2]) + "; ");
         store(pointer_to(operands[3]), "lab__::Builtins::trunc(" + name + ")");
-        return give(instruction, "(" + name + " - lab__::Builtins::trunc(" + name + "))", false);
+        return give(instruction, "lab__::Builtins::rest(" + name + ")", false);
     }
     const bool changes_memory = is_atomic(instruction.op);
     const std::string text = operation(instruction);
@@ -203,12 +216,12 @@ bool Writer::is_passed_only(Id variable, const Sequence& sequence) const {
             for (size_t i = 0; i < parameters.size(); ++i)
                 if (instruction.operands[i + 1] == variable && (uses > 1 || written_.contains(parameters[i].id))) return false;
         } else {  // nothing in between may change what it gets
-            const bool is_store = instruction.op == spv::OpStore && program_.name(instruction.operands[0]) == "param";
+            const bool is_store = instruction.op == spv::OpStore && program_.is_argument(instruction.operands[0]);
             const bool has_effects = !instruction.id || is_call || instruction.op == spv::OpExtInst;
             if (statement.kind != Statement::Kind::instruction || (has_effects && !is_store)) return false;
         }
     }
-    return is_passed && program_.name(variable) == "param";
+    return is_passed && program_.is_argument(variable);
 }
 // Declares a block's variables, but not those that its own assignments set first.
 void Writer::declare_all(const Sequence& sequence) {

@@ -36,6 +36,8 @@ class Writer {
     std::string place(const Pointer& pointer, size_t end = SIZE_MAX);
     // A pointer's next step, at an index, from what `text` is.
     std::string step(const std::string& text, const Pointer& pointer, size_t index);
+    std::string checked_index(Id type, Id at);
+    std::string texel(const Instruction& instruction);
     std::string field(Id structure, uint32_t member) const;
     std::string constant(Id id) const;
     Id type_of(Id id) const { return program_.type_of(id); }

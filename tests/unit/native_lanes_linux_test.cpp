@@ -138,6 +138,9 @@ TEST(NativeLanes, ComputeWhatGlslSays) {
         "const Named table[2] = Named[2](Named(5u, 2u), Named(7u, 3u));\nr = table[i].offset;",
         "uvec2 v = uvec2(x, 4);\nv++;\nr = v.y;",
         "r = gl_NumWorkGroups.x + 3u;",
+        "uint active__ = 5u;\nr = active__;\nif (i > 5u) r = active__ + i;",
+        "float zero = -float(gl_WorkGroupID.x / 4u), y = zero;\nif (i > 20u) y = 1.0;\nr = 1.0 / y < 0.0 ? 5u : 7u;",
+        "vec2 v = vec2(gl_NumWorkGroups.x), w = mix(v, v + 3.0, bvec2(v.x > 9.0, true));\nr = uint(w.y);",
         "results[50u + i] = 3u;\nr = atomicCompSwap(results[50u + i], 3u, 2u) + atomicCompSwap(results[50u + i], 3u, 7u);",
     };
     expect_fives(bodies);

@@ -14,7 +14,7 @@ namespace lab {
 namespace {
 
 // The numbers that a shader writes to results[]. `code` precedes main(), `body` is inside.
-std::vector<float> run_shader(const std::string& code, const std::string& body) {
+std::vector<float> run_shader(const std::string& code, const std::string& body, native::Texture* texture = nullptr) {
     const std::string glsl =
         code +
         "\nlayout(scalar, set = 0, binding = 1) buffer Results { float results[]; };\n"
@@ -23,6 +23,7 @@ std::vector<float> run_shader(const std::string& code, const std::string& body) 
     std::vector<float> results(16, -1000);
     native::Bindings bindings{};
     bindings.ranges[1] = {reinterpret_cast<std::byte*>(results.data()), results.size() * sizeof(float)};
+    bindings.ranges[2] = {reinterpret_cast<std::byte*>(texture), sizeof(native::Texture)};
     native::run_groups(native::load(compile_glsl(glsl)).run, bindings, 1);
     while (!results.empty() && results.back() == -1000) results.pop_back();
     return results;
@@ -67,6 +68,8 @@ TEST(Native, NamesMayBeThoseThatTheTranslationUses) {
             "give(Values(1.0, Span).get); float scalar = float(uint(3.5)); give(scalar); float swizzled[2] = float[2](1, 2);"
             "v.yx = vec2(swizzled[1], 0); give(v.y); float get_array = 4.0; give(get_array);"),
         (Numbers{15, 6, 8, 9, 7, 17, 5, 3, 2, 4}));
+    EXPECT_EQ(run_shader("", "float active__ = 1.0, lab__ = 2.0, x__ = float(next); if (active__ > x__) give(active__ + lab__);"),
+              Numbers{3});
 }
 
 TEST(Native, FunctionsMayHaveAnyName) {
@@ -219,6 +222,25 @@ TEST(Native, WhatItDoesNotKnowIsOneClearMessage) {
               "test.glsl:2: the backend native does not know workgroups of more than one dimension"},
              {"shared float x;\nvoid main() { x = 1.0; }", "test.glsl:2: the backend native does not know shared variables"},
              {"void main() {\n\nbarrier(); }", "test.glsl:3: the backend native does not know a function of this line"},
+             {"layout(constant_id = 3) const int N = 4;\nlayout(scalar, binding = 1) buffer Block { int x; };\n"
+              "void main() { int list[N * 2]; list[x] = 1; x = list[0]; }",
+              "constants that are computed from specialisation constants"},
+             {"uniform layout(binding = 2) texture3D t;\nlayout(scalar, binding = 1) buffer Block { float x; };\n"
+              "void main() { x = texelFetch(t, ivec3(0), 0).x; }",
+              "images of another kind than texture2D"},
+             {"uniform layout(binding = 2) texture2D t;\nlayout(scalar, binding = 1) buffer Block { int x; };\n"
+              "void main() {\n x = int(texelFetch(t, ivec2(0), x).x); }",
+              "test.glsl:4: the backend native does not know another level of an image than 0"},
+             {"uniform layout(binding = 2) texture2D t;\nlayout(scalar, binding = 1) buffer Block { int x; };\n"
+              "void main() {\n x = textureSize(t, 1).x; }",
+              "test.glsl:4: the backend native does not know another level of an image than 0"},
+             {"layout(scalar, binding = 1) volatile buffer Block { float x; };\nvoid main() { x = 1.0; }",
+              "the qualifier 21 of 'Block'"},
+             {"layout(scalar, set = 1, binding = 1) buffer Block { float x; };\nvoid main() { x = 1.0; }",
+              "the descriptor set of"},
+             {"layout(scalar, binding = 64) buffer Block { float x; };\nvoid main() { x = 1.0; }", "the binding of"},
+             {"#extension GL_EXT_debug_printf : require\nvoid main() {\ndebugPrintfEXT(\"hello\"); }",
+              "test.glsl:3: the backend native does not know a function of NonSemantic.DebugPrintf"},
              {"layout(scalar, binding = 1) buffer Block { float x; };\nvoid main() { double y = x; x = float(y * y); }",
               "test.glsl:2: the backend native does not know numbers of other than 32 bits"}}) {
         for (const bool for_lanes : {false, true}) {
@@ -287,6 +309,30 @@ std::string failure_of(const std::string& body) {
 TEST(Native, CheckedShadersNameTheLineOfAWrongIndex) {
     EXPECT_EQ(failure_of("float a[4];\nfor (int i = 0; i < 4; ++i) a[i] = 1.0;\ngive(a[next + 4]);"),
               "test.glsl:9: index 4 of an array of 4 elements");
+    for (const char* access : {"vec3 v = vec3(1.0);\ngive(v[next + 3]);", "vec3 v;\nv[next + 3] = 1.0; give(v.x);",
+                               "vec3 v = vec3(1.0); mat3 m = mat3(1.0);\ngive((m[next + 3] + v).x);",
+                               "mat2x3 m = mat2x3(1.0);\nm[0][next + 3] = 1.0; give(m[0].x);"})
+        EXPECT_EQ(failure_of(access), "test.glsl:8: index 3 of an array of 3 elements") << access;
+}
+
+TEST(Native, TexelsAreReadWhereTheyAre) {
+    const float texels[] = {1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4};
+    native::Texture texture{texels, 2, 2, true};
+    const auto read = [&](const std::string& position) {
+        return run_shader("layout(set = 0, binding = 2) uniform texture2D t;", "\ngive(" + position + ".x);", &texture);
+    };
+    EXPECT_EQ(read("texelFetch(t, ivec2(next, 1), 0)"), Numbers{3});
+    EXPECT_EQ(read("texelFetchOffset(t, ivec2(next, 1), 0, ivec2(1, -1))"), Numbers{2});
+    native::set_mode(native::Mode::checked);
+    for (const char* outside : {"texelFetch(t, ivec2(next, 2), 0)", "texelFetchOffset(t, ivec2(next, 1), 0, ivec2(0, 1))"}) {
+        try {
+            read(outside);
+            ADD_FAILURE() << outside;
+        } catch (const DeviceFailure& failure) {
+            EXPECT_STREQ(failure.what(), "test.glsl:8: texel 0,2 of an image of 2 x 2");
+        }
+    }
+    native::set_mode(native::Mode::fast);
 }
 
 TEST(Native, CheckedShadersNameTheLineOfADivisionByZero) {
