@@ -1,10 +1,13 @@
 #include "tracing/tracer.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "error.h"
 #include "files/file.h"
 #include "files/project_folder.h"
+#include "scene/json_object.h"
 #include "tracing/backends.h"
 
 namespace lab {
@@ -32,23 +35,30 @@ std::map<std::filesystem::path, std::filesystem::path> files_of(std::initializer
 
 }  // namespace
 
+const std::vector<std::filesystem::path>& replaceable_files() {
+    static const std::vector<std::filesystem::path> files = [] {
+        const auto list = project_folder() / "shaders/replaceable.json";
+        const auto names = parse_json(list.string(), read_file(list, 1 << 16)).get<std::vector<std::string>>();
+        return std::vector<std::filesystem::path>(names.begin(), names.end());
+    }();
+    return files;
+}
+
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator) {
-    const auto own_or_default = [&](const std::filesystem::path& own, const char* room) {
+    const auto own_or_default = [&](const std::filesystem::path& folder, const std::filesystem::path& file) {
+        const auto own = folder / file.filename();
         const bool is_there =
             std::filesystem::exists(own) || estimator.replacements.contains(std::filesystem::weakly_canonical(own));
-        return is_there ? own : project_folder() / "shaders" / room / own.filename();
+        return is_there ? own : project_folder() / "shaders" / file;
     };
     const bool is_observed = !estimator.observed.empty();
     const auto chapter = (is_observed ? estimator.observed : estimator.file).parent_path();
-    std::map<std::string, std::filesystem::path> names{
-        {"path_trace.glsl", estimator.file},
-        {"brdf.glsl", own_or_default(chapter / "brdf.glsl", "world")},
-        {"camera.glsl", own_or_default(chapter / "camera.glsl", "world")},
-        {"random_words.glsl", own_or_default(chapter / "random_words.glsl", "world")},
-        {"sample_loop.glsl", own_or_default(estimator.file.parent_path() / "sample_loop.glsl", "engine")}};
+    std::map<std::string, std::filesystem::path> names{{"path_trace.glsl", estimator.file}};
+    for (const auto& file : replaceable_files()) names[file.filename().string()] = own_or_default(chapter, file);
     if (is_observed) {
         names["observed.glsl"] = estimator.observed;
-        names["observed_sample_loop.glsl"] = own_or_default(chapter / "sample_loop.glsl", "engine");
+        names["observed_sample_loop.glsl"] =
+            std::exchange(names["sample_loop.glsl"], own_or_default(estimator.file.parent_path(), "engine/sample_loop.glsl"));
     }
     return names;
 }

@@ -27,8 +27,11 @@ struct Estimator {
     uint32_t max_threads_per_pixel = UINT32_MAX;
 };
 
-// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. The chapter's folder may override the
-// defaults of "brdf.glsl", "camera.glsl", "random_words.glsl" and "sample_loop.glsl" by files of these names.
+// The files of shaders/ that a chapter's folder may replace by its own of the same name: shaders/replaceable.json, which pages in
+// a browser follow, too.
+const std::vector<std::filesystem::path>& replaceable_files();
+
+// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own, and so may be those that can be replaced.
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator);
 
 // All files that an estimator is compiled from, with any backend.

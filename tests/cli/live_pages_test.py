@@ -15,7 +15,7 @@ FRAME = "document.querySelector('.live').frame"
 ESTIMATOR = f"chapters/{CHAPTERS[3]}/path_trace.glsl"
 # The pictures of a page have 128 instead of 256 pixels a row, since a CPU draws them. Chapter 12's has as few as its reference already.
 SMALL = """for (const { pictures } of Object.values(live.chapters)) for (const { parameters } of pictures) {
-    const place = new live.glsl.Layout(live.sources["shaders/interface.h"]).offsetOf("RenderParameters", "image_size");
+    const place = new live.Layout(live.sources["shaders/interface.h"]).offsetOf("RenderParameters", "image_size");
     if (parameters[place] < 256) continue;
     parameters[place] /= 2;
     parameters[place + 1] /= 2;

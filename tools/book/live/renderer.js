@@ -13,13 +13,13 @@ void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2
     const DISPLAY = `#version 300 es
 precision highp float;
 precision highp int;
-uniform highp usampler2D film_before[3];
+uniform highp usampler2D web_film_before[3];
 uniform bool is_srgb;
 out vec4 colour;
 void main() {
-    ivec2 size = textureSize(film_before[0], 0), place = ivec2(gl_FragCoord.x, float(size.y) - gl_FragCoord.y);
-    if (texelFetch(film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
-    uvec4 a = texelFetch(film_before[0], place, 0), b = texelFetch(film_before[1], place, 0), c = texelFetch(film_before[2], place, 0);
+    ivec2 size = textureSize(web_film_before[0], 0), place = ivec2(gl_FragCoord.x, float(size.y) - gl_FragCoord.y);
+    if (texelFetch(web_film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
+    uvec4 a = texelFetch(web_film_before[0], place, 0), b = texelFetch(web_film_before[1], place, 0), c = texelFetch(web_film_before[2], place, 0);
     vec3 mean = (uintBitsToFloat(a.xyz) + uintBitsToFloat(uvec3(a.w, b.xy))) / float(max(c.y, 1u));
     vec3 shown = clamp(mean, 0.0, 1.0);
     vec3 curved = mix(12.92 * shown, 1.055 * pow(shown, vec3(1.0 / 2.4)) - 0.055, greaterThan(shown, vec3(0.0031308)));
@@ -68,7 +68,7 @@ void main() {
             if (!globalThis.DecompressionStream) throw new Error("this browser is too old: update it");
             this.gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
             if (!this.gl) throw new Error("this browser offers no WebGL 2: update it, or switch graphics acceleration on in its settings");
-            this.layout = new live.glsl.Layout(live.sources["shaders/interface.h"]);
+            this.layout = new live.Layout(live.sources["shaders/interface.h"]);
             this.make();
         }
 
@@ -210,7 +210,7 @@ void main() {
         }
 
         bindFilm(linked, film) {
-            for (const i of FILM) this.renderer.bind(linked, `film_before[${i}]`, i, this.films[film].textures[i]);
+            for (const i of FILM) this.renderer.bind(linked, `web_film_before[${i}]`, i, this.films[film].textures[i]);
         }
 
         // The film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a stuck loop.
@@ -288,9 +288,9 @@ void main() {
             this.renderer.bind(linked, "web_arrays", 3, this.arrays);
             this.renderer.bind(linked, "web_words", 4, this.words);
             this.renderer.bind(linked, "light_probe", 5, this.probe ?? null);
-            gl.uniform1ui(place("target_samples"), target);
-            gl.uniform1ui(place("samples_per_pixel"), this.hasSampleLoop ? target - samples : 1);
-            gl.uniform1i(place("is_preview"), isPreview ? 1 : 0);
+            gl.uniform1ui(place("web_target_samples"), target);
+            gl.uniform1ui(place("web_samples_per_pixel"), this.hasSampleLoop ? target - samples : 1);
+            gl.uniform1i(place("web_is_preview"), isPreview ? 1 : 0);
             gl.bindFramebuffer(gl.FRAMEBUFFER, films[1].frame);
             gl.viewport(0, 0, ...size);
             gl.enable(gl.SCISSOR_TEST);
