@@ -218,7 +218,8 @@ def write(folder, frames):
                                  "samples": told["check"]["samples"], "checked": told["check"]["references"],
                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)}
             scripts[f"experiments_{chapter}"] = script(f"experiments_{chapter}", experiments[chapter].result())
-        scripts["furnace"] = script("furnace", furnace(Path(temporary)))
+        if 2 in CHAPTERS:  # not in the tree of a student who begins
+            scripts["furnace"] = script("furnace", furnace(Path(temporary)))
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")
