@@ -20,7 +20,18 @@ SMALL = """for (const { pictures } of Object.values(live.chapters)) for (const {
     parameters[place] /= 2;
     parameters[place + 1] /= 2;
 }"""
-PATIENCE = 240  # seconds
+PATIENCE = 25  # seconds
+BLACK = "vec3 radiance = vec3(0.0);"  # of the estimator
+# A device that writes at most so many textures of 128 bits at once.
+WRITES_AT_MOST = """(() => {
+    const most = %d, { prototype } = WebGL2RenderingContext, attach = prototype.framebufferTexture2D, bind = prototype.bindFramebuffer, { drawArrays } = prototype;
+    const attached = new Map();
+    let bound = null;
+    prototype.bindFramebuffer = function(target, frame) { bound = frame; return bind.call(this, target, frame); };
+    prototype.framebufferTexture2D = function(...all) { attached.set(bound, (attached.get(bound) ?? 0) + 1); return attach.apply(this, all); };
+    prototype.checkFramebufferStatus = function() { return attached.get(bound) > most ? this.FRAMEBUFFER_UNSUPPORTED : this.FRAMEBUFFER_COMPLETE; };
+    prototype.drawArrays = function(...all) { if (!(attached.get(bound) > most)) drawArrays.apply(this, all); };
+})()"""
 
 
 @unittest.skipUnless(CHROMIUM, "needs Chromium, which ./lab test installs")
@@ -44,7 +55,7 @@ class LivePages(Site):
     def start(self, chapter, fragment="", before=""):
         self.browser.visit("about:blank")
         self.browser.visit((self.site / f"chapters/{CHAPTERS[chapter]}/index.html").as_uri() + fragment)
-        self.browser.evaluate(f"{SMALL}; {before}; document.querySelector('.live-start').click()")
+        self.browser.evaluate(f"{SMALL}; {before}; document.querySelector('.live').scrollIntoView(); document.querySelector('.live-start').click()")
         self.wait("frame.editor && frame.verdict.textContent !== 'starting …'" if not before else "true", "start")
 
     def click(self, name):
@@ -52,8 +63,9 @@ class LivePages(Site):
 
     def edit(self, old, new):
         """Edits the first file with that text as a reader does."""
-        self.frame(f"""(() => {{ const {{ editor }} = frame, {{ field, texts }} = editor;
-            editor.open(editor.files.find(file => texts[file].includes({json.dumps(old)})));
+        self.frame(f"""(() => {{ const {{ editor }} = frame;
+            editor.open(editor.files.find(file => editor.texts[file].includes({json.dumps(old)})));
+            const {{ field }} = editor;
             field.value = field.value.replace({json.dumps(old)}, {json.dumps(new)});
             field.dispatchEvent(new Event("input")); }})()""")
 
@@ -113,21 +125,83 @@ class LivePagesTest(LivePages, unittest.TestCase):
             self.edit(f"{right} {loop}", right)
             self.wait("!frame.editor.error.textContent && frame.film", "the picture")
 
+    def text(self):
+        return self.frame(f"frame.editor.sources['{ESTIMATOR}']")
+
     def test_texts_are_kept_and_shared(self):
-        text = f"frame.editor.sources['{ESTIMATOR}']"
         self.start(3)
-        self.edit("vec3 radiance = vec3(0.0);", "vec3 radiance = vec3(0.5);")
-        link = self.browser.evaluate(f"{FRAME}.editor.link()")
+        self.edit(BLACK, "vec3 radiance = vec3(0.5);")
+        link = self.frame("frame.editor.link()")
         self.start(3)
-        self.assertIn("vec3(0.5)", self.frame(text))
-        self.frame("frame.editor.reset()")
+        self.assertIn("vec3(0.5)", self.text())
+        self.click("Original text")
         self.start(3)
-        self.assertNotIn("vec3(0.5)", self.frame(text))
+        self.assertNotIn("vec3(0.5)", self.text())
         self.start(3, "#" + link.partition("#")[2])
-        self.assertIn("vec3(0.5)", self.frame(text))
+        self.assertIn("vec3(0.5)", self.text())
         self.start(3, "#live=damaged")
         self.assertIn("damaged", self.frame("frame.note.textContent"))
-        self.assertNotIn("vec3(0.5)", self.frame(text))
+        self.assertIn("vec3(0.5)", self.text())
+
+    def test_a_link_is_copied_and_read_once(self):
+        self.start(3)
+        self.edit(BLACK, "vec3 radiance = vec3(0.5);")
+        link = self.frame("frame.editor.link()")
+        self.browser.evaluate("navigator.clipboard.writeText = text => { window.copied = text; return Promise.resolve(); }")
+        self.frame("frame.copyLink()")
+        self.assertEqual(self.browser.evaluate("[window.copied, location.hash]"), [link, ""])
+        self.browser.evaluate("navigator.clipboard.writeText = () => Promise.reject(new Error('no'))")
+        self.frame("frame.copyLink()")
+        self.assertEqual(self.frame("[frame.note.querySelector('input').value, location.hash]"), [link, ""])
+        self.edit("vec3(0.5)", "vec3(0.25)")
+        self.start(3, "#" + link.partition("#")[2])
+        self.assertIn("vec3(0.5)", self.text())
+        self.assertEqual(self.browser.evaluate("location.hash"), "")
+        self.assertIn("Bring my text back", self.frame("frame.note.textContent"))
+        self.edit("vec3(0.5)", "vec3(0.125)")
+        self.start(3)
+        self.assertIn("vec3(0.125)", self.text())
+        self.click("Bring my text back")
+        self.assertIn("vec3(0.25)", self.text())
+
+    def test_what_is_replaced_comes_back(self):
+        self.start(3)
+        self.assertTrue(self.frame("frame.editor.back.hidden"))
+        self.edit(BLACK, "vec3 radiance = vec3(0.5);")
+        self.click("Start exercise 1")
+        self.frame("frame.plant(frame.about.bugs[0])")
+        self.frame("frame.plant(frame.about.bugs[1])")
+        self.frame("frame.plant(undefined)")
+        self.assertIn("// TODO", self.frame("Object.values(frame.editor.texts).join()"))
+        self.click("Original text")
+        self.start(3)
+        self.assertEqual(self.frame("frame.editor.edited"), [])
+        self.click("Bring my text back")
+        self.assertIn("vec3(0.5)", self.text())
+        self.edit("vec3(0.5)", "vec3(0.25)")
+        self.click("Original text")
+        self.edit(BLACK, "vec3 radiance = vec3(1.0);")
+        for colour in ("0.25", "1.0", "0.25"):
+            self.click("Bring my text back")
+            self.assertIn(f"vec3 radiance = vec3({colour})", self.text())
+
+    def test_undo_brings_a_replaced_text_back(self):
+        self.start(3)
+        self.edit(BLACK, "vec3 radiance = vec3(0.5);")
+        self.click("Original text")
+        self.assertIn(BLACK, self.text())
+        self.frame("frame.editor.field.focus()")
+        self.browser.evaluate("document.execCommand('undo')")
+        self.assertIn("vec3(0.5)", self.text())
+
+    def test_a_note_names_what_was_changed_on_another_page(self):
+        self.start(2)
+        self.click("Start exercise 1")
+        self.start(3)
+        self.assertRegex(self.frame("frame.edits.textContent"), "^Changed by you: sample_hemisphere.glsl of chapter 2, which that chapter's page has, too. “Original text” undoes it")
+        self.assertFalse(self.frame("frame.edits.hidden"))
+        self.click("Original text")
+        self.assertTrue(self.frame("frame.edits.hidden"))
 
     def test_texts_of_any_kind(self):
         self.start(3)
@@ -145,15 +219,88 @@ class LivePagesTest(LivePages, unittest.TestCase):
         self.edit("vec3 radiance = vec3(0.0);", "vec3 radiance = vec3(0.5);")
         self.assertIn("keeps no text", self.frame("frame.note.textContent"))
 
-    def test_a_lost_context_starts_again_once(self):
+    def lose(self, losses=0, restores=True):
+        """Takes the GPU away, as if that had happened so many times without a picture between."""
+        self.frame(f"(frame.losses = {losses}, (window.loss ??= frame.renderer.gl.getExtension('WEBGL_lose_context')).loseContext())")
+        self.wait("frame.renderer.gl.isContextLost() && !frame.renderings.length", "the loss")
+        self.frame("(frame.film = null, 0)")
+        if restores:
+            self.frame("window.loss.restoreContext()")
+
+    def test_a_lost_context_starts_again(self):
         self.start(3)
-        self.frame("(frame.loss = frame.renderer.gl.getExtension('WEBGL_lose_context')).loseContext()")
-        self.wait("frame.losses === 1", "the loss")
-        self.frame("frame.film = null")
-        self.frame("frame.loss.restoreContext()")
+        for _ in range(3):
+            self.wait("frame.film?.samples >= 16", "a picture")
+            self.lose()
         self.wait("frame.film", "a new picture")
-        self.frame("frame.loss.loseContext()")
-        self.wait("frame.losses === 2 && frame.verdict.textContent.includes('again')", "the message")
+        self.lose(losses=1)
+        self.wait("frame.verdict.textContent.includes('away again before')", "the message")
+        self.click("Restart")
+        self.wait("frame.film?.samples >= 16", "a picture")
+        self.lose(restores=False)
+        self.click("Restart")
+        self.wait("frame.verdict.textContent.includes('has taken the GPU away: reload')", "the message")
+
+    def test_devices_that_write_less_at_once(self):
+        for most in (2, 1):
+            self.start(3, before=WRITES_AT_MOST % most)
+            self.wait("frame.latest?.verdict", "a verdict")
+            self.assertRegex(self.frame("frame.latest.text"), "^agrees")
+            self.assertGreater(self.frame("frame.film.rays"), 0)
+            self.assert_no_complaints()
+        self.start(3, before=WRITES_AT_MOST % 0)
+        self.wait("frame.verdict?.textContent.includes('cannot store the sums')", "the message")
+
+    def test_a_device_that_draws_nothing(self):
+        self.start(3, before="WebGL2RenderingContext.prototype.drawArrays = () => {}")
+        self.wait("frame.verdict?.textContent.includes('nothing is drawn')", "the message")
+
+    def test_a_shader_without_rays_has_no_verdict(self):
+        self.start(3)
+        self.edit(BLACK, "vec3 radiance = vec3(0.5); if (radiance.r > 0.0) return radiance;")
+        self.wait("frame.film?.samples >= 32 && frame.editor.edited.length", "a picture")
+        self.assertEqual(self.frame("frame.verdict.textContent"), "no verdict: the shader traces no ray")
+        self.frame("void frame.check()")
+        self.wait("frame.verdict.textContent.includes('nothing to check')", "the message")
+
+    def test_a_long_loop(self):
+        self.start(3)
+        self.edit(BLACK, BLACK + " for (int i = 0; i < 20000; ++i) radiance.r += 1e-20;")
+        self.wait("frame.film && frame.editor.edited.length", "a picture")
+        self.assertEqual(self.frame("frame.editor.error.textContent"), "")
+
+    def test_a_pause(self):
+        self.start(3)
+        self.wait("frame.film", "a picture")
+        self.click("Pause")
+        self.edit(BLACK, "vec3 radiance = vec3(0.5);")
+        self.assertIn("press Go on", self.frame("frame.note.textContent"))
+        self.wait("frame.numbers.textContent.startsWith('paused')", "a paused picture")
+        self.click("Go on")
+        self.wait("frame.film", "a picture")
+        self.edit("vec3(0.5);", "vec3(0.5)")
+        self.error()
+        self.assertEqual(self.frame("frame.numbers.textContent"), "")
+
+    def test_a_frame_out_of_view_pauses(self):
+        self.start(3)
+        self.wait("frame.film", "a picture")
+        self.frame("(frame.root.style.marginTop = '5000px', scrollTo(0, 0))")
+        self.wait("!frame.isVisible", "the frame to be out of view")
+        samples = self.frame("frame.renderings[0].rendering.samples")
+        time.sleep(2)
+        self.assertLessEqual(self.frame("frame.renderings[0].rendering.samples"), 2 * samples)
+        samples = self.frame("frame.renderings[0].rendering.samples")
+        time.sleep(2)
+        self.assertEqual(self.frame("frame.renderings[0].rendering.samples"), samples)
+        self.frame("frame.root.scrollIntoView()")
+        self.wait(f"frame.renderings[0].rendering.samples > {samples}", "more samples")
+
+    def test_the_keyboard_stays_in_the_frame(self):
+        self.start(3)
+        self.assertTrue(self.frame("document.activeElement === frame.scene"))
+        self.frame("(frame.editor.tabs.lastChild.focus(), frame.editor.tabs.lastChild.click())")
+        self.assertTrue(self.frame("document.activeElement === frame.editor.tabs.lastChild && document.activeElement.getAttribute('aria-selected') === 'true'"))
 
     def test_without_webgl(self):
         self.start(3, before="HTMLCanvasElement.prototype.getContext = () => null")
@@ -175,9 +322,18 @@ class LivePagesTest(LivePages, unittest.TestCase):
         self.browser.visit("about:blank")
         self.browser.visit((self.site / "docs/bugs.html").as_uri())
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('.live-start').length"), (PROJECT / "docs/bugs.md").read_text(encoding="utf-8").count("<!-- live: "))
-        self.browser.evaluate(f"{SMALL}; document.querySelector('.live-start').click()")
+        self.browser.evaluate(f"{SMALL}; document.querySelector('.live').scrollIntoView(); document.querySelector('.live-start').click()")
         self.wait("frame.latest?.verdict", "a verdict")
         self.assertRegex(self.frame("frame.latest.text"), "^biased: ")
+        frames = "[...document.querySelectorAll('.live')].map(root => root.frame)"
+        self.browser.evaluate(f"{frames}[1].root.querySelector('.live-start').click()")
+        self.browser.evaluate(f"{frames}[1].root.scrollIntoView()")
+        self.wait(f"{frames}[1].film", "the second bug")
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('canvas:not(.live-overlay)').length"), 1)
+        self.assertIn("Restart goes on", self.frame("frame.verdict.textContent"))
+        self.frame("(frame.root.scrollIntoView(), frame.film = null)")
+        self.click("Restart")
+        self.wait("frame.film", "the first bug again")
         self.assertEqual(self.browser.evaluate("Object.keys(localStorage).filter(key => key.startsWith('path tracing lab'))"), [])
         self.assert_no_complaints()
 

@@ -1,4 +1,5 @@
-"""Shaders with names of the engine, as students write them: a page renders what the backend `compute` does."""
+"""Shaders as students write them, with names that the engine has and with mistakes: a page renders what the backend `compute` does, and
+says what to do."""
 
 import json
 import shutil
@@ -19,7 +20,7 @@ MOST_DIFFERENT = 2  # pixels of 256: where rounding decides which triangle a ray
 
 
 @unittest.skipUnless(CHROMIUM, "needs Chromium, which ./lab test installs")
-class StudentsNamesTest(ProgramTest):
+class StudentsPage:
     def setUp(self):
         super().setUp()
         browser = self.enterContext(Browser())
@@ -40,6 +41,42 @@ class StudentsNamesTest(ProgramTest):
         texts = json.dumps({f"chapters/{self.chapter}/path_trace.glsl": text_of(file)} | helpers)
         return np.reshape(self.browser.evaluate(f"live.film('{self.chapter}', live.scene, live.words, {texts}, [{SIZE}, {SIZE}], {SAMPLES})"), (-1, 3))
 
+    def error(self, text):
+        file = self.folder / "wrong.glsl"
+        file.write_text(text, encoding="utf-8")
+        with self.assertRaises(RuntimeError) as refused:
+            self.on_page(file)
+        return str(refused.exception).splitlines()[0].removeprefix("ShaderError: ").replace(f"chapters/{self.chapter}/path_trace.glsl", "FILE")
+
+
+class StudentsErrorsTest(StudentsPage, ProgramTest):
+    HEAD = "vec3 path_trace(Ray ray, inout uvec2 seed) {\n"
+
+    def test_they_name_the_place_and_what_to_do(self):
+        for body, place, advice in (
+                ("return 0.5 * path_trace(ray, seed);\n}", 1, "path_trace.. calls itself: GLSL has no recursion, write a loop"),
+                ("/* hm\nreturn vec3(1.0);\n}", 2, "this comment is never closed"),
+                ("for (int i = 0; i < 3; ++i) {\nreturn vec3(1.0);\n}", 1, "this . is never closed: a } is missing"),
+                ("return vec3(1.0);\n}\n}", 4, "this } closes nothing"),
+                ("vec3 x = 0.5;\nreturn x;\n}", 2, r"vec3\(x\) makes three of one"),
+                ("return 0.5;\n}", 2, r"vec3\(x\) makes three of one"),
+                ("float x = ray.direction;\nreturn vec3(x);\n}", 2, "v.x takes one of three"),
+                ("return vec3(2 * ray.direction);\n}", 2, r"2\.0 \* x instead of 2 \* x"),
+                ("return vec3(1.5 % 1.0);\n}", 2, r"mod\(x, y\)"),
+                ("float a[2] = {1.0, 2.0};\nreturn vec3(a[0]);\n}", 2, r"float\[2\]\(1.0, 2.0\)"),
+                ("float sample = 1.0;\nreturn vec3(sample);\n}", 2, "choose another"),
+                ("if (ray.origin.x > 0.0)\ndiscard;\nreturn vec3(1.0);\n}", 3, "discard is for pixels of triangles"),
+                ("#ifdef SOMETHING\nreturn vec3(1.0);\n}", 2, "this condition has no #endif"),
+                ("return vec3(1.0)\n}", 3, "is a semicolon or a bracket missing here or before?")):
+            with self.subTest(body=body):
+                self.assertRegex(self.error(self.HEAD + body + "\n"), rf"^FILE:{place}: .*{advice}")
+        calls = "float g(float x);\nfloat f(float x) { return g(x); }\nfloat g(float x) { return f(x); }\n"
+        self.assertRegex(self.error(f"{calls}{self.HEAD}return vec3(f(1.0));\n}}"), r"^FILE:\d: [fg]\(\) calls itself by way of [fg]\(\): GLSL has no recursion")
+        for name in ("path_tracer(Ray ray, inout uvec2 seed)", "path_trace(Ray ray)"):
+            self.assertIn("the shader has to define vec3 path_trace(Ray ray, inout uvec2 seed)", self.error(f"vec3 {name} {{ return vec3(1.0); }}"))
+
+
+class StudentsNamesTest(StudentsPage, ProgramTest):
     def in_program(self, file):
         folder = self.folder / file.stem
         shutil.copytree(file.with_suffix(""), folder) if file.with_suffix("").exists() else folder.mkdir()

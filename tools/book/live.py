@@ -75,6 +75,11 @@ def shaders():
     return {name: text if name.startswith("chapters/") else re.sub("[ \t]*//.*", "", text) for name, text in texts.items()}
 
 
+def without_comments(text):
+    """A script without indentation and lines of comments, which a page need not load. Lines keep their numbers."""
+    return re.sub(r"^ *//.*|^ +", "", text, flags=re.MULTILINE)
+
+
 def pictures_of(chapter, scene):
     """The names of the references that a chapter's frame offers: those of the page's scene, the longest paths first, then its check's."""
     names = sorted((file.stem for file in (ROOT / "assets/references").glob(f"{scene}_*.exr") if scene_of(file.stem) == scene),
@@ -226,4 +231,4 @@ def write(folder, frames):
     (folder / "sources.js").write_text(f"var live = globalThis.live ?? {{}};\nlive.data = {{}};\nlive.sources = {literal(texts)};\n"
                                        f"live.chapters = {literal(chapters)};\n", encoding="utf-8")
     for name in [*SCRIPTS, "live.css"]:
-        shutil.copy(HERE / name, folder / name)
+        (folder / name).write_text(without_comments((HERE / name).read_text(encoding="utf-8")), encoding="utf-8")

@@ -6,10 +6,17 @@ globalThis.live = live;
 
 live.glsl = (() => {
     const { Preprocessor, ShaderError, fail, isWord } = live.preprocessor, { Layout } = live;
+    // What compilers say, and what helps; the first that fits.
     const ERROR_HINTS = [
+        [/'path_trace' : no matching/, "the shader has to define vec3 path_trace(Ray ray, inout uvec2 seed)"],
+        [/'%' : wrong operand/, "% is for integers: mod(x, y) is for others"],
+        [/dimension mismatch|not matching type/, "one number cannot stand for three, nor three for one: vec3(x) makes three of one, and v.x takes one of three"],
         [/wrong operand types|cannot convert|no operation/, "both sides need the same type: 2.0 * x instead of 2 * x, float(i) for an integer i"],
+        [/'\{' : syntax error/, "is a semicolon missing before? An array's values are float[2](1.0, 2.0)"],
         [/syntax error|unexpected/, "is a semicolon or a bracket missing here or before?"],
-        [/undeclared identifier|no matching overloaded function/, "is the name right, and do the types of the arguments fit?"]];
+        [/undeclared identifier|no matching overloaded function/, "is the name right, and do the types of the arguments fit?"],
+        [/l-value required/, "what is const cannot be assigned"],
+        [/built-in function|reserved word/, "the language of browsers keeps this name for itself: choose another"]];
 
     const MACROS = ["precise", "atomicAdd(place, value) (place += (value))", "nonuniformEXT(index) (index)", "BVH_IN_STORAGE_BUFFERS",
                     "__VERSION__ 460", "VULKAN 100"];
@@ -59,9 +66,9 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
         const open = [];
         for (const token of tokens) {
             if (token.text === "{") open.push(token);
-            if (token.text === "}" && !open.pop()) fail(token, "this } closes nothing: is there one too many?");
+            if (token.text === "}" && !open.pop()) fail(token, "this } closes nothing: is there one too many, or a { missing before?");
         }
-        if (open.length) fail(open[0], "this { is never closed: a } is missing");
+        if (open.length) fail(open[0], "this { is never closed: a } is missing below");
     }
 
     // Follows the statements of a program and what they declare, so that a name is rewritten only where it means the engine's.
@@ -343,8 +350,8 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
     }
 
     // Translates a chapter's program. `scene`: images as dump_arrays writes them; `named`: as finder() takes them.
-    // Returns the text, a function from its line numbers to places, the places of loops, and whether the chapter has a sample loop
-    // of its own, which renders several samples in a draw.
+    // Returns the text, functions from its line numbers and from numbers of loops to places, those of functions, and whether the chapter
+    // has a sample loop of its own, which renders several samples in a draw.
     function translate({ sources, chapter, named, defines, scene }) {
         const layout = new Layout(sources["shaders/interface.h"]);
         const preprocessor = new Preprocessor(sources, finder(sources, chapter, named), [...MACROS, ...defines]);
@@ -357,15 +364,19 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
         const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp usampler2D;\n" + PRELUDE;
         const headLines = head.split("\n").length - 1;
         const hasSampleLoop = preprocessor.files.has(`chapters/${chapter}/sample_loop.glsl`);
-        return { text: head + text, place: line => places[line - headLines - 1], loop: number => translation.loops[number - 1], hasSampleLoop };
+        const { functions, loops } = translation;
+        return { text: head + text, place: line => places[line - headLines - 1], loop: number => loops[number - 1], functions, hasSampleLoop };
     }
 
-    // A compiler's message as "file:line: message (hint)", the first error only.
-    function readableError(log, place) {
-        const match = /^ERROR: [^:\n]*:(\d+): (.*)$/m.exec(log);
-        if (!match) return log.trim() || "the driver refuses the shader and does not say why";
-        const at = place(Number(match[1])), hint = ERROR_HINTS.find(([pattern]) => pattern.test(match[2]))?.[1];
-        return `${at ? `${at.file}:${at.line}: ` : ""}${match[2].trim()}${hint ? ` (${hint})` : ""}`;
+    // A compiler's message about a translated shader as "file:line: message (hint)", the first error only.
+    function readableError(log, { place, functions }) {
+        const [, caller, ...others] = /Recursive function call in the following call chain: (\w+)(?: <- (\w+))?/.exec(log) ?? [];
+        const at = ({ file, line } = {}) => file ? `${file}:${line}: ` : "";
+        if (caller) return `${at(functions.get(caller))}${caller}() calls itself${others[0] ? ` by way of ${others[0]}()` : ""}: GLSL has no recursion, write a loop`;
+        const [, line, text] = /^ERROR: [^:\n]*:(\d+): (.*)$/m.exec(log) ?? [];
+        if (!text) return log.trim() || "the driver refuses the shader and does not say why";
+        const hint = ERROR_HINTS.find(([pattern]) => pattern.test(text))?.[1];
+        return `${at(place(Number(line)))}${text.trim()}${hint ? ` (${hint})` : ""}`;
     }
 
     // Where a shader's #include finds a file, as the programs do: the files of this list may be a chapter's own.
