@@ -2,6 +2,7 @@
 says what to do."""
 
 import json
+import random
 import shutil
 import subprocess
 import unittest
@@ -16,7 +17,44 @@ from tools_path import PROJECT
 
 STUDENTS = PROJECT / "tests/browser/students"
 SCENE, SIZE, SAMPLES, LENGTH = "cornell_box", 16, 2, ["--max-path-length", 2]
+RANDOM_SHADERS = 6
+# What the scene's arrays are in a shader where nothing hides them.
+SCENES = {"materials": "materials[{}].diffuse_albedo.y", "positions": "abs(positions[{}].x)", "triangles": "float(triangles[{}].z)",
+          "triangle_materials": "float(triangle_materials[{}])"}
+NAMES = [*SCENES, "samples", "film", "ray_counters", "normals", "children", "media"]
 MOST_DIFFERENT = 2  # pixels of 256: where rounding decides which triangle a ray meets
+
+
+def random_shader(pick):
+    """A shader of nested scopes, whose variables and arrays have the engine's names and hide each other and the scene's arrays."""
+    def value(scopes):
+        name = pick.choice(NAMES)
+        kind = next((scope[name] for scope in reversed(scopes) if name in scope), None)
+        index = pick.choice(["0", "1", "1u"])
+        own = {"array": f"{name}[{index}]", "vector": f"{name}[{index}]", "number": name, "index": f"float({name})"}.get(kind)
+        return own or SCENES.get(name, "0.5").format(index)
+
+    def block(scopes, depth):
+        scopes, lines = [*scopes, {}], []
+        for _ in range(pick.randint(3, 6)):
+            name, kind = pick.choice(NAMES), pick.choice(["declare", "declare", "add", "add", "set", "block", "loop", "condition"])
+            if kind == "declare" and name not in scopes[-1]:
+                what = pick.choice(["array", "vector", "number"])
+                lines += {"array": [f"float {name}[2] = float[2]({value(scopes)}, {value(scopes)});"], "vector": [f"vec2 {name} = vec2({value(scopes)}, 0.25);"],
+                          "number": [f"float other_{depth}_{len(lines)} = 1.0, {name} = {value(scopes)};"]}[what]
+                scopes[-1][name] = what
+            elif kind == "set" and (own := next((scope[name] for scope in reversed(scopes) if name in scope), None)) in ("array", "vector"):
+                lines.append(f"{name}[{pick.randint(0, 1)}] = {value(scopes)};")
+            elif depth < 4 and kind in ("block", "condition"):
+                head = "" if kind == "block" else f"if (sum.x {pick.choice('<>')} {value(scopes)}) "
+                lines += [f"{head}{{", *block(scopes, depth + 1), "}"]
+            elif depth < 4 and kind == "loop":
+                lines += [f"for (int {name} = 0; {name} < 2; ++{name}) {{ {{", *block([*scopes, {name: "index"}], depth + 1), "} }"]
+            else:
+                lines.append(f"sum += vec3({value(scopes)}, {value(scopes)}, 0.125);")
+        return lines
+
+    return "\n".join(["vec3 path_trace(Ray ray, inout uvec2 seed) {", "vec3 sum = vec3(0.0);", *block([], 0), "return sum + 1.0;", "}"]) + "\n"
 
 
 @unittest.skipUnless(CHROMIUM, "needs Chromium, which ./lab test installs")
@@ -37,7 +75,8 @@ class StudentsPage:
         self.chapter, self.browser = chapter, browser
 
     def on_page(self, file):
-        helpers = {f"chapters/{self.chapter}/{helper.name}": text_of(helper) for helper in file.with_suffix("").glob("*.glsl")}
+        folder = file.with_suffix("")
+        helpers = {f"chapters/{self.chapter}/{helper.relative_to(folder).as_posix()}": text_of(helper) for helper in folder.rglob("*.glsl")}
         texts = json.dumps({f"chapters/{self.chapter}/path_trace.glsl": text_of(file)} | helpers)
         return np.reshape(self.browser.evaluate(f"live.film('{self.chapter}', live.scene, live.words, {texts}, [{SIZE}, {SIZE}], {SAMPLES})"), (-1, 3))
 
@@ -88,15 +127,27 @@ class StudentsNamesTest(StudentsPage, ProgramTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         return np.array(Exr(output).pixels()).reshape(3, -1).T
 
+    def assert_same(self, file):
+        with self.subTest(shader=file.name):
+            expected = self.in_program(file)
+            self.assertGreater(expected.mean(), 0)
+            different = (np.abs(self.on_page(file) - expected) > 1e-4 * (1 + np.abs(expected))).any(axis=1).sum()
+            self.assertLessEqual(different, MOST_DIFFERENT, text_of(file))
+
     def test_pictures_are_those_of_compute(self):
         files = sorted(STUDENTS.glob("*.glsl"))
-        self.assertGreater(len(files), 6)
+        self.assertGreater(len(files), 10)
         for file in files:
-            with self.subTest(shader=file.name):
-                expected = self.in_program(file)
-                self.assertGreater(expected.mean(), 0)
-                different = (np.abs(self.on_page(file) - expected) > 1e-4 * (1 + np.abs(expected))).any(axis=1).sum()
-                self.assertLessEqual(different, MOST_DIFFERENT)
+            self.assert_same(file)
+
+    def test_random_scopes(self):
+        for seed in range(RANDOM_SHADERS):
+            file = self.folder / f"random_{seed}.glsl"
+            file.write_text(random_shader(random.Random(seed)), encoding="utf-8")
+            self.assert_same(file)
+
+    def test_what_the_programs_refuse(self):
+        self.assertRegex(self.error("struct Film { float x; };\nvec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(1.0); }\n"), "^FILE:1: 'Film' : redefinition")
 
 
 if __name__ == "__main__":

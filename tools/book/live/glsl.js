@@ -135,7 +135,7 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
             let end = at;
             while (end < tokens.length && tokens[end].text !== ";") end = "([{".includes(tokens[end].text) ? this.closing(end) + 1 : end + 1;
             const text = this.ahead(end - at), image = /uniform texture2D (\w+)/.exec(text)?.[1];
-            const [, binding, kind, type, name = image] = /(?:binding = (\w+) )?\) (\w+ buffer|buffer|uniform) \w+ \{ (\w+) (\w+) (?:\[ \] )?; \}$/.exec(text) ?? [];
+            const [, binding, kind, block, type, name = image] = /(?:binding = (\w+) )?\) (\w+ buffer|buffer|uniform) (\w+) \{ (\w+) (\w+) (?:\[ \] )?; \}$/.exec(text) ?? [];
             if (!name) return false;
             let result = `${kind === "uniform" ? "uniform " : ""}${type} ${name};`, meaning;
             if (image) result = image === "textures" ? this.textures : `uniform highp sampler2D ${image};`;
@@ -144,7 +144,7 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
                 result = layout.accessors(type, name, number);
                 meaning = { members: layout.structs[type] ?? [], length: `int(web_places[${number}].y / ${layout.wordsOf(type)}u)` };
             } else if (kind !== "uniform") meaning = { isSingle: true };  // a fragment has one pixel
-            this.emit(result, tokens[at]);
+            this.emit(block ? `struct ${block} { int web_taken; }; ${result}` : result, tokens[at]);  // the programs have the block's name, too
             this.scopes.at(-1).set(name, meaning);
             this.at = end + 1;
             return true;
