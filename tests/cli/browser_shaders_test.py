@@ -91,6 +91,12 @@ class ShadersInBrowserTest(unittest.TestCase):
         lines = {name: 1 + text[:text.index(name)].count("\n") for name in ("probe_1", "probe_2", "probe_3", "probe_4")}
         self.assertEqual(sorted(found), [(name, path, str(line)) for name, line in lines.items()])
 
+    def test_the_list_of_files_that_chapters_replace_is_complete(self):
+        replaceable = {Path(name).name: PROJECT / "shaders" / name for name in read_json(PROJECT / live.REPLACEABLE)}
+        self.assertEqual([file for file in replaceable.values() if not file.is_file()], [])
+        engine = {file.name for room in ("engine", "world") for file in (PROJECT / "shaders" / room).rglob("*.glsl")}
+        self.assertEqual({file.name for file in PROJECT.glob("chapters/*/*.glsl")} & engine, set(replaceable))
+
     def test_every_chapter_compiles(self):
         self.assertEqual(self.errors((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), {})
 
