@@ -108,9 +108,11 @@ class ShadersInBrowserTest(unittest.TestCase):
         self.assertEqual(self.errors(texts), {})
 
     def test_names_of_the_engine_may_be_a_students(self):
-        folder = PROJECT / "tests/browser/students"
-        texts = [(3, file.name, {f"chapters/{CHAPTERS[3]}/{name}": text_of(each) for name, each in [("path_trace.glsl", file)] +
-                                 [(helper.name, helper) for helper in (folder / file.stem).glob("*.glsl")]}) for file in folder.glob("*.glsl")]
+        def texts_of(file):
+            helpers = {helper.relative_to(file.with_suffix("")).as_posix(): helper for helper in file.with_suffix("").rglob("*.glsl")}
+            return {f"chapters/{CHAPTERS[3]}/{name}": text_of(each) for name, each in ({"path_trace.glsl": file} | helpers).items()}
+
+        texts = [(3, file.name, texts_of(file)) for file in (PROJECT / "tests/browser/students").glob("*.glsl")]
         self.assertEqual(self.errors(texts, ["lamps", "meshes"]), {})
 
     def test_mistakes_compile(self):

@@ -56,7 +56,7 @@ class LivePages(Site):
             editor.open(editor.files.find(file => editor.texts[file].includes({json.dumps(old)})));
             const {{ field }} = editor;
             field.value = field.value.replace({json.dumps(old)}, {json.dumps(new)});
-            field.dispatchEvent(new Event("input")); }})()""")
+            field.dispatchEvent(new Event("input")); frame.stopRenderings(); frame.film = frame.latest = null; }})()""")
 
     def error(self):
         self.wait("frame.editor.error.textContent", "an error")

@@ -147,7 +147,9 @@ class StudentsNamesTest(StudentsPage, ProgramTest):
             self.assert_same(file)
 
     def test_what_the_programs_refuse(self):
-        self.assertRegex(self.error("struct Film { float x; };\nvec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(1.0); }\n"), "^FILE:1: 'Film' : redefinition")
+        for declaration, name in (("struct Film { float x; };", "Film"), ("vec3 positions(vec3 p) { return p; }", "positions"), ("float materials[2];", "materials")):
+            text = f"{declaration}\nvec3 path_trace(Ray ray, inout uvec2 seed) {{ return vec3(1.0); }}\n"
+            self.assertRegex(self.error(text), f"^FILE:1: '{name}' : redefinition")
 
 
 if __name__ == "__main__":

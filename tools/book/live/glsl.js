@@ -141,10 +141,10 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
             if (image) result = image === "textures" ? this.textures : `uniform highp sampler2D ${image};`;
             else if (kind === "readonly buffer") {
                 const number = layout.constants[binding];
-                result = layout.accessors(type, name, number);
+                result = `const int ${name} = 0; ${layout.accessors(type, name, number)}`;  // nobody else can have its name, as in the programs
                 meaning = { members: layout.structs[type] ?? [], length: `int(web_places[${number}].y / ${layout.wordsOf(type)}u)` };
             } else if (kind !== "uniform") meaning = { isSingle: true };  // a fragment has one pixel
-            this.emit(block ? `struct ${block} { int web_taken; }; ${result}` : result, tokens[at]);  // the programs have the block's name, too
+            this.emit(block ? `struct ${block} { int web_taken; }; ${result}` : result, tokens[at]);
             this.scopes.at(-1).set(name, meaning);
             this.at = end + 1;
             return true;
