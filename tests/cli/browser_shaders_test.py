@@ -79,15 +79,23 @@ class ShadersInBrowserTest(unittest.TestCase):
                 found.setdefault(f"{jobs[file][1]}, {jobs[file][3]}", line)
         return found
 
-    def test_lines_stay_lines(self):
-        path = PROJECT / "chapters" / CHAPTERS[3] / "path_trace.glsl"
-        text = text_of(path)
-        self.assertIn("for (", text)
+    def test_lines_know_their_places(self):
+        path = path_of(PROJECT / "chapters" / CHAPTERS[3] / "path_trace.glsl")
+        text = "#define PROBE(name, \\\n              value) int name = value\n/* two\nlines */ " + text_of(PROJECT / path)
+        text = text.replace("for (", "int probe_1;\nfor\n(\n", 1).replace("vec3 throughput", "PROBE(probe_2,\n2); int probe_3 = 1; vec3 throughput", 1)
+        text += "#if 0\nint probe_0;\n#endif\nint probe_4;\n"
         with tempfile.TemporaryDirectory() as folder:
-            files = [Path(folder) / name for name in ("as_it_is", "split")]
-            self.translate({file: (3, "", {path_of(path): changed}, "lamps") for file, changed in zip(files, (text, text.replace("for (", "for\n(")))})
-            counts = [len(file.read_text(encoding="utf-8").splitlines()) for file in files]
-        self.assertEqual(counts[1] - counts[0], text.count("for ("))
+            file = Path(folder) / "places"
+            self.translate({file: (3, "", {path: text}, "lamps")})
+            found = re.findall(r"\b(probe_\d).*// (\S+):(\d+)$", file.read_text(encoding="utf-8"), re.MULTILINE)
+        lines = {name: 1 + text[:text.index(name)].count("\n") for name in ("probe_1", "probe_2", "probe_3", "probe_4")}
+        self.assertEqual(sorted(found), [(name, path, str(line)) for name, line in lines.items()])
+
+    def test_the_list_of_files_that_chapters_replace_is_complete(self):
+        replaceable = {Path(name).name: PROJECT / "shaders" / name for name in read_json(PROJECT / live.REPLACEABLE)}
+        self.assertEqual([file for file in replaceable.values() if not file.is_file()], [])
+        engine = {file.name for room in ("engine", "world") for file in (PROJECT / "shaders" / room).rglob("*.glsl")}
+        self.assertEqual({file.name for file in PROJECT.glob("chapters/*/*.glsl")} & engine, set(replaceable))
 
     def test_every_chapter_compiles(self):
         self.assertEqual(self.errors((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), {})
@@ -98,6 +106,14 @@ class ShadersInBrowserTest(unittest.TestCase):
         exercises = {chapter: live.exercise_of(CHAPTERS[chapter], live.shaders()) for chapter in course()}
         texts += [(chapter, f"exercise {chapter}", {e["file"]: e["text"]}) for chapter, e in exercises.items() if e]
         self.assertEqual(self.errors(texts), {})
+
+    def test_names_of_the_engine_may_be_a_students(self):
+        def texts_of(file):
+            helpers = {helper.relative_to(file.with_suffix("")).as_posix(): helper for helper in file.with_suffix("").rglob("*.glsl")}
+            return {f"chapters/{CHAPTERS[3]}/{name}": text_of(each) for name, each in ({"path_trace.glsl": file} | helpers).items()}
+
+        texts = [(3, file.name, texts_of(file)) for file in (PROJECT / "tests/browser/students").glob("*.glsl")]
+        self.assertEqual(self.errors(texts, ["lamps", "meshes"]), {})
 
     def test_mistakes_compile(self):
         self.assertEqual(self.errors(mistakes(), ["meshes", "probe"]), {})

@@ -188,19 +188,20 @@ class CheckTest(Checking, ProgramTest):
         for name in NO_UTF8:
             self.write(Path("all") / name, text)
         self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # traces no rays
+        self.write("all/carl.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) {\n    // TODO\n    return vec3(0.2);\n}\n")
         (self.folder / "all/gone.glsl").symlink_to("nowhere")
         self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
         grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
-        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "dora": "biased", "gone": "not graded"}
+        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "carl": "unfinished", "dora": "biased", "gone": "not graded"}
         expected |= {r"m\xfcller": "correct", r"m\xfdller": "correct"}
         code, out, err = self.check(*grade_all)
         self.assertEqual(code, 2, err)
-        self.assertRegex(out, rf"what is wrong most often\n(\d of \d: [^\n]*\n)*1 of 7: [^\n]*twice as far away\? \([^\n]*chapters/{SHADER.parent.name}/README.md\): off by the distance")
+        self.assertRegex(out, rf"what is wrong most often\n(\d of \d: [^\n]*\n)*1 of 8: [^\n]*twice as far away\? \([^\n]*chapters/{SHADER.parent.name}/README.md\): off by the distance")
         table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
         self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)),
-                         ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"])
+                         ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "carl.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"])
         self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
 
         self.write("all/abe.glsl", ENDLESS)

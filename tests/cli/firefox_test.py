@@ -21,7 +21,7 @@ FIREFOX, DISPLAY = shutil.which("firefox-esr") or shutil.which("firefox"), shuti
 SETTINGS = {"webgl.force-enabled": True, "webgl.disabled": False, "browser.shell.checkDefaultBrowser": False, "datareporting.policy.dataSubmissionEnabled": False,
             "app.update.enabled": False, "browser.aboutwelcome.enabled": False, "network.captive-portal-service.enabled": False}
 PAGE = """<!DOCTYPE html><title>films</title><canvas></canvas>""" + "".join(
-    f'<script src="/live/{name}"></script>' for name in ("sources.js", "glsl.js", "verdict.js", "renderer.js", "films.js"))
+    f'<script src="/live/{name}"></script>' for name in ("sources.js", "preprocessor.js", "layout.js", "glsl.js", "verdict.js", "renderer.js", "films.js"))
 PATIENCE = 600  # seconds for a chapter
 LARGEST_DIFFERENCE = 1e-3  # of the picture's mean
 MOST_DIFFERENT = 50 / 65536  # of the pixels: where rounding decides which way a path goes

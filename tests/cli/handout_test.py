@@ -52,6 +52,18 @@ class EveryHandout_all(ProgramTest):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
 
+class EveryHandoutsPages_all(ProgramTest):
+    def test_can_be_written(self):
+        if not shutil.which("mkdocs"):
+            self.skipTest("needs MkDocs, which ./lab book installs")
+        for number, name in enumerate(CHAPTERS, 1):
+            with self.subTest(chapter=name):
+                site = self.folder / name
+                result = handout(self.folder, number, site, "--pages")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertIn(f'data-chapter="{name}"', (site / f"chapters/{name}/index.html").read_text(encoding="utf-8"))
+
+
 class HandoutTest(ProgramTest):
     @classmethod
     def setUpClass(cls):
@@ -173,8 +185,9 @@ Another is code of chapter 7.
     def test_its_pages_give_nothing_away(self):
         if not shutil.which("mkdocs"):
             self.skipTest("needs MkDocs, which ./lab book installs")
-        result = self.handout(3, "pages", "--pages")
-        self.assertEqual(result.returncode, 0, result.stderr)
+        for number, folder in ((1, "first"), (3, "pages")):
+            result = self.handout(number, folder, "--pages")
+            self.assertEqual(result.returncode, 0, result.stderr)
         site = self.folder / "pages"
         secret = EXERCISES[CHAPTERS[2]]["last"]
         texts = {path: path.read_text(encoding="utf-8") for pattern in ("*.html", "*.js") for path in site.rglob(pattern)}

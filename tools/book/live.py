@@ -26,13 +26,15 @@ from check.grading import expected_file
 from project import CHAPTERS, ROOT, UserError, chapter_named, description, failure_text, original, program_file, read_json, run_program, scene_of
 
 HERE = Path(__file__).parent / "live"
-SCRIPTS = ["glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "check.js", "report.js", "page.js"]
+SCRIPTS = ["preprocessor.js", "layout.js", "glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "check.js", "report.js", "page.js"]
 RULES = ["SURE", "TOLERANCE", "CLOSE", "INTERVAL", "DARK", "FEW_PARTS", "CONSTANTS"]  # of facts.py, which facts.js follows
 MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+)(?: bug (\d+))?)? -->$", re.MULTILINE)
 REPORT = "report"
 LARGEST = 2_500_000  # bytes of a scene on a page
 HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halves end at 65504 and lose digits below 6e-5
 SHADERS = {".glsl", ".h", ".frag"}
+REPLACEABLE = "shaders/replaceable.json"  # the files that a chapter may replace
+IN_DRAWS = {"sample_loop.glsl": "single_sample.glsl", "stuck_loop.glsl": "stuck_loop_of_a_draw.glsl"}  # what a page has in place of the programs'
 
 
 def frames_of(text, path):
@@ -62,14 +64,20 @@ def with_frames(text, path):
 
 def shaders():
     """The texts of all shaders that a browser may include: of the engine, the world and the chapters. Pages trace rays as
-    `compute` does, and have one sample a draw in place of the loop over samples. Of those that observe paths, they have the view of
+    `compute` does. Of those that observe paths, they have the view of
     surfaces. Comments are left out where no page shows the file."""
-    files = [file for room in ("shaders", "chapters") for file in sorted((ROOT / room).rglob("*"))
+    files = [ROOT / REPLACEABLE] + [file for room in ("shaders", "chapters") for file in sorted((ROOT / room).rglob("*"))
              if file.suffix in SHADERS and (file.parent.name != "trace_ray" or file.stem in ("compute", "bvh"))]
     texts = {file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8") for file in files
              if file.name == "view.glsl" or not {"solutions", "variants", "observation"} & set(file.parts)}
-    texts["shaders/engine/sample_loop.glsl"] = texts.pop("shaders/engine/single_sample.glsl")
+    for name, replacement in IN_DRAWS.items():
+        texts[f"shaders/engine/{name}"] = texts.pop(f"shaders/engine/{replacement}")
     return {name: text if name.startswith("chapters/") else re.sub("[ \t]*//.*", "", text) for name, text in texts.items()}
+
+
+def without_comments(text):
+    """A script without indentation and lines of comments, which a page need not load. Lines keep their numbers."""
+    return re.sub(r"^ *//.*|^ +", "", text, flags=re.MULTILINE)
 
 
 def pictures_of(chapter, scene):
@@ -215,11 +223,12 @@ def write(folder, frames):
                                  "samples": told["check"]["samples"], "checked": told["check"]["references"],
                                  "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)}
             scripts[f"experiments_{chapter}"] = script(f"experiments_{chapter}", experiments[chapter].result())
-        scripts["furnace"] = script("furnace", furnace(Path(temporary)))
+        if 2 in CHAPTERS:  # not in the tree of a student who begins
+            scripts["furnace"] = script("furnace", furnace(Path(temporary)))
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")
     (folder / "sources.js").write_text(f"var live = globalThis.live ?? {{}};\nlive.data = {{}};\nlive.sources = {literal(texts)};\n"
                                        f"live.chapters = {literal(chapters)};\n", encoding="utf-8")
     for name in [*SCRIPTS, "live.css"]:
-        shutil.copy(HERE / name, folder / name)
+        (folder / name).write_text(without_comments((HERE / name).read_text(encoding="utf-8")), encoding="utf-8")

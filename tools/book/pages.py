@@ -11,7 +11,7 @@ LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".glsl": "glsl", ".comp": "glsl", ".rge
              ".py": "python", ".json": "json", "": "bash"}
 LARGEST_SOURCE = 100_000  # bytes; larger files are data
 CODE = r"```.*?```|`[^`\n]+`|(?<=\n\n) {4}[^\n]*"
-LINK = re.compile(rf"({CODE})|(?<!!)\[((?:`[^`\n]*`|[^\[\]]|!\[[^\[\]]*\]\([^()]*\))*)\]\(([^()\s]+)\)", re.DOTALL)
+LINK = re.compile(rf"({CODE})|(?<!!)\[((?:`[^`\n]*`|[^\[\]`]|!\[[^\[\]]*\]\([^()]*\))*)\]\(([^()\s]+)\)", re.DOTALL)
 PICTURE = re.compile(r"!\[[^\[\]]*\]\(([^()\s]+)\)|<img [^<>]*src=\"([^\"]+)\"")
 FUNCTION_ROW = re.compile(r"^\| (`\w+ (\w+)\([^`]*`) \| (.*?) \|", re.MULTILINE)  # of a table: declaration, name, explanation
 ITEM = re.compile(r"(\d+\.|[-*]) +(?=\S)")

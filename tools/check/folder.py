@@ -82,7 +82,7 @@ def grade_one(options, check, name, submission, folder, known):
         result = check(options, file, folder / f"{name}.png")
         found = result["diagnosis"] or {"facts": [], "mistakes": [], "fits": False}
         fitting = found["mistakes"] if found["fits"] else []
-        row = {"verdict": result["verdict"], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
+        row = {"verdict": headline(result)[0], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
                "headline": headline(result), "text": laid_out(short_lines(result)), "details": laid_out(detail_lines(result)),
                "facts": " | ".join(fact["text"] for fact in found["facts"]), "mistakes": " ".join(each.get("name", "") for each in fitting),
                "questions": " ".join(questions(result) if fitting else []), "causes": causes(options.chapter, result), "error": ""}

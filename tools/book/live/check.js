@@ -18,7 +18,11 @@ live.check = (() => {
             frame.errors = [];
             let last;
             const target = () => last?.verdict?.samples >= enough ? 0 : most;
-            const done = await frame.renderPicture(picture, target, (film, reference, verdict) => { last = verdict; frame.show(film, reference, verdict, started); });
+            const done = await frame.renderPicture(picture, target, (film, reference, verdict) => {
+                if (!film.rays) throw new Error("the shader traces no ray: there is nothing to check");
+                last = verdict;
+                frame.show(film, reference, verdict, started);
+            });
             if (!done) return null;
             rows.push([name, last.text]);
             frame.results.replaceChildren(table(rows));

@@ -14,6 +14,7 @@ live.element = (name, attributes = {}, ...children) => {
 
 live.Editor = (() => {
     const { element } = live, LONGEST = 200_000;  // characters; the longest shader of the course has 4,000
+    const MOST_KEPT = 20;  // texts that were replaced
     const keyOf = path => `path tracing lab: ${path}`;
 
     // Browsers may forbid storage, and it may be full.
@@ -44,15 +45,22 @@ live.Editor = (() => {
     return class Editor {
         // Calls changed() after each edit, and say(text) for what the reader should know.
         constructor(chapter, changed, say, keepsTexts) {
-            Object.assign(this, { chapter, changed, say, keepsTexts });
+            Object.assign(this, { chapter, changed, say, keepsTexts, texts: {}, fields: {}, buttons: {} });
             this.files = filesOf(chapter);
-            this.texts = {};
-            for (const file of this.files) this.texts[file] = (keepsTexts ? stored(file) : null) ?? live.sources[file];
-            this.field = element("textarea", { spellcheck: "false", autocapitalize: "off", autocomplete: "off", wrap: "off", rows: "24",
-                                               "aria-label": "the chapter's shader", input: () => this.edit(this.field.value) });
             this.tabs = element("div", { role: "tablist", "aria-label": "files of the chapter", class: "live-tabs", keydown: event => this.key(event) });
             this.error = element("div", { class: "live-error", role: "alert" });
-            this.root = element("div", { class: "live-editor" }, this.tabs, this.field, this.error);
+            // Each file has a field of its own, and with it what Ctrl+Z undoes.
+            for (const file of this.files) {
+                this.texts[file] = (keepsTexts ? stored(file) : null) ?? live.sources[file];
+                this.fields[file] = element("textarea", { spellcheck: "false", autocapitalize: "off", autocomplete: "off", wrap: "off", rows: "24",
+                                                          "aria-label": `the shader ${file}`, input: () => this.typed(file) });
+                this.fields[file].value = this.texts[file];
+                this.buttons[file] = element("button", { type: "button", role: "tab", title: file, click: () => this.open(file) });
+            }
+            this.tabs.append(...Object.values(this.buttons));
+            this.back = element("button", { type: "button", click: () => this.bringBack() }, "Bring my text back");
+            this.kept = JSON.parse((keepsTexts ? stored(this.keptName) : null) ?? "[]");  // texts that were replaced, the latest last
+            this.root = element("div", { class: "live-editor" }, this.tabs, ...Object.values(this.fields), this.error);
             this.open(this.files[0]);
             addEventListener("storage", event => {
                 if (this.files.some(file => keyOf(file) === event.key)) say("Another tab has changed this text: reload the page to see it.");
@@ -63,37 +71,75 @@ live.Editor = (() => {
             const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
             if (!step) return;
             this.open(this.files.at((this.files.indexOf(this.file) + step) % this.files.length));
-            this.tabs.querySelector("[aria-selected=true]").focus();
+            this.buttons[this.file].focus();
         }
 
         get sources() { return { ...live.sources, ...this.texts }; }
         get edited() { return this.files.filter(file => this.texts[file] !== live.sources[file]); }
         get tooLong() { return this.files.find(file => this.texts[file].length > LONGEST); }
 
+        get field() { return this.fields[this.file]; }
+        get keptName() { return `replaced texts of ${this.chapter}`; }
+        // The texts that are not the chapter's: {file: text}.
+        get state() { return Object.fromEntries(this.edited.map(file => [file, this.texts[file]])); }
+        // Whether the reader has written something that the page did not put there.
+        get isOwn() { return this.edited.length > 0 && JSON.stringify(this.state) !== this.placed; }
+
         open(file) {
             this.file = file;
-            this.field.value = this.texts[file];
-            this.tabs.replaceChildren(...this.files.map(path => element("button", {
-                type: "button", role: "tab", "aria-selected": String(path === file), tabindex: path === file ? "0" : "-1", title: path,
-                click: () => this.open(path)
-            }, path.replace(`chapters/${this.chapter}/`, "").replace("chapters/", "") + (this.texts[path] === live.sources[path] ? "" : " *"))));
+            for (const path of this.files) {
+                const button = this.buttons[path], isOpen = path === file;
+                this.fields[path].hidden = !isOpen;
+                button.setAttribute("aria-selected", String(isOpen));
+                button.tabIndex = isOpen ? 0 : -1;
+                button.textContent = path.replace(`chapters/${this.chapter}/`, "").replace("chapters/", "") + (this.texts[path] === live.sources[path] ? "" : " *");
+            }
+            this.back.hidden = !this.kept.length;
         }
 
-        edit(text, file = this.file) {
-            const wasEdited = this.texts[file] !== live.sources[file];
-            this.texts[file] = text;
-            const isEdited = text !== live.sources[file];
+        typed(file) {
+            const text = this.texts[file] = this.fields[file].value, isEdited = text !== live.sources[file];
             if (this.keepsTexts && !store(file, isEdited ? text : undefined)) this.say("The browser keeps no text of this page: download it before you leave.");
-            if (file !== this.file || wasEdited !== isEdited || this.field.value !== text) {
-                const { selectionStart, selectionEnd } = this.field;
-                this.open(file);
-                this.field.setSelectionRange(selectionStart, selectionEnd);
-            }
+            this.open(this.file);
             this.changed();
         }
 
-        reset() {
-            for (const file of this.edited) this.edit(live.sources[file], file);
+        // Replaces a file's text as if it were typed, so that Ctrl+Z brings the old one back.
+        edit(text, file = this.file) {
+            const field = this.fields[file], { activeElement } = document;
+            this.open(file);
+            field.focus({ preventScroll: true });
+            field.select();
+            if (text.length > LONGEST || !document.execCommand(text ? "insertText" : "delete", false, text)) field.value = text;
+            field.setSelectionRange(0, 0);
+            field.scrollTop = 0;
+            activeElement?.focus({ preventScroll: true });
+            this.typed(file);
+        }
+
+        // Puts these texts, {file: text}, and for other files the chapter's own, and shows one. What the reader wrote is kept.
+        replace(texts, shown = Object.keys(texts)[0] ?? this.file) {
+            if (this.isOwn) this.keep([...this.kept, this.state].slice(-MOST_KEPT));
+            for (const file of this.files) {
+                const text = texts[file] ?? live.sources[file];
+                if (text !== this.texts[file]) this.edit(text, file);
+            }
+            this.placed = JSON.stringify(this.state);
+            this.open(shown);
+        }
+
+        keep(kept) {
+            this.kept = kept;
+            if (this.keepsTexts) store(this.keptName, JSON.stringify(kept));
+        }
+
+        // Brings back the text that was replaced last, and the next time the one before. What stands there now comes back last of all.
+        bringBack() {
+            const { kept, state } = this;
+            this.keep([...this.isOwn ? [state] : [], ...kept.slice(0, -1)]);
+            this.placed = JSON.stringify(state);
+            this.replace(kept.at(-1));
+            this.placed = undefined;
         }
 
         // Shows a message of the form FILE:LINE: TEXT and selects the line, unless the reader is typing elsewhere.
@@ -101,7 +147,7 @@ live.Editor = (() => {
             this.error.replaceChildren();
             if (!message) return;
             const match = /^(\S+):(\d+): /.exec(message), isOwn = match && this.files.includes(match[1]);
-            this.error.append(!isOwn && match ? `${message} (in a file after yours: is a } missing in your text?)` : message);
+            this.error.append(message);
             if (isOwn) this.error.append(" ", element("button", { type: "button", click: () => this.select(match[1], Number(match[2])) }, "Go to the line"));
         }
 
@@ -127,30 +173,30 @@ live.Editor = (() => {
                 let text;
                 // As project.py reads them: an editor may have saved the encoding of Windows.
                 try { text = new TextDecoder("utf-8", { fatal: true }).decode(bytes); } catch { text = new TextDecoder("windows-1252").decode(bytes); }
-                this.edit(text.replace(/\r\n?/g, "\n"), this.files.find(path => path.endsWith(`/${file.name}`)) ?? this.file);
+                const place = this.files.find(path => path.endsWith(`/${file.name}`)) ?? this.file;
+                this.replace({ ...this.state, [place]: text.replace(/\r\n?/g, "\n") }, place);
             } }).click();
         }
 
         // The address of this page with the edited texts in its fragment, which browsers send to nobody.
         async link() {
-            const texts = Object.fromEntries(this.edited.map(file => [file, this.texts[file]]));
-            const packed = new Blob([JSON.stringify(texts)]).stream().pipeThrough(new CompressionStream("gzip"));
+            const packed = new Blob([JSON.stringify(this.state)]).stream().pipeThrough(new CompressionStream("gzip"));
             const bytes = new Uint8Array(await new Response(packed).arrayBuffer());
             const code = btoa(Array.from(bytes, byte => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_");
             return `${location.href.split("#")[0]}#live=${code}`;
         }
 
+        // Reads a text from the page's address, which it leaves there no longer: later work would be lost to it.
         async readLink() {
             const code = this.keepsTexts ? /^#live=([\w=-]+)$/.exec(location.hash)?.[1] : null;
             if (!code) return;
+            history.replaceState(null, "", location.href.split("#")[0]);
             try {
                 const bytes = await live.rendering.unpack(code.replaceAll("-", "+").replaceAll("_", "/"));
-                const texts = JSON.parse(new TextDecoder().decode(bytes));
-                const files = this.files.filter(file => typeof texts[file] === "string");
-                for (const file of files) this.texts[file] = texts[file];
-                if (files.length) this.open(files[0]);
-                this.say("This text comes from a link. Your own is kept until you edit this one.");
-            } catch { this.say("The link is damaged: here is the chapter's own text."); }
+                const texts = JSON.parse(new TextDecoder().decode(bytes)), hasOwn = this.isOwn;
+                this.replace(Object.fromEntries(Object.entries(texts).filter(([file, text]) => this.files.includes(file) && typeof text === "string")));
+                this.say(`This text comes from a link.${hasOwn ? " “Bring my text back” has yours." : ""}`);
+            } catch { this.say("The link is damaged: here is your own text, or the chapter's."); }
         }
     };
 })();

@@ -7,6 +7,8 @@ live.page = (() => {
     const { element } = live, { Renderer, Rendering, loadData, loadReference, unpackWords } = live.rendering;
     const TYPING = 600;  // milliseconds after the last key until the picture starts again
     const MOST_SAMPLES = 4096;
+    const ENOUGH = 16;  // samples of a picture that show that the device bears the shader
+    const TURNS = 65536;  // that the loops of a sample may take if paths are short, as in shaders/engine/limited_loops.glsl
     const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
                     ALBEDO: "albedo", NORMALS: "normals" };
 
@@ -22,22 +24,52 @@ live.page = (() => {
     class Frame {
         // `keepsTexts`: whether the reader's texts are read and stored.
         constructor(root, keepsTexts = true) {
-            Object.assign(this, { root, keepsTexts, turn: 0 });
+            Object.assign(this, { root, keepsTexts, turn: 0, losses: 0, isVisible: true });
             this.chapter = root.dataset.chapter;
             this.about = live.chapters[this.chapter];
             this.isPaused = false;
             this.renderings = [];  // of this chapter, and perhaps of the one before
             this.bug = this.about.bugs[root.dataset.bug - 1];
             if (root.dataset.bug && !this.bug) return;  // a student's book has none
-            root.append(element("button", { type: "button", class: "live-start", click: () => this.start() }, this.bug ? "Find this bug here" : "Render this chapter here"),
+            root.append(element("button", { type: "button", class: "live-start", click: () => this.startByHand() }, this.bug ? "Find this bug here" : "Render this chapter here"),
                         element("p", {}, "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
                                 "The pictures are noisy at first, and the fan may start."));
         }
 
-        async start() {
-            Frame.active?.stop();
+        // The button is gone afterwards: the keyboard goes on at the first control.
+        async startByHand() {
+            await this.start();
+            this.root.querySelector(".live-controls select").focus({ preventScroll: true });
+        }
+
+        // A browser gives a page few contexts, and takes the oldest away: all frames draw on one canvas, which moves to the active one.
+        static prepare() {
+            if (Frame.renderer) return;
+            Frame.canvas = element("canvas", { width: "256", height: "256", role: "img", "aria-label": "the picture as it renders" });
+            Frame.renderer = new Renderer(Frame.canvas);
+            Frame.canvas.addEventListener("webglcontextlost", event => {
+                event.preventDefault();
+                Frame.active?.lost();
+            });
+            Frame.canvas.addEventListener("webglcontextrestored", () => {
+                Frame.renderer.make();
+                Frame.active?.restored();
+            });
+        }
+
+        // Makes this frame the one that renders. Returns whether the page has a device.
+        activate() {
+            if (!this.renderer) return false;
+            if (Frame.active !== this) Frame.active?.stop();
             Frame.active = this;
-            this.canvas = element("canvas", { width: "256", height: "256", role: "img", "aria-label": "the picture as it renders" });
+            this.canvases.prepend(Frame.canvas);
+            clearTimeout(this.timer);
+            const isLost = this.renderer.gl.isContextLost();
+            if (isLost) this.fail("The browser has taken the GPU away: reload the page if the picture does not come back.");
+            return !isLost;
+        }
+
+        async start() {
             this.overlay = element("canvas", { class: "live-overlay", "aria-hidden": "true" });
             this.line = element("input", { type: "range", class: "live-line", min: "0", max: "100", value: "50", hidden: "",
                                            "aria-label": "the line between this chapter, left, and the one before", input: () => this.paint() });
@@ -45,46 +77,46 @@ live.page = (() => {
             this.verdict = element("p", { class: "live-verdict", role: "status", "aria-live": "polite" }, "starting …");
             this.numbers = element("p", { class: "live-numbers" });
             this.note = element("p", { class: "live-note", role: "status" });
+            this.edits = element("p", { class: "live-note live-edits", hidden: "" });
             this.plot = element("div", { class: "live-plot" });
             this.results = element("div", { class: "live-results", role: "status" });
-            this.editor = new live.Editor(this.chapter, () => this.restartSoon(), text => { this.note.textContent = text; }, this.keepsTexts);
+            this.canvases = element("div", { class: "live-canvases" }, this.overlay, this.line);
+            this.editor = new live.Editor(this.chapter, () => this.edited(), text => { this.note.textContent = text; }, this.keepsTexts);
             await this.editor.readLink();
             this.root.replaceChildren(this.controls(),
                 element("div", { class: "live-columns" },
-                    element("div", { class: "live-picture" }, element("div", { class: "live-canvases" }, this.canvas, this.overlay, this.line),
-                            this.caption, this.verdict, this.plot, this.numbers, this.note),
+                    element("div", { class: "live-picture" }, this.edits, this.canvases, this.caption, this.verdict, this.plot, this.numbers, this.note),
                     this.editor.root), this.results);
             if (this.bug) {
                 this.scene.value = Math.max(this.about.pictures.findIndex(({ name }) => name === this.root.dataset.picture), 0);
                 this.plant(this.bug);
             }
             this.root.classList.add("live-running");
+            this.showEdits();
             try {
-                this.renderer = new Renderer(this.canvas);
+                Frame.prepare();
             } catch (error) {
                 this.fail(error.message);
                 return;
             }
+            this.renderer = Frame.renderer;
             if (this.renderer.device.isSlow) this.note.textContent ||= "This browser draws without a GPU: everything works, but slowly.";
-            this.canvas.addEventListener("webglcontextlost", event => {
-                if (Frame.active !== this) return;
-                event.preventDefault();
-                this.losses = (this.losses ?? 0) + 1;
-                this.fail(this.losses > 1 ? "The browser took the GPU away again. Reload the page, or use a smaller shader." : "The browser took the GPU away; starting again …");
-            });
-            this.canvas.addEventListener("webglcontextrestored", () => {
-                if (this.losses > 1) return;
-                this.renderer.make();
-                this.restart();
-            });
             this.restart();
         }
+
+        lost() {
+            this.stopRenderings();
+            this.fail(++this.losses > 1 ? "The browser took the GPU away again before the picture had got far. Make the shader smaller, then press Restart." :
+                "The browser took the GPU away; starting again …");
+        }
+
+        restored() { if (this.losses < 2) this.restart(); }
 
         stop() {
             Frame.active = null;
             this.stopRenderings();
             clearTimeout(this.timer);
-            this.verdict.textContent = "stopped: only one frame of a page renders at a time";
+            this.verdict.textContent = "stopped: only one frame of a page renders at a time; Restart goes on with this one";
         }
 
         select(label, options, changed) {
@@ -109,41 +141,56 @@ live.page = (() => {
                                 ...(strategies.length > 1 ? [strategyLabel] : []), lengthLabel,
                                 ...(pictures.some(({ before }) => before) ? [element("label", {}, this.compared, " compare with the chapter before")] : []), this.pause, this.button("Restart", restart),
                                 this.button("Check", () => this.check()));
-            if (exercise) bar.append(this.button("Start exercise 1", () => { this.editor.edit(exercise.text, exercise.file); }));
+            if (exercise) bar.append(this.button("Start exercise 1", () => this.editor.replace({ ...this.editor.state, [exercise.file]: exercise.text }, exercise.file)));
             if (bugs.length) {
                 const numbers = [["", "none"], ...bugs.map((_, i) => [i, `number ${i + 1}`])];
                 const [list, label] = this.select("Bug to find", numbers, () => this.plant(bugs[list.value]));
                 bar.append(label);
             }
-            bar.append(this.button("Original text", () => this.editor.reset()), this.button("Download", () => this.editor.download()),
+            bar.append(this.button("Original text", () => this.editor.replace({})), this.editor.back, this.button("Download", () => this.editor.download()),
                        this.button("Open", () => this.editor.openFile()), this.button("Copy a link", () => this.copyLink()));
             if (document.fullscreenEnabled) bar.append(this.button("Full window", () => document.fullscreenElement ? document.exitFullscreen() : this.root.requestFullscreen()));
             return bar;
         }
 
-        // Puts a mistake into the chapter's own text.
+        // Puts a mistake into the chapter's own text; without one, the text that was there before the first.
         plant(bug) {
-            this.editor.reset();
-            const file = bug && this.editor.files.find(path => live.sources[path].split(bug.find).length === 2);
-            if (file) this.editor.edit(live.sources[file].replace(bug.find, () => bug.replace), file);
+            const { editor } = this, file = bug && editor.files.find(path => live.sources[path].split(bug.find).length === 2);
+            if (file) this.withoutBug ??= editor.state;
+            editor.replace(file ? { [file]: live.sources[file].replace(bug.find, () => bug.replace) } : this.withoutBug ?? editor.state);
+            if (!file) this.withoutBug = undefined;
+        }
+
+        // What the reader has changed, perhaps on another page.
+        showEdits() {
+            const names = this.editor.edited.map(file => {
+                const [, folder, name] = /^chapters\/([^/]*)\/(.*)$/.exec(file);
+                return `${name} of chapter ${parseInt(folder)}${folder === this.chapter ? "" : ", which that chapter's page has, too"}`;
+            });
+            this.edits.hidden = !names.length;
+            this.edits.textContent = `Changed by you: ${names.join("; ")}. “Original text” undoes it.`;
+        }
+
+        edited() {
+            this.showEdits();
+            if (this.isPaused) this.note.textContent = "Paused: press Go on to see what your change does.";
+            clearTimeout(this.timer);
+            this.timer = setTimeout(() => this.restart(), TYPING);
         }
 
         setPaused(isPaused) {
             this.isPaused = isPaused;
             this.pause.textContent = isPaused ? "Go on" : "Pause";
+            this.note.textContent = "";
         }
 
         async copyLink() {
             const link = await this.editor.link();
-            history.replaceState(null, "", link);
-            try { await navigator.clipboard.writeText(link); this.note.textContent = "The link is copied: it contains your text."; }
-            catch { this.note.textContent = "The address of this page now contains your text: copy it from there."; }
-            if (link.length > 8000) this.note.textContent += " It is long, and some programs cut long links: rather download the text.";
-        }
-
-        restartSoon() {
-            clearTimeout(this.timer);
-            this.timer = setTimeout(() => this.restart(), TYPING);
+            try {
+                await navigator.clipboard.writeText(link);
+                this.note.textContent = "The link is copied: it contains your text.";
+            } catch { this.note.replaceChildren("The browser does not let this page copy. Copy the link, which contains your text, from here: ", element("input", { readonly: "", value: link, "aria-label": "link" })); }
+            if (link.length > 8000) this.note.append(" It is long, and some programs cut long links: rather download the text.");
         }
 
         fail(message) {
@@ -199,10 +246,11 @@ live.page = (() => {
                 return false;
             }
             this.renderings = states;
+            this.numbers.textContent = this.isPaused ? "paused: press Go on" : "";
             this.line.hidden = states.length < 2;
             this.caption.textContent = "";
             const verdict = new live.statistics.LiveVerdict(reference, ...rendering.size), other = states[1]?.rendering;
-            const isPaused = (a, b) => this.isPaused || document.hidden || b && a.busy > b.busy && b.samples < MOST_SAMPLES;  // whoever has had more time waits
+            const isPaused = (a, b) => this.isPaused || !this.isVisible || document.hidden || b && a.busy > b.busy && b.samples < MOST_SAMPLES;  // whoever has had more time waits
             other?.render({ target: () => MOST_SAMPLES, isPaused: () => isPaused(other, rendering), shown: () => this.paint(), look: film => this.compare(film, reference) });
             return rendering.render({
                 target, isPaused: () => isPaused(rendering, other), shown: () => this.paint(),
@@ -212,7 +260,7 @@ live.page = (() => {
                 },
                 look: film => {
                     this.checkLoops(film, state);
-                    if (film.samples === verdict.nextSamples) verdict.add(film);
+                    if (film.rays && film.samples === verdict.nextSamples) verdict.add(film);
                     look(film, reference, verdict);
                 }
             });
@@ -239,12 +287,12 @@ live.page = (() => {
             if (!film.stuck) return;
             const { file, line } = translated.loop(film.stuck);
             rendering.stop();
-            throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end`);
+            const most = Math.min(film.turns, TURNS).toLocaleString("en");
+            throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end, or it takes more than ${most} turns in a sample`);
         }
 
         async restart() {
-            clearTimeout(this.timer);
-            if (!this.renderer) return;
+            if (!this.activate()) return;
             const started = performance.now(), picture = this.about.pictures[this.scene.value];
             this.errors = [];
             this.film = null;
@@ -256,8 +304,7 @@ live.page = (() => {
         }
 
         async check() {
-            if (!this.renderer) return;
-            clearTimeout(this.timer);
+            if (!this.activate()) return;
             this.setPaused(false);
             this.compared.checked = false;
             this.view.value = "picture";
@@ -267,6 +314,8 @@ live.page = (() => {
         }
 
         report(error) {
+            if (this.renderer.gl.isContextLost()) return;  // which has been said
+            this.numbers.textContent = "";
             if (error instanceof live.glsl.ShaderError) {
                 this.editor.showError(error.message);
                 this.fail("the shader has an error: see below the text");
@@ -275,13 +324,14 @@ live.page = (() => {
 
         show(film, reference, verdict, started) {
             this.editor.showError("");
-            Object.assign(this, { film, reference, latest: verdict });
+            Object.assign(this, { film, reference, latest: verdict, losses: film.samples < ENOUGH ? this.losses : 0 });
             const seconds = (performance.now() - started) / 1000, { means, error } = live.statistics.relativeError(film, reference);
             this.means = means;
             const hasReference = !this.isView && this.length.value === "";
             const isBiased = verdict.verdict?.isBiased;
             this.verdict.className = "live-verdict" + (!hasReference || !verdict.verdict ? "" : isBiased ? " live-biased" : " live-agrees");
-            this.verdict.textContent = this.isView ? "this view shows surfaces, not light" : !hasReference ? "no verdict: there is no reference for this path length" : verdict.text;
+            this.verdict.textContent = this.isView ? "this view shows surfaces, not light" : !hasReference ? "no verdict: there is no reference for this path length" :
+                !film.rays ? "no verdict: the shader traces no ray" : verdict.text;
             if (hasReference) this.errors.push([film.samples, error]);
             this.numbers.textContent = `${film.samples} samples a pixel, ${seconds.toFixed(1)} s, ${(film.rays / seconds / 1e6).toFixed(2)} million rays per second` +
                 (film.samples === 1 ? "" : hasReference ? `, error ${percent(error)}` : "") +
@@ -326,7 +376,9 @@ live.page = (() => {
         for (const root of document.querySelectorAll("div.live")) {
             root.replaceChildren();
             if (root.dataset.chapter === "report") root.report = new live.Report(root, Frame);
-            if (root.dataset.chapter in live.chapters) root.frame = new Frame(root, !root.dataset.bug);
+            if (!(root.dataset.chapter in live.chapters)) continue;
+            root.frame = new Frame(root, !root.dataset.bug);
+            new IntersectionObserver(entries => { root.frame.isVisible = entries.at(-1).isIntersecting; }).observe(root);
         }
     }
     if (document.readyState === "loading") addEventListener("DOMContentLoaded", init); else init();

@@ -7,19 +7,23 @@ live.rendering = (() => {
     const WIDTH = 2048;  // texels of the arrays' textures, which every device allows
     const MOST_PROGRAMS = 16;  // that are kept
     const FILM = [0, 1, 2];  // its textures
+    // Which of them a draw writes: some devices write fewer bits at once, and draw everything twice.
+    const PASSES = [[FILM], [[0, 1], [2]], [[0], [1], [2]]];
     const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
+    // Turns that the loops of a sample may take at first, by how much this grows, and milliseconds of a draw that some systems do not bear.
+    const FEW_TURNS = 1 << 13, MORE = 16, MOST_TURNS = 0xffffffff, TOO_LONG = 4000;
     const FULL_SCREEN = `#version 300 es
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
     const DISPLAY = `#version 300 es
 precision highp float;
 precision highp int;
-uniform highp usampler2D film_before[3];
+uniform highp usampler2D web_film_before[3];
 uniform bool is_srgb;
 out vec4 colour;
 void main() {
-    ivec2 size = textureSize(film_before[0], 0), place = ivec2(gl_FragCoord.x, float(size.y) - gl_FragCoord.y);
-    if (texelFetch(film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
-    uvec4 a = texelFetch(film_before[0], place, 0), b = texelFetch(film_before[1], place, 0), c = texelFetch(film_before[2], place, 0);
+    ivec2 size = textureSize(web_film_before[0], 0), place = ivec2(gl_FragCoord.x, float(size.y) - gl_FragCoord.y);
+    if (texelFetch(web_film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
+    uvec4 a = texelFetch(web_film_before[0], place, 0), b = texelFetch(web_film_before[1], place, 0), c = texelFetch(web_film_before[2], place, 0);
     vec3 mean = (uintBitsToFloat(a.xyz) + uintBitsToFloat(uvec3(a.w, b.xy))) / float(max(c.y, 1u));
     vec3 shown = clamp(mean, 0.0, 1.0);
     vec3 curved = mix(12.92 * shown, 1.055 * pow(shown, vec3(1.0 / 2.4)) - 0.055, greaterThan(shown, vec3(0.0031308)));
@@ -68,7 +72,7 @@ void main() {
             if (!globalThis.DecompressionStream) throw new Error("this browser is too old: update it");
             this.gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
             if (!this.gl) throw new Error("this browser offers no WebGL 2: update it, or switch graphics acceleration on in its settings");
-            this.layout = new live.glsl.Layout(live.sources["shaders/interface.h"]);
+            this.layout = new live.Layout(live.sources["shaders/interface.h"]);
             this.make();
         }
 
@@ -107,7 +111,7 @@ void main() {
             if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
                 const logs = gl.getAttachedShaders(program).map(shader => gl.getShaderInfoLog(shader) ?? "");
                 gl.deleteProgram(program);
-                throw new live.glsl.ShaderError(live.glsl.readableError(logs.find(log => log.trim()) ?? gl.getProgramInfoLog(program) ?? "", translated.place));
+                throw new live.glsl.ShaderError(live.glsl.readableError(logs.find(log => log.trim()) ?? gl.getProgramInfoLog(program) ?? "", translated));
             }
             compiled.set(translated.text, linked);
             if (compiled.size > MOST_PROGRAMS) {
@@ -158,7 +162,7 @@ void main() {
     // A picture of a scene with a compiled program.
     class Rendering {
         constructor(renderer, { translated: { hasSampleLoop }, linked, scene, parameters, size }) {  // `busy`: milliseconds of draws
-            Object.assign(this, { renderer, gl: renderer.gl, linked, size, hasSampleLoop, samples: 0, busy: 0, isFirstPass: true, isStopped: false });
+            Object.assign(this, { renderer, gl: renderer.gl, linked, size, hasSampleLoop, samples: 0, turns: FEW_TURNS, busy: 0, isFirstPass: true, isStopped: false });
             const { gl, layout } = renderer, { words } = scene, height = Math.ceil(words.length / 4 / WIDTH), texels = new Uint32Array(4 * WIDTH * height);
             texels.set(words);
             // The tree is read by four words. Compilers for Direct3D take twice as long where a single word is picked out of four.
@@ -174,14 +178,31 @@ void main() {
         }
 
         makeFilm() {
-            const { gl, size } = this, frame = gl.createFramebuffer();
-            const textures = FILM.map(() => this.renderer.image(gl.RGBA32UI, ...size, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null));
+            const { gl, size } = this, textures = FILM.map(() => this.renderer.image(gl.RGBA32UI, ...size, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null));
+            for (const passes of PASSES) {
+                const frames = passes.map(written => this.makeFrame(textures, written));
+                if (frames.every(({ isComplete }) => isComplete)) return { frames, textures };
+                for (const { frame } of frames) gl.deleteFramebuffer(frame);
+            }
+            throw new Error("this device cannot store the sums of a picture: try another browser");
+        }
+
+        // What a draw writes these textures of a film through.
+        makeFrame(textures, written) {
+            const { gl } = this, frame = gl.createFramebuffer();
             gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-            for (const i of FILM) gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, textures[i], 0);
+            for (const i of written) gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, textures[i], 0);
+            const isComplete = gl.isContextLost() || gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
+            gl.drawBuffers(FILM.slice(0, written.at(-1) + 1).map(i => written.includes(i) ? gl.COLOR_ATTACHMENT0 + i : gl.NONE));
+            if (isComplete) this.clear({ frame, written });
+            return { frame, written, isComplete };
+        }
+
+        clear({ frame, written }) {
+            const { gl } = this;
+            gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
             gl.disable(gl.SCISSOR_TEST);
-            gl.drawBuffers(FILM.map(i => gl.COLOR_ATTACHMENT0 + i));
-            for (const i of FILM) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
-            return { frame, textures };
+            for (const i of written) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
         }
 
         // Ends render() at its next draw.
@@ -190,7 +211,7 @@ void main() {
             if (this.isStopped) return;
             this.isStopped = true;
             for (const texture of [arrays, words, probe, ...films.flatMap(film => film.textures)]) gl.deleteTexture(texture ?? null);
-            for (const { frame } of films) gl.deleteFramebuffer(frame);
+            for (const { frame } of films.flatMap(film => film.frames)) gl.deleteFramebuffer(frame);
         }
 
         // Sets the members of a uniform struct from words. Returns the words behind it.
@@ -210,29 +231,33 @@ void main() {
         }
 
         bindFilm(linked, film) {
-            for (const i of FILM) this.renderer.bind(linked, `film_before[${i}]`, i, this.films[film].textures[i]);
+            for (const i of FILM) this.renderer.bind(linked, `web_film_before[${i}]`, i, this.films[film].textures[i]);
         }
 
-        // The film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a stuck loop.
-        read() {
-            const { gl, size: [width, height], films } = this, count = width * height;
-            gl.bindFramebuffer(gl.FRAMEBUFFER, films[0].frame);
+        // A film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a stuck loop.
+        // Throws if there is no sample at all: a black picture is no evidence.
+        read({ frames } = this.films[0]) {
+            const { gl, size: [width, height] } = this, count = width * height;
             const [a, b, c] = FILM.map(i => {
                 const words = new Uint32Array(4 * count);
+                gl.bindFramebuffer(gl.FRAMEBUFFER, frames.find(({ written }) => written.includes(i)).frame);
                 gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
                 gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
                 return words;
             });
             const film = { width, height, samples: this.samples, sums: new Float64Array(3 * count), differences: new Float64Array(3 * count),
-                           rays: 0, invalid: 0, stuck: 0 };
+                           rays: 0, invalid: 0, stuck: 0, turns: this.turns };
             const [x, y, z] = [a, b, c].map(words => new Float32Array(words.buffer));
+            let isDrawn = gl.isContextLost();
             for (let p = 0; p < count; ++p) {
                 const i = 4 * p, j = 3 * p;
                 film.sums.set([x[i] + x[i + 3], x[i + 1] + y[i], x[i + 2] + y[i + 1]], j);
                 film.differences.set([y[i + 2], y[i + 3], z[i]], j);
+                isDrawn ||= c[i + 1] > 0;
                 film.invalid += c[i + 2];
                 if (c[i + 3] >>> 31) film.stuck = c[i + 3] & 0x7fffffff; else film.rays += c[i + 3];
             }
+            if (!isDrawn && !film.stuck) throw new Error("nothing is drawn: either the shader finishes no sample, or this device cannot draw it; then please tell us");
             return film;
         }
 
@@ -258,6 +283,14 @@ void main() {
                     if (this.isStopped || gl.isContextLost()) return false;
                     row += rows;
                     const time = performance.now() - started;
+                    if (isPreview && time > LONG) {
+                        const film = this.read(this.films[1]);
+                        if (film.stuck && await this.allowMore(rows)) {
+                            row = 0;
+                            continue;
+                        }
+                        preview(film);
+                    }
                     if (!isPreview) this.busy += time;  // which may include a driver's compiler
                     if (time < SHORT && rows < size[1]) rows *= 2;
                     else if (time < SHORT && row >= size[1]) step *= 2;
@@ -269,15 +302,29 @@ void main() {
                 this.films.reverse();
                 this.isFirstPass = false;
                 shown();
-                if (isPreview) {
+                if (!isPreview) this.samples = next;
+                const film = isPreview || next === look_at || next >= target() ? this.read() : null;
+                if (gl.isContextLost()) return false;  // what has been read is black
+                if (film?.stuck && await this.allowMore(rows)) isPreview = true;
+                else if (isPreview) {
                     isPreview = false;
-                    preview(this.read());
+                    preview(film);
                     rows = Math.max(1, rows >> 3);
-                    continue;
-                }
-                this.samples = next;
-                if (next === look_at || next >= target()) look(this.read());
+                } else if (film) look(film);
             }
+            return true;
+        }
+
+        // A loop has been ended: lets loops take more turns and begins anew, unless a draw would keep the device busy for too long. Returns
+        // whether it does. The first draw may have waited for a driver's compiler, so that its time says nothing.
+        async allowMore(rows) {
+            const started = performance.now(), { gl } = this;
+            this.draw(0, rows, this.samples + 1, true);
+            await this.finished();
+            if (this.turns >= MOST_TURNS || (performance.now() - started) * MORE > TOO_LONG) return false;
+            this.turns = Math.min(this.turns * MORE, MOST_TURNS);
+            for (const frame of this.films.flatMap(({ frames }) => frames)) this.clear(frame);
+            Object.assign(this, { samples: 0, isFirstPass: true });
             return true;
         }
 
@@ -288,14 +335,17 @@ void main() {
             this.renderer.bind(linked, "web_arrays", 3, this.arrays);
             this.renderer.bind(linked, "web_words", 4, this.words);
             this.renderer.bind(linked, "light_probe", 5, this.probe ?? null);
-            gl.uniform1ui(place("target_samples"), target);
-            gl.uniform1ui(place("samples_per_pixel"), this.hasSampleLoop ? target - samples : 1);
-            gl.uniform1i(place("is_preview"), isPreview ? 1 : 0);
-            gl.bindFramebuffer(gl.FRAMEBUFFER, films[1].frame);
+            gl.uniform1ui(place("web_target_samples"), target);
+            gl.uniform1ui(place("web_samples_per_pixel"), this.hasSampleLoop ? target - samples : 1);
+            gl.uniform1i(place("web_is_preview"), isPreview ? 1 : 0);
+            gl.uniform1ui(place("web_most_turns"), this.turns);
             gl.viewport(0, 0, ...size);
             gl.enable(gl.SCISSOR_TEST);
             gl.scissor(0, row, size[0], rows);
-            gl.drawArrays(gl.TRIANGLES, 0, 3);
+            for (const { frame } of films[1].frames) {
+                gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+                gl.drawArrays(gl.TRIANGLES, 0, 3);
+            }
         }
 
         // Waits until the device has done everything so far.

@@ -62,7 +62,6 @@ live.Report = (() => {
             if (frame.losses) this.say(`the browser took the GPU away ${frame.losses} times`);
             if (frame.renderer && isFirst) await this.furnace(frame);
             frame.stop();
-            frame.renderer?.gl.getExtension("WEBGL_lose_context")?.loseContext();
         }
     };
 })();

@@ -1,0 +1,1 @@
+vec3 path_trace(Ray ray, inout uvec2 seed) { int film = 2; switch (film) { case 2: { vec3 film[2]; film[0] = vec3(1.0); film[1] = materials[0].diffuse_albedo; return film[0] + film[1]; } default: break; } return vec3(0.0); }
