@@ -118,8 +118,8 @@ SHARED_CONSTANT BOUNDARY_NONE = 0u;   // a surface
 SHARED_CONSTANT BOUNDARY_GLASS = 1u;  // what its glass refracts gets to its other side
 SHARED_CONSTANT BOUNDARY_OPEN = 2u;   // no surface at all: everything goes on
 
-// Where a body ends, and the media on its two sides, see common/scene/bodies.h. A medium's index is also that of the body which it
-// fills: the smaller a body, the larger its index.
+// Where a body ends, and the media on its two sides, see common/scene/bodies.h. A medium's index is also that of the body which
+// it fills: the smaller a body, the larger its index.
 struct Boundary {
     uint kind;           // one of the constants above
     uint body;           // the one that ends here

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
 #include <tuple>
@@ -148,12 +149,17 @@ class Separation {
                                    [&](const uvec2& sides) { return std::minmax(sides.x, sides.y) == std::minmax(a, b); });
     }
 
+    bool look_the_same(uint32_t a, uint32_t b) const {
+        return a == b ||
+               (scene_.microfacets.empty() && std::memcmp(&scene_.materials[a], &scene_.materials[b], sizeof(Material)) == 0);
+    }
+
     // Moves triangles of the later group that touch the earlier one.
     void compare(const Group& earlier, Group& later) {
         // In one mesh, only lamps are told from what is dark. Elsewhere, two that look the same need no order.
         const bool is_decoration = !later.body && !later.emits;
         if (!later.body && earlier.emits == later.emits && earlier.instance == later.instance) return;
-        if (is_decoration && earlier.material == later.material) return;
+        if (is_decoration && look_the_same(earlier.material, later.material)) return;
         const Bounds space{glm::max(earlier.bounds.low, later.bounds.low), glm::min(earlier.bounds.high, later.bounds.high)};
         for_each_overlap(earlier.boxes, later.boxes, space, [&](uint32_t i, uint32_t j) {
             const Face a = make_face(scene_, earlier.instance, earlier.triangles[i]);

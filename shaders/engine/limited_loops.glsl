@@ -6,7 +6,11 @@ uint samples_with_own_loops; // how many samples may still start to count anew
 // More than any sample of a right estimator needs.
 uint get_iteration_limit() {
     float paths = float(parameters.max_path_length) * float(parameters.splitting_factor);
-    return 65536u + uint(min(16.0 * paths, 1e9));
+    float iterations = 16.0;  // of a bounce, not counting those that a grid takes
+#ifdef FEATURE_DENSITIES
+    iterations += 12000.0;  // twice what common/scene/media.cpp allows for two rays through it
+#endif
+    return 65536u + uint(min(iterations * paths, 1e9));
 }
 
 void start_counting_iterations() {

@@ -194,7 +194,7 @@ TEST_F(MeshFile, TrianglesWithoutAreaAreLeftOutAndCounted) {
     EXPECT_EQ(count_warnings(scene, "3 triangles without area"), 1u);
     EXPECT_USER_ERROR(load(corners_of_a_square + "f 1 1 2\n"), "none of its triangles has an area");
     // Size does not matter: neither under- nor overflow.
-    EXPECT_EQ(load("v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n").triangles.size(), 1u);
+    EXPECT_EQ(load("v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nv 1 0 0\nf 1 2 3\nf 1 4 3\n").triangles.size(), 2u);
     EXPECT_EQ(load("v 0 0 0\nv 1e18 0 0\nv 0 1e18 0\nf 1 2 3\n").triangles.size(), 1u);
 }
 

@@ -146,9 +146,10 @@ TEST_F(SceneFile, MaterialsMayReplaceThoseOfAMesh) {
     folder.write("more/gold.mtl", "newmtl gold\nKd 0 0 1\nmap_Kd a.png\n");
     write_png(folder / "more/a.png", {1, 1, {255, 255, 255, 255}});
     folder.write("swapped.mtl", "newmtl b\nKd 1 0 0\nnewmtl a\nKd 0 1 0\n");
-    const Scene scene = load(R"({"meshes": [{"file": "two.obj"}, {"file": "two.obj", "materials": "more/gold.mtl"},
-                                            {"file": "two.obj", "materials": "swapped.mtl"},
-                                            {"file": "two.obj", "materials": "more/../more/gold.mtl"}]})");
+    const Scene scene =
+        load(R"({"meshes": [{"file": "two.obj"}, {"file": "two.obj", "materials": "more/gold.mtl", "translation": [0, 0, 1]},
+                                            {"file": "two.obj", "materials": "swapped.mtl", "translation": [0, 0, 2]},
+                                            {"file": "two.obj", "materials": "more/../more/gold.mtl", "translation": [0, 0, 3]}]})");
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_EQ(scene.instance_meshes, (std::vector<uint32_t>{0, 1, 2, 1}));
     std::vector<vec3> albedos;
