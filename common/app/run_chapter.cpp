@@ -220,9 +220,8 @@ class Commands {
                                                    : native::Mode::fast);
         choose_outputs(options.run);
         check_outputs(options.run);
-        const auto scene = build_ && build_->job.options.scene == options.scene
-                               ? build_->job.scene
-                               : load_scene_for(chapter_, options.scene);
+        const auto scene =
+            build_ && build_->job.options.scene == options.scene ? build_->job.scene : load_scene_for(chapter_, options.scene);
         check_inputs(options.run, *scene);
         RenderJob job = make_job(chapter_, options, scene);
         // A time limit is checked between dispatches, so that each of them has to end.
