@@ -55,10 +55,15 @@ def overlap(first, second, tolerance):
 def near_pairs(positions, chosen, others, tolerance):
     """Pairs of indices of triangles whose boxes meet, in several arrays."""
     low, high = positions.min(axis=1), positions.max(axis=1)
+
+    def near_box(triangles, around):
+        return around[(low[around] <= high[triangles].max(axis=0) + tolerance).all(axis=1) &
+                      (high[around] >= low[triangles].min(axis=0) - tolerance).all(axis=1)]
+
     chosen = chosen[np.argsort(low[chosen, 0])]
+    others = near_box(chosen, others)
     for chunk in np.array_split(chosen, max(1, len(chosen) // CHUNK)):
-        near = others[(low[others] <= high[chunk].max(axis=0) + tolerance).all(axis=1) &
-                      (high[others] >= low[chunk].min(axis=0) - tolerance).all(axis=1)]
+        near = near_box(chunk, others)
         boxes = (low[near] <= high[chunk, None] + tolerance) & (high[near] >= low[chunk, None] - tolerance)
         rows, columns = boxes.all(axis=2).nonzero()
         yield np.stack([chunk[rows], near[columns]], axis=1)
