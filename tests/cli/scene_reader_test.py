@@ -319,5 +319,9 @@ class BodiesTest(ProgramTest):
             with self.subTest(what=what, meshes=len(meshes)):
                 with self.assertRaisesRegex(UserError, rf"\A[^\n]*scene.json: [^\n]* around \([^\n]*{what}[^\n]*\Z"):
                     self.sides(meshes)
+        mixed = box([0, 0, 0], 1, "tinted.mtl").replace("f 1 3 7 5", "usemtl b\nf 1 3 7 5")
+        self.write("tinted.mtl", "newmtl a\nd 0\nnewmtl b\nd 0\nTf 0.5 0.5 0.5\n")
+        with self.assertRaisesRegex(UserError, "one Tf"):
+            self.sides([(mixed, None)], fog=FOG)
         with self.assertRaisesRegex(UserError, '"box" of the fog'):
             self.sides([(box([0.5] * 3, 0.7), 1)], fog={**GRID, "density": "0.obj"})

@@ -86,6 +86,8 @@ def find_bodies(path, fog, meshes, placements, positions, absorptions):
         parts = connected_parts(mesh.positions[bounding]) if len(bounding) else []
         for triangles, is_closed in ((bounding[part], is_closed) for part, is_closed in parts):
             content = medium or absorptions[id(mesh.materials[triangles[0]])]
+            if not medium and len({tuple(mesh.materials[i].absorption) for i in triangles}) > 1:
+                raise UserError(f"{path}: references with media know one Tf in a piece of glass, {mesh.path} has several: use one")
             bodies.append(Body(first + triangles, content, is_open, is_closed, positions[first + triangles]))
         first += len(mesh.materials)
     return Bodies(path, fog, positions, bodies)
