@@ -232,8 +232,8 @@ def read_scene(path):
         camera = {key: np.asarray(value, float) for key, value in
                   only(path, camera, "position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance").items()}
         camera_medium = bodies and bodies.medium_at(camera["position"])
-        return Scene(surfaces, camera, fog, camera_medium, triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
-                     root.get("width", 512), root.get("height", 512), root.get("max_path_length", 8),
-                     f"{files.hash:x}")
+        return Scene(surfaces, camera, fog, camera_medium, triple(radiance), light_probe,
+                     float(background.get("rotation_degrees", 0)), root.get("width", 512), root.get("height", 512),
+                     root.get("max_path_length", 8), f"{files.hash:x}")
     except (LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
         raise UserError(f"{path}: cannot be read: {error!r}; a chapter says where the mistake is: ./lab run 1 {path}") from None
