@@ -10,6 +10,7 @@ def refuse_what_peers_lack(scene, name):
         "microfacets of our formula": any(material.roughness > 0 for material in materials),
         "a Phong lobe": any(material.specular.any() for material in materials),
         "glass that absorbs": any(material.absorption.any() for material in materials),
+        "media of meshes": any(surface.is_open or "extinction" in (surface.inside or {}) for surface in scene.surfaces),
         "textures": any(material.texture for material in materials),
         "a background": scene.light_probe or scene.background.any(),
         "a lens": scene.camera["aperture_diameter"] > 0,

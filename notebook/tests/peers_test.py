@@ -35,7 +35,8 @@ class Constant:
 class SimpleScenesTest(unittest.TestCase):
     def test_what_no_peer_is_compared_on(self):
         for name, words in (("microfacets", "microfacets of our formula.* and a background"), ("glossy", "a Phong lobe"),
-                            ("glass", "glass that absorbs"), ("textured", "textures"), ("focus", "a lens")):
+                            ("glass", "glass that absorbs"), ("milk", "media of meshes"), ("textured", "textures"),
+                            ("focus", "a lens")):
             with self.assertRaisesRegex(UserError, f"^A is not compared on scenes with.*{words}"):
                 simple_scenes.refuse_what_peers_lack(scene_named(name), "A")
         for name in ("cornell_box", "heart_light", "clear_glass", "fog", "lamps"):

@@ -4,11 +4,13 @@ import contextlib
 import copy
 import importlib
 import io
+import itertools
 import json
 import re
 import sys
 from unittest import mock
 
+import numpy as np
 from program import PROJECT, QUAD_MTL, QUAD_OBJ, ProgramTest  # first: it finds the tools
 from project import UserError
 from references.scenes import read_scene
@@ -67,6 +69,13 @@ class SceneReaderTest(ProgramTest):
         self.assertEqual(probe.read_text(), "kept")
 
 
+def box(centre, size, mtl="none.mtl", faces="1243 5786 1562 3487 1375 2684"):
+    """A closed box; `size` is half its edge."""
+    corners = itertools.product((-1, 1), repeat=3)
+    lines = ["v " + " ".join(str(c + s * size) for c, s in zip(centre, corner)) for corner in corners]
+    return "\n".join([f"mtllib {mtl}", *lines, "usemtl a", *("f " + " ".join(face) for face in faces.split())]) + "\n"
+
+
 # What the chapters read: for each key of a scene a path to it and another value, for each keyword of a material the lines before
 # it and its own.
 SCENE = {
@@ -121,6 +130,8 @@ class WhatChaptersReadTest(ProgramTest):
         self.write("other.obj", QUAD_OBJ.replace("v 1 1 0", "v 2 1 0"))
         self.write("quad.obj", QUAD_OBJ + "usemtl rough\nf 1 2 3\n")
         self.write("other.mtl", "newmtl red\nKd 0.5 0 0\n")
+        self.write("body.obj", box([0, 0, 0], 1, "body.mtl"))
+        self.write("body.mtl", "newmtl a\nd 0\n")
         self.write("quad.mtl", QUAD_MTL + material + "\nnewmtl glossy\nKs 0.1 0.1 0.1\nnewmtl rough\nPr 0.5\n")
         return plain(read_scene(self.write("scene.json", json.dumps(scene or SCENE))))
 
@@ -148,9 +159,11 @@ class WhatChaptersReadTest(ProgramTest):
                     usual = {**SCENE, "background": PROBE}
                 elif key in ("extinction", "albedo", "anisotropy", "density", "box"):
                     usual = {**SCENE, "fog": GRID if key in ("density", "box") else FOG}
-                elif key == "boundary":
+                elif key in ("medium", "boundary"):  # these need a body
                     usual = copy.deepcopy(SCENE)
-                    usual["meshes"][0]["medium"] = FOG
+                    usual["meshes"][0]["file"] = entry["file"] = "body.obj"
+                    if key == "boundary":
+                        usual["meshes"][0]["medium"] = FOG
                 material = "Ks 0.1 0.1 0.1"
                 self.assert_read_or_refused(key, self.read(usual, material), lambda: self.read(scene, material))
 
@@ -250,3 +263,65 @@ class LampsInTheSamePlaceTest(ProgramTest):
             with self.subTest(faces=faces, placements=placements):
                 with self.assertRaisesRegex(UserError, "scene.json: a lamp .* by chance.* move one"):
                     self.lamps(faces, placements)
+
+
+class BodiesTest(ProgramTest):
+    """Which medium is on which side of a boundary, and around the camera."""
+
+    def sides(self, meshes, camera=(0, 0, 9), fog=None):
+        """Extinctions inside and outside of each body, by its size, and that around the camera; None is clear."""
+        self.write("none.mtl", "newmtl a\nKd 1 1 1\n")
+        self.write("glass.mtl", "newmtl a\nd 0\n")
+        entries = []
+        for i, (obj, extinction) in enumerate(meshes):
+            medium = {"extinction": extinction, "albedo": 0, **({} if "glass.mtl" in obj else {"boundary": "open"})}
+            entries.append({"file": self.write(f"{i}.obj", obj).name, **({"medium": medium} if extinction else {})})
+        scene = {"meshes": entries, "camera": {"position": camera, "target": [0, 0, -99]}, **({"fog": fog} if fog else {})}
+        read = read_scene(self.write("scene.json", json.dumps(scene)))
+        sides = {}
+        for surface in read.surfaces:
+            for corners in surface.positions:
+                media = tuple(medium and medium["extinction"] for medium in (surface.inside, surface.outside))
+                sides.setdefault(round(np.ptp(corners, axis=0).max() / 2, 6), set()).add(media)
+        return sides, read.camera_medium and read.camera_medium["extinction"]
+
+    def test_a_body_lies_in_the_smallest_one_around_it(self):
+        outer, inner = (box([0, 0, 0], 4), 1), (box([1, 0, 0], 0.5), 2)
+        for meshes in ([outer, inner], [inner, outer]):
+            self.assertEqual(self.sides(meshes), ({4: {(1, None)}, 0.5: {(2, 1)}}, None))
+        two = re.sub(r"f .*", lambda f: re.sub(r"\d", lambda i: str(int(i[0]) - 9), f[0]), box([20, 0, 0], 0.25))
+        self.assertEqual(self.sides([outer, (inner[0] + two, 2)])[0], {4: {(1, None)}, 0.5: {(2, 1)}, 0.25: {(2, None)}})
+
+    def test_glass_displaces_fog_and_has_its_cavities_filled(self):
+        glass, turned = (box([0, 0, 0], 3, "glass.mtl"), None), "3421 6875 2651 7843 5731 4862"
+        self.assertEqual(self.sides([glass], fog=FOG), ({3: {(None, 1)}}, 1))
+        cavity = box([0, 0, 0], 2, "glass.mtl", turned)
+        self.assertEqual(self.sides([glass, (cavity, None)], fog=FOG)[0], {3: {(None, 1)}, 2: {(None, 1)}})
+        self.assertEqual(self.sides([(box([0, 0, 0], 2, faces=turned), 5)], fog=FOG)[0], {2: {(1, 5)}})  # behind is outside
+
+    def test_the_camera_is_in_the_medium_around_it(self):
+        for z, expected in ((9, 1), (2, 3), (0, 2)):
+            self.assertEqual(self.sides([(box([0, 0, 0], 1), 2), (box([0, 0, 0], 4), 3)], (0, 0, z), FOG)[1], expected)
+        grid = {**GRID, "density": "0.obj", "extinction": 7}
+        self.assertEqual(self.sides([(box([0.5] * 3, 0.25), 2), (box([5] * 3, 1), 3)], (0.1, 0.1, 0.1), grid),
+                         ({0.25: {(2, 7)}, 1: {(3, None)}}, 7))
+
+    def test_what_has_no_clear_inside_is_refused(self):
+        whole = (box([0, 0, 0], 1), 1)
+        floor = box([0, -9 - 1, 0], 9), None
+        for what, meshes in (("not closed", [(box([0, 0, 0], 1, faces="1243 5786 1562 3487 1375"), 1)]),
+                             ("touches or overlaps", [whole, (box([1.9, 1.9, 1.9], 1), 2)]),  # no centre of a triangle is inside
+                             ("touches or overlaps", [whole, (box([2, 0, 0], 1), 2)]), ("touches or overlaps", [whole, whole]),
+                             ("touches or overlaps", [whole, (box([0, 0, 0], 1, "glass.mtl"), None)]),
+                             ("touches or overlaps", [whole, (box([0, -10.0003, 0], 9), None)]),
+                             ("touches or overlaps", [floor, whole]),
+                             ("inwards", [(box([0, 0, 0], 1, "glass.mtl", "3421 6875 2651 7843 5731 4862"), 1)])):
+            with self.subTest(what=what, meshes=len(meshes)):
+                with self.assertRaisesRegex(UserError, rf"\A[^\n]*scene.json: [^\n]* around \([^\n]*{what}[^\n]*\Z"):
+                    self.sides(meshes)
+        mixed = box([0, 0, 0], 1, "tinted.mtl").replace("f 1 3 7 5", "usemtl b\nf 1 3 7 5")
+        self.write("tinted.mtl", "newmtl a\nd 0\nnewmtl b\nd 0\nTf 0.5 0.5 0.5\n")
+        with self.assertRaisesRegex(UserError, "one Tf"):
+            self.sides([(mixed, None)], fog=FOG)
+        with self.assertRaisesRegex(UserError, '"box" of the fog'):
+            self.sides([(box([0.5] * 3, 0.7), 1)], fog={**GRID, "density": "0.obj"})

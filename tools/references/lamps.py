@@ -11,7 +11,7 @@ from references.meshes import triangle_normals
 
 GAP = 1e-4  # between the sides of a sheet, in its diagonal: small in pictures, large in 32 bits
 SAME_PLANE = 1e-6  # in the largest coordinate
-CHUNK = 256  # lamps
+CHUNK = 256  # triangles
 
 
 def get_places(positions):
@@ -39,9 +39,8 @@ def resolve_place(triangles, materials, fronts, owners):
     return list(kept.values()) if is_clear else None
 
 
-def overlap(first, second):
+def overlap(first, second, tolerance):
     """Whether triangles of each pair lie in the same plane and have an area in common: no edge separates them."""
-    scale = np.abs(np.concatenate([first, second], axis=1)).max(axis=(1, 2))
     distances = [np.abs(((b - a[:, :1]) * triangle_normals(a)[:, None]).sum(axis=2)).max(axis=1)
                  for a, b in ((first, second), (second, first))]
     edges = np.concatenate([np.roll(corners, -1, axis=1) - corners for corners in (first, second)], axis=1)
@@ -50,22 +49,32 @@ def overlap(first, second):
     low, high = ([limit(np.einsum("pci,pai->pac", corners, axes), axis=2) for corners in (first, second)] for limit in (np.min, np.max))
     depth = (np.minimum(*high) - np.maximum(*low)).min(axis=1)
     size = np.minimum(*(np.linalg.norm(np.ptp(corners, axis=1), axis=1) for corners in (first, second)))
-    return (np.minimum(*distances) <= SAME_PLANE * scale) & (depth > GAP * size)
+    return (np.minimum(*distances) <= tolerance) & (depth > GAP * size)
+
+
+def near_pairs(positions, chosen, others, tolerance):
+    """Pairs of indices of triangles whose boxes meet, in several arrays."""
+    low, high = positions.min(axis=1), positions.max(axis=1)
+
+    def near_box(triangles, around):
+        return around[(low[around] <= high[triangles].max(axis=0) + tolerance).all(axis=1) &
+                      (high[around] >= low[triangles].min(axis=0) - tolerance).all(axis=1)]
+
+    chosen = chosen[np.argsort(low[chosen, 0])]
+    others = near_box(chosen, others)
+    for chunk in np.array_split(chosen, max(1, len(chosen) // CHUNK)):
+        near = near_box(chunk, others)
+        boxes = (low[near] <= high[chunk, None] + tolerance) & (high[near] >= low[chunk, None] - tolerance)
+        rows, columns = boxes.all(axis=2).nonzero()
+        yield np.stack([chunk[rows], near[columns]], axis=1)
 
 
 def find_overlap(positions, places, lamps, others):
     """A lamp that shares a part of its plane with another triangle in another place; None if there is none."""
-    low, high = positions.min(axis=1), positions.max(axis=1)
-    tolerance = SAME_PLANE * np.abs(positions).max()
-    lamps = lamps[np.argsort(low[lamps, 0])]
-    for chunk in np.array_split(lamps, max(1, len(lamps) // CHUNK)):
-        near = others[(low[others] <= high[chunk].max(axis=0) + tolerance).all(axis=1) &
-                      (high[others] >= low[chunk].min(axis=0) - tolerance).all(axis=1)]
-        boxes = (low[near] <= high[chunk, None] + tolerance) & (high[near] >= low[chunk, None] - tolerance)
-        rows, columns = boxes.all(axis=2).nonzero()
-        pairs = np.stack([chunk[rows], near[columns]], axis=1)
+    scale = SAME_PLANE * np.abs(positions).max(axis=(1, 2))
+    for pairs in near_pairs(positions, lamps, others, scale.max()):
         pairs = pairs[places[pairs[:, 0]] != places[pairs[:, 1]]]
-        found = pairs[overlap(positions[pairs[:, 0]], positions[pairs[:, 1]])]
+        found = pairs[overlap(positions[pairs[:, 0]], positions[pairs[:, 1]], scale[pairs].max(axis=1))]
         if len(found):
             return found[0, 0]
     return None

@@ -5,7 +5,8 @@
 
 A reference is an EXR file with the mean of all samples in R, G and B, the variance of that mean, estimated from
 independent batches, in variance.R, variance.G and variance.B, and its settings as attributes. Path lengths
-count as in the chapters: at most m bounces are Mitsuba's max_depth m + 1. There is no Russian roulette.
+count as in the chapters: at most m bounces are Mitsuba's max_depth m + 1. There is no Russian roulette. Where there are
+media, their boundaries and glass must be closed, and lie apart from each other and from all surfaces.
 
 Mitsuba is only needed to make references (`pip install mitsuba`; made and tested with version 3.9.1). Its variant
 scalar_rgb runs everywhere, but is slow where vertex normals are interpolated or the Phong lobe is used, as that is

@@ -41,7 +41,7 @@ def make_diffuse_reflectance(material):
 
 def make_bsdf(surface, own_normals):
     material = surface.material
-    if surface.medium and surface.medium["is_open"]:
+    if surface.is_open:
         return {"type": "null"}
     if material.roughness > 0 and material.refractive_index > 0:
         bsdf = {"type": "rough_glass", "alpha": material.roughness,
@@ -72,20 +72,16 @@ def unit_length(scene):
     return 1000 / np.linalg.norm(scene.camera["target"] - scene.camera["position"])
 
 
-def make_mesh(surface, unit, own_normals):
+def make_mesh(surface, unit, own_normals, media):
     """A mesh without shared vertices. It has vertex normals only if own_normals asks for Mitsuba's interpolation."""
     properties = mi.Properties()
     properties["mesh_bsdf"] = mi.load_dict(make_bsdf(surface, own_normals))
     material = surface.material
     if material.emission.any():
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": colour(material.emission)})
-    if material.absorption.any():
-        strongest = material.absorption.max()
-        properties["interior"] = mi.load_dict({
-            "type": "homogeneous", "albedo": 0.0, "scale": float(strongest / unit),
-            "sigma_t": colour(material.absorption / strongest)})
-    if surface.medium:
-        properties["interior"] = mi.load_dict(make_medium(surface.medium, unit))
+    for side, medium in (("interior", surface.inside), ("exterior", surface.outside)):
+        if medium:
+            properties[side] = media(medium)
     count = len(surface.positions)
     has_own_normals = own_normals and surface.normals is not None and not material.emission.any()
     mesh = mi.Mesh(material.name, 3 * count, count, props=properties, has_vertex_normals=has_own_normals,
@@ -118,6 +114,10 @@ def make_light_probe(scene):
 
 
 def make_medium(medium, unit):
+    if "absorption" in medium:
+        strongest = medium["absorption"].max()
+        return {"type": "homogeneous", "albedo": 0.0, "scale": float(strongest / unit),
+                "sigma_t": colour(medium["absorption"] / strongest)}
     content = {"albedo": colour(np.broadcast_to(medium["albedo"], 3)), "phase": {"type": "hg", "g": medium["anisotropy"]}}
     if "density" not in medium:
         return {"type": "homogeneous", "sigma_t": medium["extinction"] / unit, **content}
@@ -131,14 +131,10 @@ def make_box(medium, unit):
     return mi.ScalarTransform4f().translate(list(low)).scale(list(high - low))
 
 
-def make_fog(fog, unit, content):
-    """A ray that starts in a medium stays there until it crosses a boundary. A grid ends at its box."""
-    if "density" not in fog:
-        content["sensor"]["medium"] = make_medium(fog, unit)
-    else:
-        from_minus_one = mi.ScalarTransform4f().translate([0.5, 0.5, 0.5]).scale([0.5, 0.5, 0.5])
-        content["fog"] = {"type": "cube", "to_world": make_box(fog, unit) @ from_minus_one, "bsdf": {"type": "null"},
-                          "interior": make_medium(fog, unit)}
+def make_fog_box(fog, unit, media):
+    """A grid ends at its box. Other fog has no end: a ray that starts in a medium stays there until it crosses a boundary."""
+    from_minus_one = mi.ScalarTransform4f().translate([0.5, 0.5, 0.5]).scale([0.5, 0.5, 0.5])
+    return {"type": "cube", "to_world": make_box(fog, unit) @ from_minus_one, "bsdf": {"type": "null"}, "interior": media(fog)}
 
 
 def make_camera(scene, width, height, unit, sampler):
@@ -163,16 +159,25 @@ def make_camera(scene, width, height, unit, sampler):
 def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False, sampler="independent"):
     """The scene with its integrator, and that integrator's name. With own_normals Mitsuba interpolates normals itself where
     nothing emits, and not at all on lights: nearly the same picture, without Python during the render."""
-    absorbs = any(surface.material.absorption.any() for surface in scene.surfaces)
-    scatters = scene.fog or any(surface.medium for surface in scene.surfaces)
-    integrator = "volpath" if absorbs or scatters else "path"
+    has_media = scene.fog or any(surface.inside or surface.outside for surface in scene.surfaces)
+    integrator = "volpath" if has_media else "path"
     unit = unit_length(scene)
     content = {"type": "scene", "sensor": make_camera(scene, width, height, unit, sampler),
                "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30}}
-    if scene.fog:
-        make_fog(scene.fog, unit, content)
+    made = {}
+
+    def media(medium):
+        """Mitsuba's, the same one for all its boundaries."""
+        if id(medium) not in made:
+            made[id(medium)] = mi.load_dict(make_medium(medium, unit))
+        return made[id(medium)]
+
+    if scene.camera_medium:
+        content["sensor"]["medium"] = media(scene.camera_medium)
+    if scene.fog and "density" in scene.fog:
+        content["fog"] = make_fog_box(scene.fog, unit, media)
     for i, surface in enumerate(scene.surfaces):
-        content[f"surface_{i}"] = make_mesh(surface, unit, own_normals)
+        content[f"surface_{i}"] = make_mesh(surface, unit, own_normals, media)
     # Fog without end hides what is infinitely far away. Mitsuba would show it at the distance of a sphere around the scene.
     hides_sky = scene.fog and "density" not in scene.fog
     if scene.light_probe and not hides_sky:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from project import UserError
+from references.bodies import Bodies, Body, connected_parts
 from references.lamps import resolve_lamps
 from references.meshes import Material, ObjFile, triangle_normals
 
@@ -38,12 +39,15 @@ class SourceFiles:
 
 @dataclass
 class Surface:
-    """All triangles of one material around one medium in world space: arrays [triangle, corner], counter-clockwise seen from the front."""
+    """All triangles of one material between two media in world space: arrays [triangle, corner], counter-clockwise seen from the
+    front. A medium has extinction, albedo, anisotropy, and with a grid density (its file) and box; that of glass has absorption."""
     material: Material
     positions: np.ndarray
     normals: np.ndarray | None  # to be interpolated, then normalised; None to use the triangles' own
     texture_coordinates: np.ndarray  # v down from the top row of the image
-    medium: dict | None  # inside: extinction, albedo, anisotropy, is_open, and with a grid density (its file) and box
+    inside: dict | None  # the medium behind the fronts
+    outside: dict | None
+    is_open: bool  # no surface, but a boundary of media
 
 
 @dataclass
@@ -51,6 +55,7 @@ class Scene:
     surfaces: list
     camera: dict  # position, target, up, vertical_fov in degrees, aperture_diameter, focus_distance (0: that of the target)
     fog: dict | None  # a medium
+    camera_medium: dict | None  # around the camera
     background: np.ndarray  # radiance, or factor of the light probe
     light_probe: Path | None
     probe_rotation: float  # degrees
@@ -69,8 +74,28 @@ def limit_reflectance(material, specular):
     material.specular = material.specular / largest
 
 
-def place_meshes(path, meshes, placements):
-    """Surfaces in world space, one per material and medium; placements: (index of the mesh, object-to-world matrix, medium)."""
+OPEN = Material("open boundary")  # whose own materials do not matter
+
+
+def find_bodies(path, fog, meshes, placements, positions, absorptions):
+    """The bodies of a scene with media, from the triangles of all meshes."""
+    bodies, first = [], 0
+    for index, _, medium in placements:
+        mesh, is_open = meshes[index], bool(medium and medium["is_open"])
+        bounding = np.array([is_open or m.refractive_index > 0 for m in mesh.materials]).nonzero()[0]
+        parts = connected_parts(mesh.positions[bounding]) if len(bounding) else []
+        for triangles, is_closed in ((bounding[part], is_closed) for part, is_closed in parts):
+            content = medium or absorptions[id(mesh.materials[triangles[0]])]
+            if not medium and len({tuple(mesh.materials[i].absorption) for i in triangles}) > 1:
+                raise UserError(f"{path}: references with media know one Tf in a piece of glass, {mesh.path} has several: use one")
+            bodies.append(Body(first + triangles, content, is_open, is_closed, positions[first + triangles]))
+        first += len(mesh.materials)
+    return Bodies(path, fog, positions, bodies)
+
+
+def place_meshes(path, meshes, placements, fog):
+    """Surfaces in world space, one per material and media beside it, and the bodies if there are media; placements: (index of the
+    mesh, object-to-world matrix, medium)."""
     parts = []
     for index, matrix, _ in placements:
         mesh, linear = meshes[index], matrix[:3, :3]
@@ -79,16 +104,22 @@ def place_meshes(path, meshes, placements):
         arrays = (mesh.positions @ linear.T + matrix[:3, 3], mesh.normals @ np.linalg.inv(linear), mesh.texture_coordinates)
         parts.append([array[:, order] for array in arrays])
     all_positions, all_normals, all_coordinates = (np.concatenate(arrays) for arrays in zip(*parts))
-    all_materials = [material for index, _, _ in placements for material in meshes[index].materials]
+    all_materials = [OPEN if medium and medium["is_open"] else material
+                     for index, _, medium in placements for material in meshes[index].materials]
     owners = np.repeat(range(len(parts)), [len(positions) for positions, _, _ in parts])
     all_positions, is_kept = resolve_lamps(path, all_positions, all_materials, owners)
 
-    groups = {}  # triangles by their material and medium
-    for triangle, (material, owner) in enumerate(zip(all_materials, owners)):
-        medium = placements[owner][2]
-        groups.setdefault((id(material), id(medium)), (material, medium, []))[2].append(triangle)
+    absorptions = {id(m): {"absorption": m.absorption} if m.absorption.any() else None for m in all_materials}
+    sides = [(absorptions[id(material)], None) for material in all_materials]  # without media, glass lies in none
+    bodies = None
+    if fog or any(medium for *_, medium in placements):
+        bodies = find_bodies(path, fog, meshes, placements, all_positions, absorptions)
+        sides = bodies.sides(len(all_materials))
+    groups = {}  # triangles by their material and the media beside them
+    for triangle, (material, (inside, outside)) in enumerate(zip(all_materials, sides)):
+        groups.setdefault((id(material), id(inside), id(outside)), (material, inside, outside, []))[3].append(triangle)
     surfaces = []
-    for material, medium, triangles in groups.values():
+    for material, inside, outside, triangles in groups.values():
         chosen = np.array(triangles)[is_kept[triangles]]
         if not len(chosen):
             continue
@@ -97,8 +128,9 @@ def place_meshes(path, meshes, placements):
         normals = np.where(np.isnan(normals), flat, normals)
         length = np.linalg.norm(normals, axis=2, keepdims=True)
         is_flat = np.abs(normals / length - flat).max() < 1e-5
-        surfaces.append(Surface(material, positions, None if is_flat else normals, texture_coordinates, medium))
-    return surfaces
+        normals = None if is_flat else normals
+        surfaces.append(Surface(material, positions, normals, texture_coordinates, inside, outside, material is OPEN))
+    return surfaces, bodies
 
 
 # ---------------------------------------------------------------------------------------------- scenes
@@ -184,9 +216,7 @@ def read_scene(path):
         for medium in (fog, *(medium for *_, medium in placements)):
             if medium and "density" in medium:
                 files.read(medium["density"])
-        if fog and any(medium for *_, medium in placements):
-            raise UserError(f'{path}: references have either "fog" or the "medium" of a mesh: leave one out')
-        surfaces = place_meshes(path, meshes, placements)
+        surfaces, bodies = place_meshes(path, meshes, placements, fog)
         if root.get("multiple_scattering") and any(surface.material.roughness > 0 for surface in surfaces):
             raise UserError(f'{path}: Mitsuba has no "multiple_scattering" on microfacets: leave it out')
 
@@ -201,8 +231,9 @@ def read_scene(path):
                   **(root.get("camera") or framing_camera(meshes, placements))}
         camera = {key: np.asarray(value, float) for key, value in
                   only(path, camera, "position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance").items()}
-        return Scene(surfaces, camera, fog, triple(radiance), light_probe, float(background.get("rotation_degrees", 0)),
-                     root.get("width", 512), root.get("height", 512), root.get("max_path_length", 8),
-                     f"{files.hash:x}")
+        camera_medium = bodies and bodies.medium_at(camera["position"])
+        return Scene(surfaces, camera, fog, camera_medium, triple(radiance), light_probe,
+                     float(background.get("rotation_degrees", 0)), root.get("width", 512), root.get("height", 512),
+                     root.get("max_path_length", 8), f"{files.hash:x}")
     except (LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
         raise UserError(f"{path}: cannot be read: {error!r}; a chapter says where the mistake is: ./lab run 1 {path}") from None
