@@ -70,6 +70,20 @@ class CopiedLab:
         return {"PATH": f"{path.parent}:{os.environ['PATH']}"}
 
 
+class DebuggerStops_all(ProgramTest):
+    """In each chapter, ./lab debug stops where a path begins."""
+
+    def test_in_every_chapter(self):
+        if not shutil.which("gdb"):
+            self.skipTest("gdb is not installed")
+        for number in CHAPTERS:
+            with self.subTest(chapter=number):
+                output = subprocess.run([sys.executable, "-B", "tools", "debug", str(number), "--pixel=9,9", "--width=32", "--height=32",
+                                         "--", "-batch", "-ex", "bt 1"], cwd=PROJECT, capture_output=True, encoding="utf-8", timeout=600,
+                                        stdin=subprocess.DEVNULL).stdout
+                self.assertRegex(output, r"(?m)^#0 .*(path_trace|extend_path) \(this=")
+
+
 class AutomaticNativeTest(CopiedLab, ProgramTest):
     """--backend auto may choose native on a CPU."""
 

@@ -1,4 +1,5 @@
-"""Stops in a shader: runs one sample of one pixel of chapter N in a debugger, up to its path_trace().
+"""Stops in a shader: runs one sample of one pixel of chapter N in a debugger, up to its path_trace(), or to
+extend_path() where the chapter has a loop over samples of its own.
 
     ./lab debug 3 --pixel 200,300                   gdb, or lldb if there is no gdb
     ./lab debug 3 torus --pixel 20,30 --sample 5    all other options are the chapter's
@@ -36,11 +37,16 @@ def partition(words, separator):
     return words[:i], words[i:i + 1], words[i + 1:]
 
 
-def command_for(debugger, program, arguments, extra):
-    """The debugger's command line: it has stopped in path_trace() when it processes `extra`."""
+def first_function(chapter):
+    """Where to stop: a chapter with a loop over samples of its own never calls path_trace(), but extends paths by itself."""
+    return "extend_path" if (ROOT / "chapters" / chapter / "sample_loop.glsl").is_file() else "path_trace"
+
+
+def command_for(debugger, program, arguments, extra, function="path_trace"):
+    """The debugger's command line: it has stopped in that function when it processes `extra`."""
     if debugger.endswith("lldb"):
-        return [debugger, *extra, "-o", "breakpoint set --name path_trace", "-o", "process launch", "--", program, *arguments]
-    start = [word for line in [*SETTINGS, f"source {ROOT / PRINTERS}", "break path_trace", "run"] for word in ("-ex", line)]
+        return [debugger, *extra, "-o", f"breakpoint set --name {function}", "-o", "process launch", "--", program, *arguments]
+    start = [word for line in [*SETTINGS, f"source {ROOT / PRINTERS}", f"break {function}", "run"] for word in ("-ex", line)]
     batch = [word for word in extra if word == "-batch"]  # must precede what it is to run
     return [debugger, "-q", *batch, *start, *(word for word in extra if word != "-batch"), "--args", program, *arguments]
 
@@ -52,8 +58,8 @@ def vscode_files():
               {"id": "scene", "type": "promptString", "description": "scene", "default": "cornell_box"},
               {"id": "pixel", "type": "promptString", "description": "pixel X,Y", "default": "256,256"}]
     setup = [{"text": f"-interpreter-exec console \"{line}\""} for line in [*SETTINGS, f"source ${{workspaceFolder}}/{PRINTERS}",
-                                                                            "break path_trace"]]
-    launch = {"name": "Stop in path_trace", "type": "cppdbg", "request": "launch", "MIMode": "gdb", "cwd": "${workspaceFolder}",
+                                                                            "break path_trace", "break extend_path"]]
+    launch = {"name": "Stop in the shader", "type": "cppdbg", "request": "launch", "MIMode": "gdb", "cwd": "${workspaceFolder}",
               "program": "${workspaceFolder}/build/bin/${input:chapter}",
               "args": ["${input:scene}", "--debug-pixel", "${input:pixel}"],
               "setupCommands": setup, "preLaunchTask": "build the chapters"}
@@ -86,5 +92,5 @@ def main():
     program = str(program_file(CHAPTERS[options.chapter]))
     arguments = [*chapter_options, "--first-sample", str(options.sample), "--debug-pixel", options.pixel or "256,256"]
     sys.stdout.flush()
-    command = command_for(debugger, program, arguments, extra)
+    command = command_for(debugger, program, arguments, extra, first_function(CHAPTERS[options.chapter]))
     os.execv(command[0], command)
