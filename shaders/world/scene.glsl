@@ -93,6 +93,7 @@ uint get_material_class(uint triangle) {
 #endif
 
 #ifdef FEATURE_BOUNDARIES
+// The boundary that a triangle of an instance belongs to. Its kind is BOUNDARY_NONE if it bounds nothing.
 Boundary get_boundary(uint instance, uint triangle) {
     return boundaries[boundary_places[triangle] + boundary_places[uint(triangles.length()) + instance]];
 }
