@@ -10,8 +10,8 @@ import re
 import sys
 from unittest import mock
 
-import numpy as np
 from program import PROJECT, QUAD_MTL, QUAD_OBJ, ProgramTest  # first: it finds the tools
+import numpy as np  # only now: the tests have chosen a Python that has it
 from project import UserError
 from references.scenes import read_scene
 
