@@ -46,7 +46,10 @@ class BareMachineTest(ProgramTest):
                 (commands / path.name).symlink_to(path)
         for name in ("apt-get", "dpkg-query"):
             self.write(f"bin/{name}", "#!/bin/sh\nexit 1\n").chmod(0o755)
-        for command in (["diff", "2"], ["reference", "--all"], ["fuzz", "--help"]):
+        for command in ("diff", "reference", "fuzz", "test", "package", "install", "notebook"):
+            code, _, err = self.run_program(command, "--help", program=PROJECT / "lab", environment={"PATH": str(commands)})
+            self.assertEqual((code, err), (0, ""), f"help of {command} installs nothing")
+        for command in (["diff", "2"], ["reference", "--all"]):
             code, _, err = self.run_program(*command, program=PROJECT / "lab", environment={"PATH": str(commands)})
             self.assertEqual(code, 1, err)
             self.assertRegex(err, r"these packages are needed[^\n]*\n +python3 +\w")
