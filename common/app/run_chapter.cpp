@@ -164,10 +164,8 @@ std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob&
     std::vector<std::string> unused;
     const CameraOptions& camera = job.options.camera;
     const bool has_focus = camera.focus_distance && (!job.options.image.view || job.options.image.view->name != "focus");
-    if (!chapter.lens && (asks_for_lens(job.options) || has_focus)) {
-        const char* option = camera.aperture_diameter ? "--aperture-diameter" : "--focus-distance";
-        unused.push_back(std::string(option) + " has no effect: " + chapter.name +
-                         " has a pinhole; use chapter 12, ./lab run 12");
+    if (!chapter.lens && has_focus) {
+        unused.push_back("--focus-distance has no effect: " + chapter.name + " has a pinhole; use chapter 12, ./lab run 12");
     } else if (has_focus && camera_of(chapter, *job.scene, job.options).aperture_diameter == 0) {
         unused.push_back("--focus-distance has no effect on a pinhole: give --aperture-diameter, too");
     }
@@ -180,9 +178,10 @@ std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob&
 void print_warnings(const Chapter& chapter, const RenderJob& job) {
     std::vector<std::string> warnings = job.scene->warnings;
     const SceneFeatures features = features_of(*job.scene);
-    const std::pair<bool, const char*> left_out[] = {{features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
-                                                     {features.lens && !chapter.lens, "lens (aperture diameter)"},
-                                                     {features.media && !chapter.media, "media (fog, medium)"}};
+    const std::pair<bool, const char*> left_out[] = {
+        {features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
+        {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"},
+        {features.media && !chapter.media, "media (fog, medium)"}};
     for (const auto& [is_left_out, what] : left_out) {
         if (!is_left_out) continue;
         const std::string scene = job.scene->file.string(), use = ": use a chapter that can render it, see ./lab run";

@@ -99,8 +99,8 @@ class Report(RenderTest):
         self.assertAlmostEqual(deviation / math.sqrt(row["mse"] / (24 * 20)), 1, delta=0.01)
         # The same without a report; and neither slows down users who do not ask for it.
         again = self.render(*self.command("--samples=32"), "--output=b.exr")
-        lines = [line for line in out.splitlines() if line.startswith(("mean", "error"))]
-        self.assertEqual([line for line in again.splitlines() if line.startswith(("mean", "error"))], lines)
+        lines = [line for line in out.splitlines() if line.startswith(("mean", "noise"))]
+        self.assertEqual([line for line in again.splitlines() if line.startswith(("mean", "noise"))], lines)
         # An error against a reference includes bias, so it is not a standard error.
         again = self.render(*self.command("--samples=32"), "--output=b.exr", "--reference=a.exr")
         self.assertNotRegex(again, "±")
@@ -111,7 +111,7 @@ class Report(RenderTest):
             program = BINARIES / chapter
             for name, arguments in (("a", ["--samples=100"]), ("b", ["--samples=201", "--resume=a.exr"]), ("c", ["--samples=7", "--first-sample=3"])):
                 out = self.render(*self.command(*arguments), f"--output={name}.exr", program=program)
-                self.assertRegex(out, "(?m)^error .*estimated", f"{chapter}, {arguments}")
+                self.assertRegex(out, "(?m)^noise .*estimated", f"{chapter}, {arguments}")
                 if "--samples=100" in arguments:  # for an even number the file contains the standard errors
                     deviation = float(re.search(r"± ([\d.e-]+) ", out)[1])
                     channels = Exr(self.folder / "a.exr").channels
