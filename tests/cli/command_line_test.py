@@ -29,7 +29,7 @@ class Information(ProgramTest):
 
     def test_options_without_effect_are_noted(self):
         lens = BINARIES / "12_lens"
-        for program, options, words in ((CHAPTER, ["--aperture-diameter=1"], "leaves out its lens (aperture diameter)"),
+        for program, options, words in ((CHAPTER, ["--aperture-diameter=1"], "leaves out its lens"),
                                         (CHAPTER, ["--focus-distance=1"], "--focus-distance has no effect"),
                                         (lens, ["--focus-distance=1"], "on a pinhole: give --aperture-diameter"),
                                         (lens, ["--focus-distance=1", "--aperture-diameter=0.1"], None),
