@@ -42,6 +42,9 @@ struct Sides {
     uint beyond;
 };
 
+// A ray that goes on behind what it hits, whatever that is.
+Ray get_ray_behind(Hit hit, vec3 direction) { return get_ray_from_surface(get_shading_data(hit, direction), direction); }
+
 #ifdef FEATURE_BOUNDARIES
 // Those of a boundary, as if no other body overlapped with its own.
 Sides get_sides_of(Boundary boundary, Hit hit, vec3 ray_direction) {
@@ -58,7 +61,7 @@ bool starts_in(uint body, Ray ray) {
         Boundary boundary = get_boundary(hit.instance, hit.triangle);
         if (boundary.kind != BOUNDARY_NONE && boundary.body == body)
             return get_sides_of(boundary, hit, ray.direction).here == body;
-        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+        ray = get_ray_behind(hit, ray.direction);
     }
     return false;
 }
@@ -73,7 +76,7 @@ Sides get_sides(Hit hit, vec3 ray_direction, uint medium) {
     sides = get_sides_of(boundary, hit, ray_direction);
 #ifdef FEATURE_OVERLAPS
     // The smallest body around a point is there, which is the one with the largest index.
-    Ray ray = get_ray_from_surface(get_shading_data(hit, ray_direction), ray_direction);
+    Ray ray = get_ray_behind(hit, ray_direction);
     for (uint i = boundary.first_overlap; i < boundary.end_overlaps; ++i) {
         uint other = overlaps[i];
         if (min(sides.here, sides.beyond) < other && starts_in(other, ray))
@@ -104,7 +107,7 @@ uint find_medium(Ray ray) {
     Hit hit;
     while (trace_ray(ray, NO_LIMIT, hit)) {
         if (get_boundary(hit.instance, hit.triangle).kind != BOUNDARY_NONE) return get_sides(hit, ray.direction, 0u).here;
-        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+        ray = get_ray_behind(hit, ray.direction);
     }
 #endif
     return 0u;
@@ -120,7 +123,7 @@ float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
         if (!is_open_boundary(hit)) return 0.0;
         transmittance *= get_transmittance_of(get_medium(medium), ray, hit.distance, seed);
         medium = get_sides(hit, ray.direction, medium).beyond;
-        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+        ray = get_ray_behind(hit, ray.direction);
         if (t_max == NO_LIMIT) continue;
         // A ray that ends at a point still ends there. If that is as close behind the boundary as rays start, it has.
         vec3 rest = end - ray.origin;

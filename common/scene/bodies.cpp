@@ -6,7 +6,6 @@
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <tuple>
 
 #include "scene/pairs.h"
 
@@ -225,12 +224,6 @@ bool encloses(const Scene& scene, const Body& body, const dvec3& point) {
         sum += solid_angle(a - point, b - point, c - point);
     }
     return sum * winding_sign(scene, body.instance) * (body.volume < 0 ? -1 : 1) > 2 * std::numbers::pi;
-}
-
-std::optional<uint32_t> body_at(const Scene& scene, const std::vector<Body>& bodies, const dvec3& point) {
-    for (size_t i = bodies.size(); i-- > 0;)
-        if (encloses(scene, bodies[i], point)) return static_cast<uint32_t>(i);
-    return {};
 }
 
 uint32_t make_own_mesh(Scene& scene, uint32_t instance) {

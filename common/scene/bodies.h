@@ -38,9 +38,6 @@ void nest_bodies(const Scene& scene, std::vector<Body>& bodies);
 // Whether a body is around a point.
 bool encloses(const Scene& scene, const Body& body, const glm::dvec3& point);
 
-// The smallest body around a point, by asking each of them.
-std::optional<uint32_t> body_at(const Scene& scene, const std::vector<Body>& bodies, const glm::dvec3& point);
-
 // If other instances have the same mesh, this one gets a mesh of its own. Its triangles' indices grow by the result.
 uint32_t make_own_mesh(Scene& scene, uint32_t instance);
 

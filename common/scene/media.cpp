@@ -81,7 +81,7 @@ void place_media(Scene& scene, const std::vector<Body>& bodies, const Medium& ou
     }
 }
 
-void add_media(const SceneDescription& description, const std::vector<Body>& bodies, SourceFiles& files, Scene& scene) {
+void add_media(const SceneDescription& description, std::vector<Body>& bodies, SourceFiles& files, Scene& scene) {
     const auto& placements = description.meshes;
     if (!description.fog && std::ranges::none_of(placements, [](const auto& placement) { return placement.medium.has_value(); }))
         return;
@@ -91,6 +91,7 @@ void add_media(const SceneDescription& description, const std::vector<Body>& bod
         if (placements[i].medium) check_surface(placements[i], scene, scene.mesh_of(i));
         of_instances.push_back(make_medium(placements[i].medium.value_or(MediumDescription{}), files, scene));
     }
+    nest_bodies(scene, bodies);
     std::vector<Medium> media;
     for (const Body& body : bodies) {
         media.push_back(of_instances[body.instance]);

@@ -5,10 +5,10 @@
 
 namespace lab {
 
-// Fills the scene's media and boundaries from the bodies, which are nested; does nothing if none has a medium and there is no
-// fog. Reads the grids of densities. Throws UserError for a medium behind a surface that nothing gets through, or behind
-// absorbing glass, and for a grid so dense that rays would take too many steps through it.
-void add_media(const SceneDescription& description, const std::vector<Body>& bodies, SourceFiles& files, Scene& scene);
+// Nests the bodies and fills the scene's media and boundaries; does nothing if none has a medium and there is no fog. Reads the
+// grids of densities. Throws UserError for a medium behind a surface that nothing gets through, or behind absorbing glass, and
+// for a grid so dense that rays would take too many steps through it.
+void add_media(const SceneDescription& description, std::vector<Body>& bodies, SourceFiles& files, Scene& scene);
 
 // The last step: medium i + 1 fills body i, and medium 0 lies outside of all bodies. Bodies that cavities are have the medium
 // around their glass.

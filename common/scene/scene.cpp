@@ -117,7 +117,6 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     std::vector<Body> bodies = find_bodies(scene);
     turn_inside_out_glass(scene, bodies);
     separate_contacts(scene, bodies);
-    nest_bodies(scene, bodies);
     load([&] { add_media(description, bodies, sources, scene); });
     scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
 

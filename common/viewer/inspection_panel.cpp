@@ -30,6 +30,13 @@ void text_vector(const char* format, const char* name, const vec3& v) {
 void text_colour(const char* name, const vec3& v) { text_vector("%s RGB %.3g %.3g %.3g", name, v); }
 void text_point(const char* name, const vec3& v) { text_vector("%s (%.3g, %.3g, %.3g)", name, v); }
 
+// What a camera ray sees behind the open boundaries of media: null if a medium or the sky comes first.
+const PathVertex* first_seen(const RecordedPath& path, const Scene& scene) {
+    for (const PathVertex& vertex : path.vertices)
+        if (!vertex.is_hit || !scene.mesh_of(vertex.instance).is_open) return vertex.is_hit ? &vertex : nullptr;
+    return nullptr;
+}
+
 }  // namespace
 
 int InspectionPanel::height() const {
@@ -91,13 +98,8 @@ void InspectionPanel::draw_controls(Session& session) {
         if (ImGui::Button(label.c_str())) session.change_for_verdict();
     }
     const auto& path = inspection_.path();
-    const auto is_seen = [&](const PathVertex& vertex) {
-        return !vertex.is_hit || !session.build().job.scene->mesh_of(vertex.instance).is_open;
-    };
-    const auto seen = path ? std::ranges::find_if(path->vertices, is_seen) : decltype(path->vertices.begin()){};
-    const bool has_point = path && !is_beside_ && seen != path->vertices.end() && seen->is_hit;
-    if (session.chapter().lens && has_point && ImGui::Button("Focus on the point that was clicked"))
-        session.focus_on(seen->position);
+    const PathVertex* seen = path && !is_beside_ ? first_seen(*path, *session.build().job.scene) : nullptr;
+    if (session.chapter().lens && seen && ImGui::Button("Focus on the point that was clicked")) session.focus_on(seen->position);
     if (ImGui::CollapsingHeader("look inside")) {
         int overlay = static_cast<int>(overlay_.shown);
         ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));

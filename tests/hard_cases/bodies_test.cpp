@@ -6,24 +6,14 @@
 #include "hard_cases/probe.h"
 #include "scene/media.h"
 #include "support/gpu_test.h"
+#include "support/obj_text.h"
 #include "support/temporary_folder.h"
 
 namespace lab {
 namespace {
 
 // A box of an .obj file, after `count` others.
-std::string box(const vec3& low, const vec3& high, int count = 0) {
-    std::string text;
-    for (int i = 0; i < 8; ++i)
-        text += "v " + std::to_string(i & 1 ? high.x : low.x) + " " + std::to_string(i & 2 ? high.y : low.y) + " " +
-                std::to_string(i & 4 ? high.z : low.z) + "\n";
-    for (const auto& face : {std::array{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}}) {
-        text += "f";
-        for (const int corner : face) text += " " + std::to_string(8 * count + corner);
-        text += "\n";
-    }
-    return text;
-}
+std::string box(const vec3& low, const vec3& high, int count = 0) { return box_text(low, high, 8 * count + 1); }
 
 const std::string white_floor = "v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nusemtl lamp\nf 1 2 3 4\n";
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-#include "scene/contacts.h"
+#include "support/obj_text.h"
 #include "test_files.h"
 
 namespace lab {
@@ -28,18 +28,8 @@ float volume(const Box& box) {
     return size.x * size.y * size.z;
 }
 
-// The corners and faces of a box. `first` is the index of its first corner, counted from 1.
 std::string box_text(const Box& box, int first, bool is_inside_out = false) {
-    std::string text;
-    for (int i = 0; i < 8; ++i)
-        text += "v " + std::to_string(i & 1 ? box.high.x : box.low.x) + " " + std::to_string(i & 2 ? box.high.y : box.low.y) +
-                " " + std::to_string(i & 4 ? box.high.z : box.low.z) + "\n";
-    for (const auto& face : {std::array{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-        text += "f";
-        for (size_t i = 0; i < 4; ++i) text += " " + std::to_string(first + face[is_inside_out ? 3 - i : i]);
-        text += "\n";
-    }
-    return text;
+    return lab::box_text(box.low, box.high, first, is_inside_out);
 }
 
 // Random boxes: each is divided into boxes that touch it and each other, or contains smaller ones that do not.
