@@ -241,27 +241,49 @@ uint32_t copy_vertex(Scene& scene, uint32_t vertex) {
     return static_cast<uint32_t>(scene.positions.size() - 1);
 }
 
-void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies) {
-    for (Body& body : bodies) {
-        if (body.is_open || body.open_edges > 0 || body.volume >= 0) continue;
-        const dvec3 point = point_on(scene, body);
-        body.is_cavity = std::ranges::any_of(bodies, [&](const Body& other) {
-            return &other != &body && !other.is_open && other.volume > -body.volume && encloses(scene, other, point);
-        });
-        if (body.is_cavity) continue;
-        const uint32_t moved = make_own_mesh(scene, body.instance);
-        for (Body& other : bodies)
-            if (other.instance == body.instance)
-                for (uint32_t& triangle : other.triangles) triangle += moved;
-        for (const uint32_t triangle : body.triangles) {
-            const uvec3 corners = scene.triangles[triangle];
-            for (int i = 0; i < 3; ++i) {
-                const uint32_t vertex = scene.triangles[triangle][i] = copy_vertex(scene, corners[i == 0 ? 0 : 3 - i]);
-                if (!scene.normals.empty()) scene.normals[vertex] = -scene.normals[vertex];
-            }
+namespace {
+
+// Gives a body new corners, whose order and normals are turned around.
+void turn_around(Scene& scene, std::vector<Body>& bodies, Body& body) {
+    const uint32_t moved = make_own_mesh(scene, body.instance);
+    for (Body& other : bodies)
+        if (other.instance == body.instance)
+            for (uint32_t& triangle : other.triangles) triangle += moved;
+    for (const uint32_t triangle : body.triangles) {
+        const uvec3 corners = scene.triangles[triangle];
+        for (int i = 0; i < 3; ++i) {
+            const uint32_t vertex = scene.triangles[triangle][i] = copy_vertex(scene, corners[i == 0 ? 0 : 3 - i]);
+            if (!scene.normals.empty()) scene.normals[vertex] = -scene.normals[vertex];
         }
-        body.volume = -body.volume;
-        scene.warnings.push_back(file_of(scene, body) + ": the fronts of its glass face inwards: turned around");
+    }
+    body.volume = -body.volume;
+}
+
+}  // namespace
+
+void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies, const std::vector<bool>& has_medium) {
+    for (Body& body : bodies) {  // the largest first
+        if (body.is_open || body.open_edges > 0) continue;
+        const dvec3 point = point_on(scene, body);
+        const auto is_in = [&](const Body& other) {
+            return &other != &body && !other.is_open && std::abs(other.volume) > std::abs(body.volume) &&
+                   encloses(scene, other, point);
+        };
+        if (body.volume < 0) {
+            body.is_cavity = std::ranges::any_of(bodies, [&](const Body& other) {
+                return is_in(other) && (other.instance == body.instance || !has_medium[body.instance]);
+            });
+            if (body.is_cavity) continue;
+            scene.warnings.push_back(file_of(scene, body) + ": the fronts of its glass face inwards: turned around");
+        } else if (std::ranges::none_of(bodies, [&](const Body& other) {
+                       return other.is_turned && other.instance == body.instance && is_in(other);
+                   })) {
+            continue;
+        }
+        // With a shell its cavities are turned around, too.
+        body.is_turned = true;
+        body.is_cavity = body.volume > 0;
+        turn_around(scene, bodies, body);
     }
 }
 
@@ -309,13 +331,36 @@ void nest_bodies(const Scene& scene, std::vector<Body>& bodies) {
     }
 }
 
+namespace {
+
+// Light fades in absorbing glass up to the glass's own surface only.
+void note_absorption(const Scene& scene, const std::vector<Body>& bodies, std::vector<std::string>& warnings) {
+    for (const Body& body : bodies) {
+        const auto absorbs = [&](uint32_t other) {
+            return !bodies[other].is_open && scene.material_of(bodies[other].triangles[0]).absorption != vec3(0);
+        };
+        const auto found = std::ranges::find_if(body.overlaps, absorbs);
+        const bool is_inside = body.outside && absorbs(*body.outside) && !body.is_cavity &&
+                               std::abs(body.volume) < 0.999 * bodies[*body.outside].volume;  // it may fill all of the glass
+        if (!is_inside && found == body.overlaps.end()) continue;
+        const Body& glass = bodies[is_inside ? *body.outside : *found];
+        warnings.push_back(file_of(scene, body) + ": lies in the absorbing glass of " + file_of(scene, glass) +
+                           ": Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its "
+                           "way from there to here; give that glass a \"medium\" in place of Tf");
+        return;
+    }
+}
+
+}  // namespace
+
 std::vector<std::string> body_warnings(const Scene& scene, const std::vector<Body>& bodies) {
     std::vector<std::string> warnings;
     const auto is_leaky = [](const Body& body) { return body.is_open && body.open_edges > 0; };
     if (const auto leaky = std::ranges::find_if(bodies, is_leaky); leaky != bodies.end())
         warnings.push_back(file_of(scene, *leaky) + ": the boundary of its medium is not closed: it has " +
                            std::to_string(leaky->open_edges) +
-                           " open edges, or edges where a front meets a back; light that leaves through a hole is lost");
+                           " open edges, or edges where a front meets a back; "
+                           "behind a hole it is not clear which medium is where, and light may be lost");
     for (const Body& body : bodies) {
         if (body.overlaps.empty()) continue;
         const Body& other = bodies[body.overlaps.back()];
@@ -323,6 +368,7 @@ std::vector<std::string> body_warnings(const Scene& scene, const std::vector<Bod
                            ": where both are, there is the medium of the smaller one, " + file_of(scene, other));
         break;
     }
+    note_absorption(scene, bodies, warnings);
     return warnings;
 }
 

@@ -24,13 +24,15 @@ struct Body {
     std::optional<uint32_t> outside;  // the innermost one of those that enclose all of it
     std::vector<uint32_t> overlaps;   // those that its surface runs through, or that run through its own
     bool is_cavity = false;           // of glass: its fronts face inwards, since the glass is around it
+    bool is_turned = false;           // its fronts faced the wrong way
 };
 
 // All bodies of a scene, the largest first.
 std::vector<Body> find_bodies(const Scene& scene);
 
-// Turns closed glass around whose fronts face inwards, unless it is a cavity in other glass, and notes that.
-void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies);
+// Turns closed glass around whose fronts face inwards, with its cavities, and notes that. If other glass is around it, it is a
+// cavity of that, unless its own file has a medium to fill it with.
+void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies, const std::vector<bool>& has_medium);
 
 // Finds out what is inside of what. Bodies that only touch must have been separated before, see contacts.h.
 void nest_bodies(const Scene& scene, std::vector<Body>& bodies);

@@ -21,8 +21,9 @@ constexpr uint64_t max_searched_triangles = 10'000'000;
 // A triangle in world space.
 struct Face {
     std::array<dvec3, 3> corners;
-    dvec3 normal;   // unit length, on the front
-    double offset;  // the distance at which rays start, as get_surface_point() in shaders/world/shading_data.glsl has it
+    dvec3 normal;     // unit length, on the front
+    double offset;    // the distance at which rays start, as get_surface_point() in shaders/world/shading_data.glsl has it
+    double rounding;  // the same for a triangle that is not slender
 };
 
 double error_bound(const dvec3& magnitude, const dvec3& edge_1, const dvec3& edge_2) {
@@ -49,6 +50,7 @@ Face make_face(const Scene& scene, uint32_t instance, uint32_t triangle) {
     face.normal = glm::normalize(normal);
     face.offset = std::max(error_bound(own_magnitude, edge_1, edge_2) / glm::length(normal),
                            error_bound(magnitude, linear * edge_1, linear * edge_2));
+    face.rounding = 8 * 0x1p-24 * (magnitude.x + magnitude.y + magnitude.z);
     return face;
 }
 
@@ -80,7 +82,7 @@ bool touch(const Face& a, const Face& b) {
 
 // Whether a corner of one triangle lies on the other.
 bool touch_at_a_corner(const Face& a, const Face& b) {
-    const double tolerance = 2 * std::max(a.offset, b.offset);
+    const double tolerance = 2 * std::max(a.rounding, b.rounding);
     const auto is_on = [&](const Face& face, const dvec3& corner) {
         const auto& c = face.corners;
         const dvec3 normal = glm::normalize(glm::cross(c[1] - c[0], c[2] - c[0]));
@@ -173,10 +175,11 @@ class Separation {
 
     // Moves triangles of the later group that touch the earlier one. A ball in a box does so with corners.
     void compare(const Group& earlier, Group& later) {
-        if (!compare(earlier, later, touch) && earlier.body && later.body) compare(earlier, later, touch_at_a_corner);
+        if (!compare(earlier, later, touch, &Face::offset) && earlier.body && later.body)
+            compare(earlier, later, touch_at_a_corner, &Face::rounding);
     }
 
-    bool compare(const Group& earlier, Group& later, bool (*touches)(const Face&, const Face&)) {
+    bool compare(const Group& earlier, Group& later, bool (*touches)(const Face&, const Face&), double Face::*gap) {
         // In one mesh, only lamps are told from what is dark. Elsewhere, two that look the same need no order.
         const bool is_decoration = !later.body && !later.emits;
         if (!later.body && earlier.emits == later.emits && earlier.instance == later.instance) return false;
@@ -196,7 +199,7 @@ class Separation {
             const bool follows = before != earlier.moves.end() && glm::dot(before->second.direction, direction) > 0;
             Move& move = later.moves[j];
             move.direction = direction;
-            move.distance = std::max(move.distance, (follows ? before->second.distance : 0) + 6 * std::max(a.offset, b.offset));
+            move.distance = std::max(move.distance, (follows ? before->second.distance : 0) + 6 * std::max(a.*gap, b.*gap));
             if (!later.body && later.emits == earlier.emits && faces_the_same_way) note(earlier, later);
         });
         return is_found;

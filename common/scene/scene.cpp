@@ -115,7 +115,9 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     };
     load([&] { load_meshes(description, specular || description.specular, sources, scene); });
     std::vector<Body> bodies = find_bodies(scene);
-    turn_inside_out_glass(scene, bodies);
+    std::vector<bool> has_medium;
+    for (const MeshPlacement& placement : description.meshes) has_medium.push_back(placement.medium.has_value());
+    turn_inside_out_glass(scene, bodies, has_medium);
     separate_contacts(scene, bodies);
     load([&] { add_media(description, bodies, sources, scene); });
     scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;

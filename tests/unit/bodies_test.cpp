@@ -183,6 +183,57 @@ TEST_F(Bodies, ACavityInGlassIsFilledByWhatIsAroundTheGlass) {
     EXPECT_TRUE(std::ranges::none_of(scene.warnings, [](const std::string& note) { return note.find("turned") != note.npos; }));
 }
 
+TEST_F(Bodies, GlassInGlassIsACavityUnlessItHasAMedium) {
+    write("outer.obj", box_text(vec3(-2), vec3(2)), "glass");
+    write("inner.obj", box_text(vec3(-1), vec3(1), 1, true), "glass");
+    const std::string outer = R"({"file": "outer.obj", "medium": {"extinction": 1, "albedo": 0}}, )",
+                      fog = R"(, "fog": {"extinction": 7, "albedo": 1})";
+    const auto extinction_inside = [&](const std::string& inner) {
+        const Scene scene = load(outer + R"({"file": "inner.obj")" + inner + "}", fog);
+        return scene.media[medium_by_ray(scene, {0.1, 0.2, 0}, {0, 0, 1})].extinction;
+    };
+    EXPECT_EQ(extinction_inside(""), 7);
+    EXPECT_EQ(extinction_inside(R"(, "medium": {"extinction": 3, "albedo": 0})"), 3);
+}
+
+TEST_F(Bodies, AHollowBodyIsTurnedAroundAsAWhole) {
+    write("a.obj", box_text(vec3(-2), vec3(2), 1, true) + box_text(vec3(-1), vec3(1), 9), "glass");
+    const Scene scene =
+        load(R"({"file": "a.obj", "medium": {"extinction": 1, "albedo": 0}})", R"(, "fog": {"extinction": 7, "albedo": 1})");
+    EXPECT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(scene.media[medium_by_ray(scene, {0.1, 0.2, 0}, {0, 0, 1})].extinction, 7);
+    EXPECT_EQ(scene.media[medium_by_ray(scene, {0.1, 0.2, 1.5}, {0, 0, 1})].extinction, 1);
+}
+
+TEST_F(Bodies, InAbsorbingGlassAreNoted) {
+    folder.write("tinted.mtl", "newmtl tinted\nd 0\nTf 0.5 0.5 0.5\n");
+    folder.write("tinted.obj", "mtllib tinted.mtl\nusemtl tinted\n" + box_text(vec3(-2), vec3(2)));
+    write("box.obj", box_text(vec3(-1), vec3(1)));
+    const auto notes_at = [&](const std::string& place) {
+        return load(R"({"file": "tinted.obj"}, )" + open("box.obj", 1, R"(, "translation": )" + place)).warnings;
+    };
+    EXPECT_TRUE(notes_at("[4, 0, 0]").empty());
+    for (const char* place : {"[0, 0, 0]", "[2, 0, 0]"}) {
+        const std::vector<std::string> notes = notes_at(place);
+        ASSERT_FALSE(notes.empty()) << place;
+        EXPECT_PRED_FORMAT2(IsSubstring, "box.obj: lies in the absorbing glass of", notes.back());
+    }
+}
+
+TEST_F(Bodies, ABoxOfAGridBesideItsMeshIsNoted) {
+    folder.write("grid.vol", std::string("VOL\3\1\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0\1\0\0\0", 24) + std::string(24, '\0') +
+                                 std::string("\0\0\200\77", 4));
+    write("box.obj", box_text(vec3(-1), vec3(1)));
+    const auto notes = [&](const std::string& box) {
+        return load(
+                   R"({"file": "box.obj", "medium": {"extinction": 1, "albedo": 0, "boundary": "open", "density": "grid.vol", "box": )" +
+                   box + "}}")
+            .warnings;
+    };
+    EXPECT_TRUE(notes("[[0, 0, 0], [9, 9, 9]]").empty());
+    ASSERT_EQ(notes("[[2, 2, 2], [3, 3, 3]]").size(), 1u);
+}
+
 TEST_F(Bodies, InsideOutGlassIsTurnedAround) {
     write("a.obj", box_text(vec3(-1), vec3(1), 1, true), "glass");
     const Scene scene = load(R"({"file": "a.obj"}, {"file": "a.obj", "translation": [5, 0, 0]})");
