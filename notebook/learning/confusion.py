@@ -56,13 +56,13 @@ def confusion(workshop, chapters, is_anew, jobs):
                       "fits": found["fits"], "facts": len(found["facts"]), "measured": measured, **effect(result)}
         with lock:
             record["trials"][key] = answer
-            write_json(RECORD, record, 2)
+            write_json(RECORD, record)
 
     missing = [(key, everything[key]) for key in planned_trials(chapters) if key not in record["trials"]]
     random.Random(0).shuffle(missing)  # what an interrupted run has done is a fair sample
     run_all("naming", try_naming, missing, jobs)
     record["trials"] = {key: record["trials"][key] for key in everything if key in record["trials"]}
-    write_json(RECORD, stamped(record), 2)
+    write_json(RECORD, stamped(record))
 
 
 def effect(result):

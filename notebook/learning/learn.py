@@ -154,8 +154,8 @@ def learn(workshop, chapters, is_anew, jobs):
     def write(chapter):
         with lock:
             file = grading.expected_file(chapter)
-            write_json(file, {key: known for key, known in knowledge[chapter].items() if key != "mistakes"}, 2)
-            write_json(NOTEBOOK / "knowledge" / file.name, knowledge[chapter]["mistakes"], 1)
+            write_json(file, {key: known for key, known in knowledge[chapter].items() if key != "mistakes"})
+            write_json(NOTEBOOK / "knowledge" / file.name, knowledge[chapter]["mistakes"])
 
     def learn_levels(chapter):
         knowledge[chapter]["levels"] = workshop.levels(chapter)

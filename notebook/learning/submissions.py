@@ -95,9 +95,9 @@ def main():
         with lock:
             record["submissions"][folder.name] = row | {key: before.get(key) if is_same else None for key in ("points", "name_is_right")}
             record.update({"commit": commit(), "submissions": dict(sorted(record["submissions"].items()))})
-            write_json(path, record, 3)
+            write_json(path, record)
 
     done = {} if options.anew else {name: row.get("measured") for name, row in record["submissions"].items()}
     run_all("submissions", grade_one, [folder for folder in folders if done.get(folder.name) != measured(folder, options.seed)], options.jobs)
     if options.anew and options.only == [""]:
-        write_json(path, stamped({name: record[name] for name in ("submissions", "commit")}), 3)
+        write_json(path, stamped({name: record[name] for name in ("submissions", "commit")}))

@@ -44,4 +44,4 @@ def main():
     seconds = {part: median(run[part] for run in found) for part in found[0]}
     start, rendering = seconds.pop("start"), report["rows"][-1]["seconds"]
     rows = {kind: {"seconds": whole, "beyond start and rendering": whole - start - rendering} for kind, whole in seconds.items()}
-    write_json(options.output, stamped({"device": report["device"], "samples": SAMPLES, "start": start, "rendering": rendering, "files": rows}), 2)
+    write_json(options.output, stamped({"device": report["device"], "samples": SAMPLES, "start": start, "rendering": rendering, "files": rows}))

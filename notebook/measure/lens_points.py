@@ -50,4 +50,4 @@ def main():
                     runs.append(found)
                 show_progress("lens_points", len(rows) * options.runs + run + 1, len(APERTURES) * options.runs, started)
             rows.append({"aperture_diameter": aperture, **errors})
-    write_json(options.output, stamped({"device": device, "scene": "focus", "max_path_length": 1, "rows": rows}), 4)
+    write_json(options.output, stamped({"device": device, "scene": "focus", "max_path_length": 1, "rows": rows}))

@@ -39,4 +39,4 @@ def main():
                     numbers["seconds"].append(content["rows"][-1][seconds])
                 show_progress("light_choices", len(rows) * options.runs + run + 1, len(SCENES) * options.runs, started)
             rows.append({"scene": scene, **found})
-    write_json(options.output, stamped({"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}), 5)
+    write_json(options.output, stamped({"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}))

@@ -40,4 +40,4 @@ def main():
                 show_progress("media_strategies", len(rows) * options.runs + run + 1, len(LIGHT) * options.runs, started)
             rows.append({"light": light, "mse_times_cpu_seconds": products})
         device = read_json(report)["device"]
-    write_json(options.output, stamped({"device": device, "scene": "fog", "rows": rows}), 4)
+    write_json(options.output, stamped({"device": device, "scene": "fog", "rows": rows}))

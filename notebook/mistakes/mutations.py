@@ -194,7 +194,7 @@ def main():
             with lock:
                 record[key] = answer
                 options.output.parent.mkdir(exist_ok=True)
-                write_json(options.output, record, 1)
+                write_json(options.output, record)
 
     run_all("mutations", grade, list(everything.items()), options.jobs)
     unchanged = read_json(UNCHANGED) if UNCHANGED.exists() else {}

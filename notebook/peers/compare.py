@@ -98,6 +98,6 @@ def main():
                     raise UserError(f"{case['scene']}, {case['case']}: {refusal}") from None
                 case["refused"] = str(refusal)
             record = stamped(record)
-            write_json(options.record, record, 5)
+            write_json(options.record, record)
         show_progress(f"{case['scene']}, {case['case']}", done, len(steps), started)
     print(f"{options.record}: complete; ./lab notebook export shows what is in notebook/records")

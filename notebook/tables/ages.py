@@ -1,7 +1,7 @@
 """Tells which records are older than the sources that they measured: nothing is wrong with them, they are of another renderer.
 
---stamp writes into records what they measured, if the program that made them cannot: cost_record, hardware_record, facet_record and
-device_report, and those that were measured on another machine. Do it before the sources change.
+--stamp writes into records what they measured, and a row a line, if the program that made them cannot: cost_record, hardware_record,
+facet_record and device_report, and those that were measured on another machine. Do it before the sources change.
 """
 import json
 import os
