@@ -12,13 +12,14 @@ import project
 from check import grading
 from check.diagnosis import diagnose, verdict_with
 from check.experiments import experiments_of
+from check.submission import Submission
 from learning.learn import Workshop, digest, own_text, parse, settings
 from learning.planting import trials
 from project import commit, read_json, write_json
 from report.batch import run_all
 from report.sources import code
-from tables.ages import stamped
 from tables.records import RECORDS
+from tables.sources import stamped
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
@@ -48,10 +49,10 @@ def confusion(workshop, chapters, is_anew, jobs):
         key, (trial, measured) = item
         plan = workshop.settings(TRYING, 2 * TRYING["runs"] * trial.seed)
         with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "path_trace.glsl"
-            file.write_text(trial.text, encoding="utf-8")
-            result = grading.judge(trial.chapter, file, plan, shader=trial.shader)[0]
-            found = diagnose(trial.chapter, file, plan, trial.shader, is_correct=result["verdict"] == "correct")
+            submission = Submission(trial.chapter, Path(folder) / "path_trace.glsl", trial.shader)
+            submission.file.write_text(trial.text, encoding="utf-8")
+            result = grading.judge(submission, plan)[0]
+            found = diagnose(submission, plan, result["verdict"] == "correct")
             answer = {"mistake": trial.mistake, "verdict": verdict_with(result["verdict"], found), "named": [each["name"] for each in found["mistakes"]],
                       "fits": found["fits"], "facts": len(found["facts"]), "measured": measured, **effect(result)}
         with lock:

@@ -12,7 +12,7 @@ from pathlib import Path
 from statistics import median
 
 from project import CHAPTERS, ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 SMALL, LARGE = (64, 64), (3840, 2160)
 FILES = {"EXR": ["exr"], "PNG": ["png"], "EXR and PNG": ["exr", "png"]}

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 CHAPTER, SHADER = "12_lens", "camera.glsl"
 JOINT = "get_joint_numbers(seed, on_aperture, in_pixel);"

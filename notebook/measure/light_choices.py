@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 CHAPTER, CHOICES = "14_many_lights", ("tree", "power", "uniform")
 SCENES, SIZE = ("lamps", "city", "heart_light", "cornell_box"), 256

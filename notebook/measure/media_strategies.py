@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 CHAPTER = "13_media"
 WAYS = {"both": [], "light": ["--strategy=light"], "bounces": ["--strategy=bounces"], "equiangular": ["--distance-sampling=equiangular"]}

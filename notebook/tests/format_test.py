@@ -22,7 +22,3 @@ class FormatTest(unittest.TestCase):
         for file in RECORDS.glob("*/*.json"):
             with self.subTest(record=file.relative_to(RECORDS)):
                 self.assertTrue(file.read_text(encoding="utf-8") == json_rows(read_json(file)) + "\n", "./lab notebook ages --stamp FILE lays it out")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 from book.code_blocks import take_out
-from check.grading import known_mistakes
+from check.expected import known_mistakes
 from course.pages import clean_pages
 from package.make import pack
 from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, Parser, UserError, description, number, run_to_end, show_progress, text_of, write_json
